@@ -1,0 +1,65 @@
+# `make run` and `make test` need only make and Python 3.11 or newer.
+# Each makes .venv from the hashed lock when it is missing or stale (tools/environment.py).
+
+PYTHONS := $(or $(PYTHON),python3 python3.13 python3.12 python3.11 python3.14)
+BIN := .venv/bin
+WORKERS ?= 2
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -p no:benchmark
+COMPILE := uv pip compile pyproject.toml --universal --fork-strategy fewest --generate-hashes \
+	--no-emit-index-url --python-version 3.11 --no-header --quiet
+
+.PHONY: help run test validate bench docs lint lock wheel clean run-environment dev-environment
+
+help:
+	@echo "make run       set up, then run the built-in case published-exact"
+	@echo "make test      set up, then lint, types, docs and all tests but the long ones"
+	@echo "make validate  the long validation studies"
+	@echo "make bench     the benchmarks, beside a plain SciPy script"
+	@echo "make docs      the documentation, in docs/_build/html"
+	@echo "make lint      ruff, mypy and the import contract"
+	@echo "make lock      remake the lock files (needs uv; UPGRADE=1 moves to newer versions)"
+	@echo "make wheel     the wheel, in dist"
+	@echo "make clean     remove what was made, except .venv"
+
+run: run-environment
+	$(BIN)/asperity run published-exact --force
+
+# pytest last, so that its summary closes the output.
+test: lint docs
+	$(PYTEST)
+
+validate: dev-environment
+	$(PYTEST) -m long
+
+bench: dev-environment
+	$(BIN)/python -m benchmarks
+
+docs: dev-environment
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+
+lint: dev-environment
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+lock:
+	@command -v uv >/dev/null || { echo "make lock needs uv (see CONTRIBUTING.md)" >&2; exit 1; }
+	$(COMPILE) $(if $(UPGRADE),--upgrade) --group dev --output-file requirements-dev.lock
+	$(COMPILE) --group build --constraint requirements-dev.lock --output-file requirements.lock
+
+wheel: run-environment
+	$(BIN)/python -m hatchling build --target wheel --directory dist
+
+clean:
+	rm -rf build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis \
+		.benchmarks .import_linter_cache *-out
+	find src tests benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
+
+run-environment dev-environment: %-environment:
+	@for python in $(PYTHONS); do \
+		"$$python" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' \
+			2>/dev/null && exec "$$python" tools/environment.py $*; \
+	done; \
+	echo "asperity needs Python 3.11 or newer with venv (tried: $(PYTHONS)); name it with PYTHON=" >&2; \
+	exit 1

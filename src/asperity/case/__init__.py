@@ -1,0 +1,26 @@
+"""Case files: the schema and its reading and writing; strings of a case live in this room alone."""
+
+from asperity.case.bodies import Body, Counterface, Material, Roughness
+from asperity.case.forces import Adhesion, Capillary
+from asperity.case.reading import BUILTINS, SIZE_LIMIT, builtin, load, load_file, template
+from asperity.case.running import Impact, Numerics, Output
+from asperity.case.schema import Case
+
+__all__ = [
+    "BUILTINS",
+    "SIZE_LIMIT",
+    "Adhesion",
+    "Body",
+    "Capillary",
+    "Case",
+    "Counterface",
+    "Impact",
+    "Material",
+    "Numerics",
+    "Output",
+    "Roughness",
+    "builtin",
+    "load",
+    "load_file",
+    "template",
+]

@@ -1,0 +1,108 @@
+"""A case as physical objects: laws, interface, contact and body."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..contact import Contact, ElasticContact, RigidContact, SmoothContact
+from ..impact import Body
+from ..interface import Interface
+from ..laws import Bradley, ByContact, ByKelvinGap, Dmt, Hertz, Jkr, Law, Meniscus
+from ..laws.base import Sum
+from ..materials import contact_modulus
+from ..roughness import Gaussian
+from ..shapes import Sphere
+
+if TYPE_CHECKING:
+    from .schema import Case
+
+CLEARANCE = 1e-9
+"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap."""
+
+
+class Problem(NamedTuple):
+    """What the equation of motion needs.
+
+    Attributes
+    ----------
+    contact
+        Forces between the two bodies.
+    body
+        Mass and release.
+    modulus
+        Contact modulus E* [Pa].
+    tip_radius
+        Radius [m] of one asperity, or of the smooth body.
+    """
+
+    contact: Contact
+    body: Body
+    modulus: float
+    tip_radius: float
+
+
+def build(case: Case) -> Problem:
+    """The objects that a case describes.
+
+    Raises
+    ------
+    InputError
+        If two laws contain the same force.
+    """
+    modulus = contact_modulus(case.body_solid, case.counterface_solid)
+    rough = case.roughness
+    tip = case.body.radius if rough is None else rough.asperity_radius
+    law = _law(case, tip, modulus)
+    if rough is None:
+        contact: Contact = SmoothContact(law)
+    else:
+        interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
+        shape = Sphere(case.body.radius)
+        if case.counterface.deformation == "rigid":
+            contact = RigidContact(interface, shape)
+        else:
+            nodes = _reversal_nodes(interface, rough.rms_height)
+            contact = ElasticContact(
+                interface, shape, modulus, case.numerics.rings, inner_nodes=nodes
+            )
+    impact = case.impact
+    release = impact.release_gap
+    if release is None:
+        release = float(contact.reach) + CLEARANCE
+    mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
+    body = Body(mass, impact.gravity, release, impact.speed or 0.0)
+    return Problem(contact, body, modulus, tip)
+
+
+def _reversal_nodes(interface: Interface, rms_height: float) -> int:
+    """Enough nodes for a way between branches that is short beside the roughness."""
+    widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
+    share = max(widths, default=0.0) / rms_height
+    return 6 if share < 0.1 else 8 if share < 0.3 else 12
+
+
+def _law(case: Case, tip: float, modulus: float) -> Law:
+    """The laws of one asperity, side by side."""
+    laws: list[Law] = []
+    adhesion = case.adhesion
+    if adhesion.model == "jkr":
+        laws.append(Jkr(tip, modulus, _given(adhesion.work)))
+    else:
+        laws.append(Hertz(tip, modulus))
+        if adhesion.model == "dmt":
+            laws.append(Dmt(tip, _given(adhesion.work)))
+        elif adhesion.model == "bradley":
+            laws.append(Bradley(tip, _given(adhesion.work), _given(adhesion.range)))
+    liquid, kelvin_radius = case.liquid, case.kelvin_radius
+    if liquid is not None and kelvin_radius > 0.0:
+        angle = _given(case.capillary.contact_angle)
+        formation = ByContact() if case.capillary.formation == "contact" else ByKelvinGap()
+        laws.append(Meniscus(tip, liquid.tension, angle, kelvin_radius, formation))
+    return laws[0] if len(laws) == 1 else Sum(laws)
+
+
+def _given(value: float | None) -> float:
+    """A value that the schema requires with the model in use."""
+    assert value is not None
+    return value

@@ -1,0 +1,164 @@
+"""What is wrong with a case, in one line that names file, key, rule and value."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from asperity.errors import InputError
+from asperity.units import shown
+
+Model = TypeVar("Model", bound=BaseModel)
+Place = tuple[str, ...]
+
+_PART = r"""(?:[A-Za-z0-9_-]+|"(?:[^"\\]|\\.)*"|'[^']*')"""
+_KEY = re.compile(rf"\s*({_PART}(?:\s*\.\s*{_PART})*)\s*=")
+_HEADER = re.compile(rf"\s*\[\[?\s*({_PART}(?:\s*\.\s*{_PART})*)\s*\]")
+_PARTS = re.compile(_PART)
+
+
+def did_you_mean(word: str, options: Iterable[str]) -> str:
+    """`` - did you mean 'rms_height'?``, or nothing where no option is close to the word."""
+    by_lower = {option.lower(): option for option in options}
+    close = difflib.get_close_matches(word[:60].lower(), by_lower, n=1)
+    return f" - did you mean '{by_lower[close[0]]}'?" if close else ""
+
+
+def check(model: type[Model], table: Any, *, source: str = "", file: str | None = None) -> Model:
+    """A table's values as a model.
+
+    Parameters
+    ----------
+    model : type
+        Model to make.
+    table : dict
+        Keys and values, as tomllib gives them.
+    source : str
+        Text that the table was read from, for line numbers.
+    file : str, optional
+        Name of the file, for the message.
+
+    Raises
+    ------
+    InputError
+        With the first problem: an unknown key before a bad value before a missing key, since a
+        misspelt key is missing too.
+    """
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        lines = _line_numbers(source)
+        found = error.errors(include_url=False)
+    order = {"extra_forbidden": 0, "missing": 2}
+    first = min(found, key=lambda e: (order.get(e["type"], 1), _line(lines, _place(e)) or 0))
+    place = _place(first)
+    line = _line(lines, place)
+    key = ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in place)
+    where = f"{key} (line {line})" if line and key else key
+    text = ": ".join(part for part in (file, where, _message(model, first)) if part)
+    raise InputError(text, file=file, key=key or None)
+
+
+def _place(error: Any) -> Place:
+    """Where one of pydantic's errors is, down to the key that a rule between keys names."""
+    cause = error.get("ctx", {}).get("error")
+    below = cause.key.split(".") if isinstance(cause, InputError) and cause.key else ()
+    return (*(str(part) for part in error["loc"]), *below)
+
+
+def _message(model: type[BaseModel], error: Any) -> str:
+    """Rule and value of one of pydantic's errors."""
+    kind, place, value = error["type"], _place(error), error["input"]
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return str(cause)
+    name = place[-1] if place else "case"
+    if kind == "extra_forbidden":
+        return _unknown(model, place, value)
+    if kind == "missing":
+        return f"the table [{name}] is missing" if len(place) == 1 else f"`{name}` is missing"
+    expected = error.get("ctx", {}).get("expected", "")
+    rules = {
+        "literal_error": f"must be {'one of ' if ' or ' in expected else ''}{expected}",
+        "bool_type": "must be true or false",
+        "string_type": "must be text in quotes",
+        "model_type": "must be a table",
+        "dict_type": "must be a table of tables",
+    }
+    hint = ""
+    if kind == "literal_error" and isinstance(value, str):
+        hint = did_you_mean(value, re.findall(r"'([^']*)'", expected))
+    rule = rules.get(kind, error["msg"])
+    return f"`{name}` {rule}; got {shown(value)}{hint}"
+
+
+def _unknown(model: type[BaseModel], place: Place, value: object) -> str:
+    """What to say of an unknown key: the rule, the value, and the key that was meant."""
+    name, above = place[-1], place[:-1]
+    owner = _table(model, above)
+    keys = [field.alias or key for key, field in owner.model_fields.items()] if owner else []
+    what = f"a key of [{'.'.join(above)}]" if above else "a key or table of a case"
+    got = "" if isinstance(value, dict) else f"; got {shown(value)}"
+    hint = did_you_mean(name, keys)
+    if not hint:
+        homes = [
+            key
+            for key in model.model_fields
+            if (table := _table(model, (key,))) is not None and name in table.model_fields
+        ]
+        hint = f" - it belongs in [{homes[0]}]" if homes else ""
+    return f"`{shown(name)[1:-1]}` is not {what}{got}{hint}"
+
+
+def _table(model: type[BaseModel], place: Place) -> type[BaseModel] | None:
+    """The model of the table at a place; None where there is none."""
+    for part in place:
+        field = model.model_fields.get(part)
+        if field is None:
+            return None
+        inside = tables_of(field.annotation)
+        if not inside:
+            return None
+        model = inside[0]
+        if "dict" in str(field.annotation):
+            return model
+    return model
+
+
+def tables_of(annotation: Any) -> list[type[BaseModel]]:
+    """The models within a type, e.g. `Roughness` in ``Roughness | None``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for part in getattr(annotation, "__args__", ()) for model in tables_of(part)]
+
+
+def _line(lines: Mapping[Place, int], place: Place) -> int | None:
+    """Line of a key, or of the innermost table around it that has one."""
+    for end in range(len(place), 0, -1):
+        if place[:end] in lines:
+            return lines[place[:end]]
+    return None
+
+
+def _line_numbers(source: str) -> dict[Place, int]:
+    """Line on which each key and each table of a TOML text first stands."""
+    lines: dict[Place, int] = {}
+    table: Place = ()
+    for number, line in enumerate(source.split("\n"), start=1):
+        if header := _HEADER.match(line):
+            table = _unquoted(header.group(1))
+            lines.setdefault(table, number)
+        elif key := _KEY.match(line):
+            place = table + _unquoted(key.group(1))
+            for end in range(len(table) + 1, min(len(place), len(table) + 3) + 1):
+                lines.setdefault(place[:end], number)
+    return lines
+
+
+def _unquoted(dotted: str) -> Place:
+    parts = _PARTS.findall(dotted)
+    return tuple(part[1:-1] if part[0] in "\"'" else part for part in parts)

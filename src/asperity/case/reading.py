@@ -1,0 +1,145 @@
+"""Case files and built-in cases -> `Case`."""
+
+from __future__ import annotations
+
+import importlib.resources
+import os
+import re
+import stat
+import tomllib
+from pathlib import Path
+
+from asperity.case import problems, writing
+from asperity.case.schema import Case
+from asperity.errors import InputError
+from asperity.units import shown
+
+SIZE_LIMIT = 1 << 20
+"""Largest size of a case [bytes]: 1 MiB."""
+
+LINE_LIMIT = 1000
+"""Longest line of a case [characters]."""
+
+_CASES = importlib.resources.files("asperity") / "cases"
+
+BUILTINS: tuple[str, ...] = tuple(
+    sorted(entry.name.removesuffix(".toml") for entry in _CASES.iterdir()
+           if entry.name.endswith(".toml"))
+)  # fmt: skip
+"""Names of the built-in cases."""
+
+_PLACE = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+def load(text: str, *, file: str | None = None) -> Case:
+    """A case from TOML text.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    file : str, optional
+        Name of its file, for messages.
+
+    Raises
+    ------
+    InputError
+        One line that names file, key, line, rule and value.
+    """
+    if len(text) > SIZE_LIMIT or len(text.encode(errors="replace")) > SIZE_LIMIT:
+        raise _unusable(file, f"a case must be at most 1 MiB; got {len(text)} characters")
+    if "\0" in text:
+        raise _unusable(file, "a case must be text; got a binary file")
+    if not text.strip():
+        raise _unusable(file, "a case must have tables; got an empty file")
+    longest = max(len(line) for line in text.split("\n"))
+    if longest > LINE_LIMIT:  # the parser's time grows with the square of a dotted key's length
+        raise _unusable(
+            file, f"a line must be at most {LINE_LIMIT} characters; got one of {longest}"
+        )
+    try:
+        table = tomllib.loads(text)
+    except RecursionError:
+        raise _unusable(file, "not TOML: values nested too deeply") from None
+    except tomllib.TOMLDecodeError as error:
+        raise _unusable(file, _syntax(str(error), text)) from None
+    return problems.check(Case, table, source=text, file=file)
+
+
+def load_file(path: str | os.PathLike[str]) -> Case:
+    """A case from a TOML file, which is never read beyond 1 MiB.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read or is no case.
+    """
+    name = os.fspath(path)
+    content = _content(name)
+    try:
+        return load(content.decode("utf-8-sig"), file=name)
+    except UnicodeDecodeError as error:
+        rule = f"a case must be UTF-8 text; got a binary file (byte {error.start + 1})"
+        raise _unusable(name, rule) from None
+
+
+def _content(name: str) -> bytes:
+    """Bytes of a regular file of at most 1 MiB."""
+    try:
+        status = Path(name).stat()
+    except OSError as error:
+        raise _unusable(name, f"cannot be read: {error.strerror}") from None
+    except ValueError:  # a null character
+        raise _unusable(name, "cannot be read: no path of a file") from None
+    if stat.S_ISDIR(status.st_mode):
+        raise _unusable(name, "a case must be a file; got a folder")
+    if not stat.S_ISREG(status.st_mode):
+        raise _unusable(name, "a case must be a regular file; got a device, pipe or socket")
+    if status.st_size > SIZE_LIMIT:
+        raise _unusable(name, f"a case must be at most 1 MiB; got {status.st_size} bytes")
+    try:
+        with Path(name).open("rb") as stream:
+            return stream.read(SIZE_LIMIT + 1)
+    except OSError as error:
+        raise _unusable(name, f"cannot be read: {error.strerror}") from None
+
+
+def builtin(name: str) -> Case:
+    """A built-in case by its name, one of `BUILTINS`.
+
+    Raises
+    ------
+    InputError
+        Where there is none of this name.
+    """
+    if name not in BUILTINS:
+        raise InputError(
+            f"case must be one of {', '.join(BUILTINS)}, or a file as in `asperity run FILE.toml`; "
+            f"got {shown(name)}{problems.did_you_mean(name, BUILTINS)}",
+            key="case",
+        )
+    return load((_CASES / f"{name}.toml").read_text(encoding="utf-8"), file=f"{name}.toml")
+
+
+def template() -> str:
+    """The commented case that `asperity init` writes: every key, with its unit and meaning."""
+    return writing.commented(
+        Case,
+        "A case of asperity: a body that falls on a surface.\n"
+        "Every value with a dimension is text with a unit; keys behind a # are optional.",
+    )
+
+
+def _unusable(file: str | None, rule: str) -> InputError:
+    return InputError(f"{file}: {rule}" if file else rule, file=file)
+
+
+def _syntax(message: str, source: str) -> str:
+    """The parser's message with the line in front."""
+    place = _PLACE.search(message)
+    rule = _PLACE.sub("", message)
+    if place is None:
+        return f"not TOML: {rule}"
+    line = int(place.group(1)) if place.group(1) else source.count("\n") + 1
+    column = f", column {place.group(2)}" if place.group(2) else ""
+    return f"not TOML (line {line}{column}): {rule}"

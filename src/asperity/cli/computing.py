@@ -1,0 +1,155 @@
+"""``asperity run``, ``asperity curve`` and ``asperity plot``: from a case to files or JSON."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import json
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from asperity import summary
+from asperity.cli.sources import Source, source
+from asperity.cli.terminal import exit_code_of, say, tell
+from asperity.cli.working import Progress, Work, progress_bar
+from asperity.errors import InputError, Outcome, SimulationError
+from asperity.records import CURVE_FILES, RUN_FILES, check_folder, json_object, read, write_folder
+from asperity.result import Curve, Result
+
+_FILES = {"solve": RUN_FILES, "curve": CURVE_FILES}
+
+
+@dataclasses.dataclass(frozen=True)
+class _Request:
+    """What to compute and what to do with it."""
+
+    what: str
+    source: Source
+    folder: Path | None
+    force: bool
+    as_json: bool
+    quiet: bool
+
+
+def compute(
+    what: str, case: str, *, output: str | None, force: bool, as_json: bool, quiet: bool
+) -> None:
+    """Compute a case, keep the result, and say what came out.
+
+    Parameters
+    ----------
+    what : str
+        "solve" for a motion, "curve" for force against separation.
+    case : str
+        As the user named it.
+    output : str or None
+        Folder for the files.
+    force, as_json, quiet : bool
+        The options of these names.
+    """
+    given = source(case)
+    folder = None
+    if output is not None or not as_json:
+        folder = Path(output or given.case.output.directory or f"{given.name}-out")
+        check_folder(folder, _FILES[what], force=force)
+    request = _Request(what, given, folder, force, as_json, quiet)
+    try:
+        with progress_bar(not (quiet or as_json)) as progress:
+            work = Work(lambda stop: _task(request, stop, progress))
+            result, code = work.wait()
+    except SimulationError as error:
+        if isinstance(error.partial, (Result, Curve)):
+            _deliver(_ended(request, error.partial, Outcome.FAILED), request, 0)
+        raise
+    if result is not None:
+        ended = _ended(request, result, Outcome.INTERRUPTED if code else None)
+        code = _deliver(ended, request, code)
+    elif code:
+        say("asperity: interrupted before there was anything to keep")
+    if code:
+        raise typer.Exit(code)
+
+
+def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Result | Curve:
+    """Load what computes, and compute; in a thread of its own."""
+    function = getattr(importlib.import_module("asperity.solver"), request.what)
+    given = request.source
+    answer: Result | Curve = function(given.case, name=given.name, progress=progress, stop=stop)
+    return answer
+
+
+def _ended(request: _Request, result: Result | Curve, outcome: Outcome | None) -> Result | Curve:
+    """The result with the hash of its input, and with how it was cut short."""
+    changes: dict[str, object] = {"input_sha256": request.source.input_sha256}
+    if isinstance(result, Result) and outcome is not None:
+        changes["outcome"] = outcome if outcome is Outcome.FAILED else result.outcome
+    return dataclasses.replace(result, **changes)  # type: ignore[arg-type]
+
+
+def _deliver(result: Result | Curve, request: _Request, code: int) -> int:
+    """Write the files and print the answer; the exit code, an interruption's if one came."""
+    written, code = _keep(result, request, code)
+    if code:
+        say(f"asperity: {Outcome.INTERRUPTED.message}")
+    if request.as_json:
+        tell(json.dumps(json_object(result), allow_nan=False))
+    elif not request.quiet:
+        tell(_brief(result))
+    if written and not request.quiet:
+        if request.as_json:
+            say(_written(written))
+        else:
+            tell("\n" + _written(written))
+    return code
+
+
+def _brief(result: Result | Curve) -> str:
+    if isinstance(result, Curve):
+        return summary.brief_curve(result)
+    return summary.brief(result)
+
+
+def _keep(result: Result | Curve, request: _Request, code: int) -> tuple[Sequence[Path], int]:
+    """Write the files; without pictures, which take a second, where time presses."""
+    if request.folder is None:
+        return [], code
+    own = _FILES[request.what]
+    if not code:
+        try:
+            return write_folder(request.folder, result.files(), own, force=request.force), 0
+        except KeyboardInterrupt as stop:
+            code = exit_code_of(stop)
+    files = result.files(pictures=False)
+    return write_folder(request.folder, files, own, force=request.force), code
+
+
+def _written(paths: Sequence[Path]) -> str:
+    return f"written to {paths[0].parent}:\n  {' '.join(path.name for path in paths)}"
+
+
+def redraw(record: str, output: str | None, *, force: bool) -> None:
+    """Draw the pictures of a record again.
+
+    Parameters
+    ----------
+    record : str
+        Path of the record.
+    output : str or None
+        Folder for the pictures; without it they go beside the record, in place of those there.
+    force : bool
+        Whether pictures in ``output`` may be replaced.
+    """
+    from asperity import plots
+
+    result = read(record)
+    pictures = plots.pictures(result)
+    if not pictures:
+        raise InputError(
+            f"{record}: a record must hold its motion to be drawn; it has none", file=record
+        )
+    folder = Path(record).parent if output is None else Path(output)
+    written = write_folder(folder, pictures, tuple(pictures), force=force or output is None)
+    tell(_written(written))

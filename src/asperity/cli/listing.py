@@ -1,0 +1,96 @@
+"""``asperity init`` and ``asperity materials``."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from asperity.cli.terminal import tell
+from asperity.errors import InputError, OutputError
+from asperity.materials import LIQUIDS, SOLIDS
+from asperity.records.layout import plain
+from asperity.summary import WIDTH, amount
+
+_NUMBERS = 54
+_HIDDEN = ("tension_law", "density_law", "temperatures")
+
+
+def write_template(file: str) -> None:
+    """Write a commented case file where there is none yet.
+
+    Raises
+    ------
+    InputError
+        Where the file is there already.
+    OutputError
+        Where it cannot be written.
+    """
+    from asperity.case import template
+
+    path = Path(file)
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            try:
+                stream.write(template())
+                stream.flush()
+            except BaseException:
+                path.unlink(missing_ok=True)
+                raise
+    except FileExistsError:
+        raise InputError(f"{file}: is there already and stays as it is", file=file) from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise OutputError(f"{file}: cannot be written: {reason}", path=file) from None
+    tell(f"written to {file}; then: asperity run {file}")
+
+
+def list_materials(*, as_json: bool) -> None:
+    """Print the catalogue."""
+    if as_json:
+        found = {"solids": _rows(SOLIDS.values()), "liquids": _rows(LIQUIDS.values())}
+        tell(json.dumps(found, allow_nan=False))
+        return
+    lines = ["Solids: Young's modulus, Poisson's ratio, density, hardness", ""]
+    for solid in SOLIDS.values():
+        numbers = [
+            amount(solid.youngs_modulus, "Pa"),
+            f"{solid.poisson:.4g}",
+            _density(solid.density),
+            amount(solid.hardness, "Pa"),
+        ]
+        lines += _entry(solid.name, numbers, solid.source)
+    lines += ["Liquids: surface tension, molar volume, density", ""]
+    for liquid in LIQUIDS.values():
+        numbers = [
+            amount(liquid.tension, "N/m"),
+            f"{liquid.molar_volume * 1e6:.4g} cm^3/mol",
+            _density(liquid.density),
+        ]
+        lines += _entry(liquid.name, numbers, liquid.source)
+    tell("\n".join(lines).rstrip())
+
+
+def _rows(entries: Any) -> dict[str, Any]:
+    """The catalogue's entries by name, as plain values in SI."""
+    return {
+        entry.name: {
+            field.name: plain(getattr(entry, field.name))
+            for field in dataclasses.fields(entry)
+            if field.name not in (*_HIDDEN, "name")
+        }
+        for entry in entries
+    }
+
+
+def _entry(name: str, numbers: Sequence[str], source: str) -> list[str]:
+    row = f"{name:<25}" + "".join(f"{number:>{_NUMBERS // len(numbers)}}" for number in numbers)
+    about = textwrap.wrap(source, WIDTH, initial_indent="    ", subsequent_indent="    ")
+    return [row, *about, ""]
+
+
+def _density(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g} kg/m^3"

@@ -1,0 +1,147 @@
+"""What the program says and how it ends: one line for an error, an exit code, no traceback."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import types
+import warnings
+from typing import Any, NoReturn
+
+import typer
+from typer.core import TyperGroup
+
+from asperity.errors import (
+    EXIT_INPUT,
+    EXIT_INTERRUPTED,
+    EXIT_NUMERICS,
+    EXIT_OUTPUT,
+    InputError,
+    OutputError,
+    SimulationError,
+    one_line,
+)
+
+FATAL = 128
+"""A program that a signal ended has this plus the signal's number as its exit code."""
+
+EXIT_TERMINATED = FATAL + 15
+EXIT_NO_READER = FATAL + 13
+
+
+class Terminated(KeyboardInterrupt):
+    """The system asked the program to end (SIGTERM); handled as Ctrl-C is."""
+
+
+class Commands(TyperGroup):
+    """The commands, with the project's errors as one line and an exit code."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that the arguments name."""
+        try:
+            return super().invoke(ctx)
+        except InputError as error:
+            code = _fail(_with_place(error), EXIT_INPUT)
+        except SimulationError as error:
+            code = _fail(str(error), EXIT_NUMERICS)
+        except OutputError as error:
+            code = _fail(str(error), EXIT_OUTPUT)
+        except KeyboardInterrupt as stop:
+            code = _fail("interrupted; nothing was written", exit_code_of(stop))
+        raise typer.Exit(code)
+
+
+def exit_code_of(stop: KeyboardInterrupt) -> int:
+    """Exit code of an interruption: by Ctrl-C or by the system."""
+    return EXIT_TERMINATED if isinstance(stop, Terminated) else EXIT_INTERRUPTED
+
+
+def say(text: str) -> None:
+    """A line for a human, on standard error."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):  # nobody is listening
+            sys.stderr.write(text + "\n")
+            sys.stderr.flush()
+
+
+def tell(text: str) -> None:
+    """The program's answer, on standard output.
+
+    Raises
+    ------
+    OutputError
+        Where it cannot be written, e.g. to a full disk.
+    typer.Exit
+        Where its reader has gone, as ``head`` goes.
+    """
+    if sys.stdout is None:
+        return
+    try:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _abandon_stdout()
+        raise typer.Exit(EXIT_NO_READER) from None
+    except OSError as error:
+        _abandon_stdout()
+        reason = error.strerror or error
+        raise OutputError(f"standard output: cannot be written: {reason}") from None
+
+
+def prepare() -> None:
+    """Set up signals, streams and warnings for a program of its own."""
+    signal.signal(signal.SIGTERM, raise_stop)
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None and hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    # A full or read-only disk costs the compile cache alone, and the result says the rest.
+    warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation")
+
+
+def leave(command: Any) -> NoReturn:
+    """Run the command and end the program with its exit code.
+
+    After an interruption the program ends without waiting: a compilation that runs in another
+    thread would hold it for seconds.
+    """
+    try:
+        command.main(prog_name="asperity")
+        code = 0
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else 1
+    except KeyboardInterrupt as stop:
+        code = exit_code_of(stop)
+    if code in (EXIT_INTERRUPTED, EXIT_TERMINATED):
+        os._exit(code)
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        _abandon_stdout()
+        code = code or EXIT_NO_READER
+    sys.exit(code)
+
+
+def raise_stop(number: int, frame: types.FrameType | None = None) -> NoReturn:
+    """Raise what a request to end is in Python; a signal handler."""
+    raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
+
+
+def _abandon_stdout() -> None:
+    """Send what is left in the buffer nowhere, or Python complains of it at its end."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _fail(message: str, code: int) -> int:
+    say(f"asperity: {one_line(message)}")
+    return code
+
+
+def _with_place(error: InputError) -> str:
+    """The message, with the file and the key where it does not name them."""
+    text = str(error)
+    parts = [part for part in (error.file, error.key) if part and part not in text]
+    return ": ".join([*parts, text])

@@ -1,0 +1,133 @@
+"""What the equation of motion asks of a contact."""
+
+from __future__ import annotations
+
+import abc
+from typing import Any, NamedTuple
+
+import equinox as eqx
+
+from .._jax import jax, jnp
+
+Memory = Any
+"""A pytree that a contact alone understands: its bonds after the last reversal."""
+
+
+class State(NamedTuple):
+    """A contact at one rigid separation.
+
+    Attributes
+    ----------
+    force
+        Total force [N], positive apart.
+    stored
+        Recoverable energy [J].
+    central
+        Separation of the deformed mean planes at the axis [m].
+    bonds
+        Number of bonds per hysteretic law, shape (laws,).
+    parts
+        The force by mechanism [N], in the order of :attr:`Contact.components`.
+    touching
+        Expected number of asperities in contact.
+    error
+        Estimated relative error of the force: 1e-16 where it is a closed form.
+    """
+
+    force: jax.Array
+    stored: jax.Array
+    central: jax.Array
+    bonds: jax.Array
+    parts: jax.Array
+    touching: jax.Array
+    error: jax.Array
+
+
+class Contact(eqx.Module):
+    """Two bodies pressed together along one axis, with the memory of their bonds.
+
+    The *rigid separation* d [m] is the separation of the mean planes at the apex were
+    nothing deformed in bulk. All methods take scalars and are batched by ``vmap``.
+    """
+
+    @property
+    @abc.abstractmethod
+    def mechanisms(self) -> tuple[str, ...]:
+        """Name of the loss of each hysteretic law, in the order of the memory."""
+
+    @property
+    @abc.abstractmethod
+    def components(self) -> tuple[str, ...]:
+        """Names of the forces in :attr:`State.parts`."""
+
+    @property
+    def discrete(self) -> bool:
+        """Whether a bond is one yes or no, as on a smooth body."""
+        return False
+
+    @property
+    def reversal_nodes(self) -> int:
+        """How many solutions resolve the way from a reversal to the outermost branch."""
+        return 12
+
+    @abc.abstractmethod
+    def refined(self, factor: int) -> Contact:
+        """The same contact with ``factor`` times as many panels on its curves."""
+
+    @abc.abstractmethod
+    def fresh(self) -> Memory:
+        """Memory of bodies that never touched."""
+
+    @abc.abstractmethod
+    def extreme(self, bonded: tuple[bool, ...]) -> Memory:
+        """Memory on an outermost branch: for each law, all bonds kept or none made."""
+
+    @abc.abstractmethod
+    def state(self, separation: jax.Array, memory: Memory) -> State:
+        """The contact at a rigid separation, reached monotonically from ``memory``."""
+
+    def states(self, separations: jax.Array, memory: Memory) -> State:
+        """The contact at many separations, each reached from ``memory``."""
+        return jax.vmap(lambda d: self.state(d, memory))(separations)
+
+    @abc.abstractmethod
+    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
+        """Memory after a monotone motion from ``memory`` to ``separation``."""
+
+    @abc.abstractmethod
+    def bonded(self, memory: Memory) -> jax.Array:
+        """For a discrete contact: which laws are bonded, shape (laws,)."""
+
+    @abc.abstractmethod
+    def switches(self, memory: Memory, separation: jax.Array, parting: jax.Array) -> jax.Array:
+        """Separations from which on each law is on its outermost branch, shape (laws,)."""
+
+    @abc.abstractmethod
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost when one bond forms and when it breaks, per hysteretic law."""
+
+    @abc.abstractmethod
+    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+        """A separation [m] that a body cannot reach.
+
+        It leaves ``release`` [m] with ``kinetic`` [J], ``weight`` [N] and no bonds.
+        """
+
+    @abc.abstractmethod
+    def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
+        """Ends of the pieces between which the force is smooth on one scale."""
+
+    @property
+    @abc.abstractmethod
+    def reach(self) -> jax.Array:
+        """Separation [m] beyond which bodies that never touched feel nothing.
+
+        The force there is below 1e-6 of the largest pull.
+        """
+
+
+def first_out_of_reach(values: jax.Array, level: jax.Array, places: jax.Array) -> jax.Array:
+    """The first of descending ``places`` below the last at which ``values`` <= ``level``."""
+    below = values <= level
+    last = places.shape[0] - 1 - jnp.argmax(below[::-1])
+    return jnp.asarray(places)[jnp.minimum(last + 1, places.shape[0] - 1)]

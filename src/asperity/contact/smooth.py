@@ -1,0 +1,135 @@
+"""A smooth body: one law of one contact."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..laws.base import Law, terms
+from .base import Contact, State, first_out_of_reach
+
+Flags = jax.Array
+
+
+class SmoothContact(Contact):
+    """A smooth body on a smooth plane: the law of one asperity with the body's radius.
+
+    Parameters
+    ----------
+    law
+        The law, or a sum of laws, with the radius of the body.
+    refinement
+        Factor on the number of panels of its curves (static).
+
+    The separation is the gap. Memory: one flag a hysteretic law, whether it is bonded.
+    """
+
+    law: Law
+    refinement: int = eqx.field(static=True, default=1)
+
+    @property
+    def _hysteretic(self) -> tuple[Law, ...]:
+        return tuple(law for law in terms(self.law) if law.hysteretic)
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        return tuple(law.mechanism for law in self._hysteretic)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
+        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+
+    @property
+    def discrete(self) -> bool:
+        return True
+
+    def refined(self, factor: int) -> SmoothContact:
+        return dataclasses.replace(self, refinement=factor)
+
+    def fresh(self) -> Flags:
+        return jnp.zeros(len(self.mechanisms))
+
+    def extreme(self, bonded: tuple[bool, ...]) -> Flags:
+        return jnp.asarray(bonded, dtype=float)
+
+    def state(self, separation: jax.Array, memory: Flags) -> State:
+        flags = self.remember(memory, separation)
+        each = {name: jnp.zeros_like(separation) for name in self.components}
+        stored, index = jnp.zeros_like(separation), 0
+        for law in terms(self.law):
+            on = jnp.zeros((), bool)
+            if law.hysteretic:
+                on, index = flags[index] > 0.5, index + 1
+            for name, share in law.components(separation, on).items():
+                each[name] = each[name] + share
+            free = law.energy(separation)
+            bonded = law.bonded_energy(separation) if law.hysteretic else free
+            stored = stored + jnp.where(on, bonded, free)
+        parts = jnp.stack(list(each.values()))
+        return State(
+            force=jnp.sum(parts),
+            stored=stored,
+            central=separation,
+            bonds=flags,
+            parts=parts,
+            touching=jnp.where(separation < 0.0, 1.0, 0.0),
+            error=jnp.full_like(separation, 1e-16),
+        )
+
+    def remember(self, memory: Flags, separation: jax.Array) -> Flags:
+        rows = []
+        for k, law in enumerate(self._hysteretic):
+            formed = separation <= law.forming_gap
+            held = jnp.logical_and(memory[k] > 0.5, separation < law.breaking_gap)
+            rows.append(jnp.where(jnp.logical_or(formed, held), 1.0, 0.0))
+        return jnp.stack(rows) if rows else jnp.zeros((0,))
+
+    def bonded(self, memory: Flags) -> jax.Array:
+        return memory > 0.5
+
+    def switches(self, memory: Flags, separation: jax.Array, parting: jax.Array) -> jax.Array:
+        return jnp.zeros((0,))
+
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        rows = [(law.formation_loss, law.rupture_loss) for law in self._hysteretic]
+        if not rows:
+            return jnp.zeros((0,)), jnp.zeros((0,))
+        formed, broken = zip(*rows, strict=True)
+        return jnp.stack(formed), jnp.stack(broken)
+
+    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+        ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
+        energy = self.states(ladder, self.fresh()).stored + weight * ladder
+        level = energy[0] + kinetic
+        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:])
+
+    def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
+        """The kinks of all laws, with ladders of panels that narrow towards each."""
+        kinks = {
+            id(k): jnp.asarray(k, float)
+            for law in terms(self.law)
+            for k in (*law.kinks, *self._ends(law))
+        }
+        rungs = _RUNGS * self.refinement
+        ladder = jnp.maximum(high, -low) * _RATIO ** (-np.arange(0.0, rungs) / self.refinement)
+        kink = jnp.stack([jnp.zeros(()), *kinks.values()])
+        ends = [kink, kink[0] - ladder, kink[0] + ladder]
+        ends += [k - ladder[rungs // 3 :] for k in kink[1:]]
+        return jnp.sort(jnp.clip(jnp.concatenate([*ends, low[None], high[None]]), low, high))
+
+    @staticmethod
+    def _ends(law: Law) -> tuple[jax.Array | float, ...]:
+        return (law.forming_gap, law.breaking_gap) if law.hysteretic else ()
+
+    @property
+    def reach(self) -> jax.Array:
+        return jnp.max(jnp.stack([law.reach for law in terms(self.law)]))
+
+
+_SMALLEST = 1e-16  # m; far below any deformation that a continuum has
+_RUNGS = 24  # panels on each side of a kink
+_RATIO = 3.0  # of their lengths

@@ -1,0 +1,109 @@
+r"""Axisymmetric displacement of an elastic half-space, by rings of pressure.
+
+The normal displacement under a pressure p(s) is
+
+.. math:: u(r) = \frac{4}{\pi E^*}\int_0^\infty \frac{s\,p(s)}{r+s}
+          K\!\left(\frac{4rs}{(r+s)^2}\right)\mathrm{d}s
+
+(Johnson 1985, eq. 3.96a with the ring integrated), K the complete elliptic integral of
+parameter m. Pressure is a polynomial on each panel of a mesh that is fixed in units of a
+length, dense near 1, where the edge of a Hertz-like contact is put; the logarithm of the
+kernel is integrated exactly enough not to show. One dimensionless matrix then serves every
+contact.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ellipkm1
+
+_INSIDE = np.array([0.0, 0.3, 0.6, 0.8, 0.9, 0.955, 0.985, 0.996])
+_OUTSIDE = np.array([1.0, 1.006, 1.03, 1.09, 1.22, 1.5, 2.1, 3.0, 4.5])
+_PANELS = np.concatenate([_INSIDE, _OUTSIDE])
+PANEL_COUNT = len(_PANELS) - 1
+
+
+class Rings(NamedTuple):
+    """A mesh of rings in units of one length.
+
+    Attributes
+    ----------
+    radius
+        Radii of the rings, shape (n,).
+    area
+        Their areas, such that sum(area * p) is the load, shape (n,).
+    compliance
+        Displacement at ring i per pressure at ring j, times E*, shape (n, n).
+    end
+        Radius where the mesh ends.
+    end_compliance
+        Displacement at the end per pressure at ring j, times E*, shape (n,).
+    centre_compliance
+        Displacement at the axis, likewise, shape (n,).
+    """
+
+    radius: np.ndarray
+    area: np.ndarray
+    compliance: np.ndarray
+    end: float
+    end_compliance: np.ndarray
+    centre_compliance: np.ndarray
+
+
+@cache
+def ring_mesh(rings: int) -> Rings:
+    """The mesh with about ``rings`` rings: an equal number on each of its 16 panels."""
+    order = max(2, round(rings / PANEL_COUNT))
+    node, weight = np.polynomial.legendre.leggauss(order)
+    low, high = _PANELS[:-1, None], _PANELS[1:, None]
+    radius = (0.5 * (low + high) + 0.5 * (high - low) * node).ravel()
+    area = 2.0 * np.pi * radius * (0.5 * (high - low) * weight).ravel()
+    end = float(_PANELS[-1])
+    targets = np.concatenate([radius, [end, 0.0]])
+    matrix = np.concatenate([_panel_columns(targets, k, node) for k in range(PANEL_COUNT)], axis=1)
+    return Rings(radius, area, matrix[:-2], end, matrix[-2], matrix[-1])
+
+
+def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:
+    """Displacement at all targets for each Lagrange polynomial of one panel."""
+    low, high = _PANELS[panel], _PANELS[panel + 1]
+    out = np.empty((len(targets), len(node)))
+    for i, r in enumerate(targets):
+        s, weight = _graded(low, high, r)
+        basis = _lagrange(node, 2.0 * (s - low) / (high - low) - 1.0)
+        out[i] = basis @ (weight * _kernel(r, s))
+    return out
+
+
+def _kernel(r: float, s: np.ndarray) -> np.ndarray:
+    return 4.0 / np.pi * s / (r + s) * ellipkm1(((r - s) / (r + s)) ** 2)
+
+
+_GAUSS = np.polynomial.legendre.leggauss(14)
+
+
+def _graded(low: float, high: float, target: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights on [low, high], graded towards a logarithm at ``target``."""
+    nearest = min(max(target, low), high)
+    width = high - low
+    steps = width * 0.2 ** np.arange(0, 14)
+    ends = np.concatenate([[low, nearest, high], nearest - steps, nearest + steps])
+    ends = np.unique(np.clip(ends, low, high))
+    if abs(nearest - target) > width:
+        ends = np.array([low, high])
+    half = 0.5 * np.diff(ends)[:, None]
+    s = (0.5 * (ends[:-1] + ends[1:]))[:, None] + half * _GAUSS[0]
+    return s.ravel(), (half * _GAUSS[1]).ravel()
+
+
+def _lagrange(node: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Lagrange polynomials on ``node`` at ``x``, shape (node, x)."""
+    gap = node[:, None] - node[None, :] + np.eye(len(node))
+    scale = np.prod(gap, axis=1)
+    away = x[None, :] - node[:, None]
+    return np.array(
+        [np.prod(np.delete(away, k, axis=0), axis=0) / scale[k] for k in range(len(node))]
+    )

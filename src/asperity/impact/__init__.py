@@ -1,0 +1,18 @@
+"""The equation of motion of one body that falls, touches and rebounds."""
+
+from .motion import Body, Impacts, Limits, Motion, Progress, fly, prepare, simulate, start
+from .table import Table, tabulate
+
+__all__ = [
+    "Body",
+    "Impacts",
+    "Limits",
+    "Motion",
+    "Progress",
+    "Table",
+    "fly",
+    "prepare",
+    "simulate",
+    "start",
+    "tabulate",
+]

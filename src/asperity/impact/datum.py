@@ -1,0 +1,98 @@
+"""Where a body would rest, and where contact ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from .table import FORCE, STORED, Table, chebyshev_sum, local
+
+_NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
+_PLACES = 8
+_HALVINGS = 60
+
+
+class Datum(NamedTuple):
+    """Separations from which a motion is measured.
+
+    Attributes
+    ----------
+    equilibrium
+        Static equilibrium on approach [m]: the outermost separation at which the contact
+        carries the weight. NaN where there is none (no gravity and no adhesion).
+    stored
+        Stored energy there [J].
+    rests
+        Whether there is an equilibrium.
+    """
+
+    equilibrium: jax.Array
+    stored: jax.Array
+    rests: jax.Array
+
+
+def find_datum(table: Table, weight: jax.Array, release: jax.Array) -> Datum:
+    """Static equilibrium on the branch of first approach."""
+    values = table.values[0]
+    place, panel, found = _outermost(
+        table.ends, values[..., FORCE], lambda force: force - weight > 1e-9 * weight
+    )
+    x = local(table.ends[panel], table.ends[panel + 1], place)
+    excess = chebyshev_sum(values[panel, :, FORCE], x) - weight
+    slope = jax.lax.stop_gradient(_slope(values[panel, :, FORCE], x, table.ends, panel))
+    correction = excess / jnp.where(slope == 0.0, 1.0, slope)
+    # Bisection has the value; this Newton step carries the derivative.
+    place = place - (correction - jax.lax.stop_gradient(correction))
+    x = local(table.ends[panel], table.ends[panel + 1], place)
+    stored = chebyshev_sum(values[panel, :, STORED], x)
+    return Datum(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
+
+
+def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
+    """Outermost separation [m] at which any branch carries 1e-6 of the peak force."""
+    places = [
+        _outermost(
+            table.ends, values[..., FORCE], lambda force: jnp.abs(force) > _NEGLIGIBLE * peak
+        )[0]
+        for values in jax.lax.stop_gradient(table.values)
+    ]
+    return jnp.max(jnp.stack(places))
+
+
+def _outermost(
+    ends: jax.Array, force: jax.Array, rule: Callable[[jax.Array], jax.Array]
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """The largest separation at which a rule on the force begins to hold, by bisection."""
+    ends, force = jax.lax.stop_gradient((ends, force))
+    fractions = (np.arange(_PLACES) + 0.5) / _PLACES
+    x = 2.0 * fractions - 1.0
+    sampled = jax.vmap(lambda row: chebyshev_sum(row[:, None], jnp.asarray(x)))(force)
+    low, high = ends[:-1, None], ends[1:, None]
+    places = (low + (high - low) * fractions).ravel()
+    holds = jnp.logical_and(rule(sampled.ravel()), jnp.repeat(ends[1:] > ends[:-1], _PLACES))
+    count = holds.shape[0]
+    index = count - 1 - jnp.argmax(holds[::-1])
+    inside = places[index]
+    outside = jnp.where(index + 1 < count, places[jnp.minimum(index + 1, count - 1)], ends[-1])
+
+    def value(place: jax.Array) -> tuple[jax.Array, jax.Array]:
+        panel = jnp.clip(jnp.searchsorted(ends, place, side="right") - 1, 0, ends.shape[0] - 2)
+        return chebyshev_sum(force[panel], local(ends[panel], ends[panel + 1], place)), panel
+
+    def halve(_: int, pair: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+        near, far = pair
+        middle = 0.5 * (near + far)
+        inner = rule(value(middle)[0])
+        return jnp.where(inner, middle, near), jnp.where(inner, far, middle)
+
+    near, _ = jax.lax.fori_loop(0, _HALVINGS, halve, (inside, outside))
+    return near, value(near)[1], jnp.any(holds)
+
+
+def _slope(coefficients: jax.Array, x: jax.Array, ends: jax.Array, panel: jax.Array) -> jax.Array:
+    width = ends[panel + 1] - ends[panel]
+    rate = jax.jvp(lambda s: chebyshev_sum(coefficients, s), (x,), (jnp.ones_like(x),))[1]
+    return rate * 2.0 / jnp.where(width > 0.0, width, 1.0)

@@ -1,0 +1,382 @@
+"""Fall, touch, rebound, again: the phases of a motion in a row."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import equinox as eqx
+from equinox.internal import unvmap_any
+
+from .._jax import jax, jnp
+from ..contact.base import Contact, Memory
+from ..errors import Outcome, Tolerance
+from ..laws.base import Real, quantity
+from .datum import Datum, find_datum
+from .phase import Turn, Work, find_turn, kinetic_along, travel_time, work_along
+from .table import (
+    FORCE,
+    STORED,
+    TOUCHING,
+    Pieces,
+    Table,
+    antiderivative,
+    branch_of,
+    chebyshev_sum,
+    inner_pieces,
+    join,
+    local,
+    outer_row,
+    quantities,
+    tabulate,
+)
+
+FLYING = -1
+ENDS = (
+    Outcome.REST,
+    Outcome.OSCILLATING,
+    Outcome.ESCAPED,
+    Outcome.TIME_LIMIT,
+    Outcome.MAX_IMPACTS,
+    Outcome.FAILED,
+)
+"""Outcomes in the order of their codes in :class:`Progress`."""
+
+_LEAST_LOSS = 1e-9  # of the impact energy: a cycle that loses less repeats for ever
+
+
+class Body(eqx.Module):
+    """What moves, and how it starts.
+
+    Parameters
+    ----------
+    mass
+        Mass [kg].
+    gravity
+        Acceleration towards the surface [m/s^2], 0 or more.
+    release
+        Rigid separation at time 0 [m].
+    speed
+        Speed towards the surface at time 0 [m/s], 0 or more.
+    """
+
+    mass: Real = quantity()
+    gravity: Real = quantity()
+    release: Real = quantity()
+    speed: Real = quantity(0.0)
+
+    @property
+    def weight(self) -> jax.Array:
+        """Weight [N]."""
+        return self.mass * self.gravity
+
+    @property
+    def kinetic(self) -> jax.Array:
+        """Kinetic energy at the release [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+
+class Phase(NamedTuple):
+    """What a monotone phase started from; enough to draw it again."""
+
+    start: jax.Array
+    stop: jax.Array
+    kinetic: jax.Array
+    begun: jax.Array
+    branch: jax.Array
+    inner: Pieces
+    lost: jax.Array
+    bonds: jax.Array
+
+
+class Limits(NamedTuple):
+    """Ends of a motion as traced values: rest, time limit [s], largest number of impacts."""
+
+    rest: jax.Array | float
+    time: jax.Array | float
+    impacts: jax.Array | int
+
+    @classmethod
+    def of(cls, tolerance: Tolerance) -> Limits:
+        """The limits of a tolerance."""
+        return cls(tolerance.rest, tolerance.time_limit, tolerance.max_impacts)
+
+
+class Progress(NamedTuple):
+    """A motion at the turning point before its next impact."""
+
+    memory: Memory
+    place: jax.Array
+    kinetic: jax.Array
+    time: jax.Array
+    lost: jax.Array
+    bonds: jax.Array
+    first: jax.Array
+    impact_energy: jax.Array
+    outcome: jax.Array
+    made: jax.Array
+
+
+class Impacts(NamedTuple):
+    """One row an impact; rows after the last have ``made`` False.
+
+    Attributes
+    ----------
+    made
+        Whether the impact took place.
+    deepest, apex
+        Rigid separations [m] of the turning points; the apex of a body that escapes is
+        the end of the table.
+    deepest_time, apex_time
+        Times [s].
+    mechanical
+        Kinetic, potential and stored energy at the apex [J].
+    force
+        Contact force at the deepest point [N].
+    touching, bonds
+        Expected asperities in contact, and bonds by law, at the deepest point.
+    lost
+        Energy lost by law until the apex, since the release [J].
+    closure
+        Largest change of the sum of all energies since the release [J].
+    pull_work
+        Work of the attractive parts on the way out [J], as in the publication's eq. 23.
+    fastest
+        Largest kinetic energy on the way in [J].
+    fall, rise
+        The two phases.
+    """
+
+    made: jax.Array
+    deepest: jax.Array
+    apex: jax.Array
+    deepest_time: jax.Array
+    apex_time: jax.Array
+    mechanical: jax.Array
+    force: jax.Array
+    touching: jax.Array
+    bonds: jax.Array
+    lost: jax.Array
+    closure: jax.Array
+    pull_work: jax.Array
+    fastest: jax.Array
+    fall: Phase
+    rise: Phase
+
+
+class Motion(NamedTuple):
+    """A whole motion.
+
+    Attributes
+    ----------
+    impacts
+        One row an impact.
+    end
+        Where it ended.
+    table
+        The contact's outermost branches.
+    datum
+        Static equilibrium and the end of contact.
+    release
+        Mechanical energy at the release [J].
+    """
+
+    impacts: Impacts
+    end: Progress
+    table: Table
+    datum: Datum
+    release: jax.Array
+
+
+def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
+    """Tabulate a contact over all separations that a body can reach, and find its datum."""
+    low = jax.lax.stop_gradient(contact.floor(body.release, body.kinetic, body.weight))
+    falls = body.weight > 0.0
+    rise = body.kinetic / jnp.where(falls, body.weight, 1.0)
+    top = body.release + jnp.where(falls, rise, 0.0)
+    high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
+    # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
+    low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
+    table = tabulate(contact, low, high)
+    return table, find_datum(table, body.weight, body.release)
+
+
+def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:
+    """The state at the release, outside contact, and its mechanical energy [J]."""
+    zero = jnp.zeros(())
+    row = outer_row(table, 0, body.release)
+    progress = Progress(
+        memory=contact.fresh(),
+        place=body.release,
+        kinetic=body.kinetic,
+        time=zero,
+        lost=jnp.zeros(len(contact.mechanisms)),
+        bonds=row[quantities(contact).bonds],
+        first=zero,
+        impact_energy=zero,
+        outcome=jnp.asarray(FLYING),
+        made=jnp.asarray(0),
+    )
+    return progress, row[STORED] + body.kinetic + body.weight * body.release
+
+
+def fly(
+    contact: Contact,
+    body: Body,
+    table: Table,
+    datum: Datum,
+    origin: jax.Array,
+    progress: Progress,
+    limits: Limits,
+    impacts: int,
+) -> tuple[Progress, Impacts]:
+    """Go on for at most ``impacts`` impacts (static), inert once the motion has ended."""
+
+    def one(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        return _impact(contact, body, table, datum, origin, progress, limits)
+
+    shapes = eqx.filter_eval_shape(one, progress, None)[1]
+
+    def none(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        empty = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+        return progress, empty
+
+    def step(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        active = progress.outcome == FLYING
+        after, row = jax.lax.cond(unvmap_any(active), one, none, progress, None)
+        keep = lambda new, old: jnp.where(active, new, old)  # noqa: E731
+        return (
+            jax.tree_util.tree_map(keep, after, progress),
+            row._replace(made=jnp.logical_and(active, row.made)),
+        )
+
+    return jax.lax.scan(step, progress, None, length=impacts)
+
+
+def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None) -> Motion:
+    """Motion of a body until it rests, escapes or reaches a limit.
+
+    Parameters
+    ----------
+    contact
+        The contact.
+    body
+        The body and its release, outside contact.
+    tolerance
+        Ends of the motion; ``max_impacts`` is static.
+
+    Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
+    """
+    tolerance = tolerance or Tolerance()
+    table, datum = prepare(contact, body)
+    progress, origin = start(contact, body, table)
+    end, impacts = fly(
+        contact, body, table, datum, origin, progress, Limits.of(tolerance), tolerance.max_impacts
+    )
+    return Motion(impacts, end, table, datum, origin)
+
+
+class _Leg(NamedTuple):
+    turn: Turn
+    phase: Phase
+    row: jax.Array
+    lost: jax.Array
+    kinetic: jax.Array
+    time: jax.Array
+    bonds: jax.Array
+    pull_work: jax.Array
+
+
+def _leg(
+    contact: Contact, body: Body, table: Table, progress: Progress, parting: jax.Array
+) -> tuple[Progress, _Leg]:
+    """One phase down or up, and the bonds that it makes or breaks."""
+    inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
+    branch = branch_of(contact, progress.memory, parting)
+    pieces = join(table, branch, inner, progress.place, parting)
+    work = work_along(pieces, progress.kinetic, body.weight)
+    turn = find_turn(work)
+    time = progress.time + jnp.sum(travel_time(work, body.mass, turn.place, parting))
+    x = local(pieces.low[turn.piece], pieces.high[turn.piece], turn.place)
+    row = chebyshev_sum(pieces.values[turn.piece], x)
+    bonds = row[quantities(contact).bonds]
+    formed = jnp.maximum(bonds - progress.bonds, 0.0)
+    broken = jnp.maximum(progress.bonds - bonds, 0.0)
+    at_forming, at_breaking = contact.losses()
+    lost = progress.lost + formed * at_forming + broken * at_breaking
+    kinetic = jnp.where(turn.found, 0.0, kinetic_along(work, pieces.leave[:, None])[-1, 0])
+    phase = Phase(
+        progress.place, turn.place, progress.kinetic, progress.time, branch, inner,
+        progress.lost, progress.bonds,
+    )  # fmt: skip
+    pull = -_pull_work(contact, work, turn.place, parting)
+    after = progress._replace(
+        memory=contact.remember(progress.memory, turn.place), place=turn.place,
+        kinetic=kinetic, time=time, lost=lost, bonds=bonds,
+    )  # fmt: skip
+    return after, _Leg(turn, phase, row, lost, kinetic, time, bonds, pull)
+
+
+def _impact(
+    contact: Contact,
+    body: Body,
+    table: Table,
+    datum: Datum,
+    origin: jax.Array,
+    progress: Progress,
+    limits: Limits,
+) -> tuple[Progress, Impacts]:
+    """Down to the deepest point and up to the next apex."""
+
+    def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, _Leg]:
+        return _leg(contact, body, table, progress, parting)
+
+    # One body of code for both directions: half to compile.
+    end, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
+    fall, rise = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
+    mechanical = both.kinetic + body.weight * both.turn.place + both.row[:, STORED]
+    closure = jnp.max(jnp.abs(mechanical + jnp.sum(both.lost, axis=1) - origin))
+    height = end.place - datum.equilibrium
+    first = jnp.where(progress.made == 0, height, progress.first)
+    energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
+    cycle = jnp.sum(rise.lost - progress.lost)
+    failed = jnp.logical_not(jnp.logical_and(fall.turn.found, jnp.isfinite(mechanical[1])))
+    outcome = _outcome(
+        (
+            (failed, Outcome.FAILED),
+            (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
+            (rise.time >= limits.time, Outcome.TIME_LIMIT),
+            (height < limits.rest * first, Outcome.REST),
+            (cycle < _LEAST_LOSS * energy, Outcome.OSCILLATING),
+            (progress.made + 1 >= limits.impacts, Outcome.MAX_IMPACTS),
+        )
+    )
+    after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
+    row = Impacts(
+        jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
+        fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
+        rise.pull_work, fall.turn.fastest, fall.phase, rise.phase,
+    )  # fmt: skip
+    return after, row
+
+
+def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
+    """Code of the first rule that holds, or FLYING."""
+    code = jnp.asarray(FLYING)
+    for holds, outcome in reversed(rules):
+        code = jnp.where(holds, ENDS.index(outcome), code)
+    return code
+
+
+def _pull_work(contact: Contact, work: Work, last: jax.Array, parting: jax.Array) -> jax.Array:
+    """Integral of the adhesive and capillary forces over a phase [J]."""
+    columns = quantities(contact).components
+    chosen = jnp.asarray([0.0 if name == "elastic" else 1.0 for name in contact.components])
+    p = work.pieces
+    pull = jnp.einsum("pkq,q->kp", p.values[..., columns], chosen)
+    integral = antiderivative(pull) * (0.5 * (p.high - p.low))
+
+    def until(place: jax.Array) -> jax.Array:
+        inside = jnp.where(parting, jnp.minimum(place, last), jnp.maximum(place, last))
+        return chebyshev_sum(integral, local(p.low, p.high, inside))
+
+    return jnp.sum(until(p.leave) - until(p.enter))

@@ -1,0 +1,173 @@
+"""What a force law is: two branches with an energy each, and the gaps between them."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Sequence
+from typing import Any, ClassVar, NamedTuple
+
+import equinox as eqx
+
+from .._jax import jax, jnp
+from ..errors import InputError
+
+Real = Any
+"""A float or an array given, a float64 array kept: what a converted field is to a type checker."""
+
+
+def quantity(default: float | None = None) -> Any:
+    """A physical value of a module, kept as a float64 array: traced, never static."""
+    if default is None:
+        return eqx.field(converter=_float64)
+    return eqx.field(converter=_float64, default=default)
+
+
+def _float64(value: Any) -> jax.Array:
+    return jnp.asarray(value, dtype=jnp.float64)
+
+
+class TruncatedPower(NamedTuple):
+    """``coefficient * max(edge - gap, 0)**exponent``: a term of a force or an energy."""
+
+    coefficient: jax.Array | float
+    exponent: float
+    edge: jax.Array | float
+
+    def __call__(self, gap: jax.Array) -> jax.Array:
+        """Value at a gap [m], any shape; a power of 0 is the step that is 1 inside."""
+        overlap = jnp.maximum(self.edge - gap, 0.0)
+        inside = overlap > 0.0
+        power = jnp.where(inside, overlap, 1.0) ** self.exponent
+        return self.coefficient * jnp.where(inside, power, 0.0)
+
+
+Powers = tuple[TruncatedPower, ...]
+
+
+class Law(eqx.Module):
+    """Force of one asperity or one smooth body on a plane, free or bonded.
+
+    A law has a *free* and a *bonded* branch, each with an energy: force = -d(energy)/d(gap),
+    and the free energy tends to 0 far away. A bond forms when the gap falls to
+    ``forming_gap`` and breaks when it grows to ``breaking_gap``; both steps lose energy.
+    A conservative law has the free branch alone.
+
+    Gap [m]: distance between the undeformed asperity and the plane, negative when they
+    overlap. Force [N]: positive when it pushes apart. Energy [J]. Arrays of any shape;
+    everything works under ``jit``, ``vmap`` and ``grad``.
+    """
+
+    mechanism: ClassVar[str] = "adhesion"
+    """The name under which its losses are booked, and its force shown."""
+
+    counts: ClassVar[frozenset[str]] = frozenset()
+    """The forces it contains ("elastic", "adhesion", "capillary"): no two laws of a sum
+    may contain the same one."""
+
+    @abc.abstractmethod
+    def force(self, gap: jax.Array) -> jax.Array:
+        """Force of the free branch [N]."""
+
+    @abc.abstractmethod
+    def energy(self, gap: jax.Array) -> jax.Array:
+        """Energy of the free branch [J], 0 far away."""
+
+    def bonded_force(self, gap: jax.Array) -> jax.Array:
+        """Force of the bonded branch [N]; a conservative law has none of its own."""
+        return self.force(gap)
+
+    def bonded_energy(self, gap: jax.Array) -> jax.Array:
+        """Energy of the bonded branch [J]."""
+        return self.energy(gap)
+
+    @property
+    def hysteretic(self) -> bool:
+        """Whether it has a bonded branch of its own. Known without values."""
+        return False
+
+    @property
+    def forming_gap(self) -> jax.Array | float:
+        """Gap [m] at which a bond forms on approach."""
+        return 0.0
+
+    @property
+    def breaking_gap(self) -> jax.Array | float:
+        """Gap [m] at which a bond breaks on parting, not below ``forming_gap``."""
+        return self.forming_gap
+
+    @property
+    def kinks(self) -> tuple[jax.Array | float, ...]:
+        """Gaps [m] at which a branch or its slope is not smooth."""
+        return (0.0,)
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which the force is below 1e-6 of its largest pull."""
+        ends = [jnp.asarray(gap, dtype=jnp.float64) for gap in self.kinks]
+        return jnp.max(jnp.maximum(jnp.stack([*ends, jnp.zeros(())]), 0.0))
+
+    @property
+    def length(self) -> jax.Array | float:
+        """The shortest length [m] on which the force changes, away from its kinks."""
+        return jnp.inf
+
+    def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers] | None:
+        """Force and energy as truncated powers where every gap below ``bond_gap`` is bonded.
+
+        None where the law has no such form; then its mean over heights is a quadrature.
+        """
+        return None
+
+    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """The force [N] taken apart by mechanism, for pictures and records."""
+        return {self.mechanism: jnp.where(bonded, self.bonded_force(gap), self.force(gap))}
+
+    @property
+    def formation_loss(self) -> jax.Array:
+        """Energy [J] lost when one bond forms."""
+        gap = jnp.asarray(self.forming_gap)
+        return self.energy(gap) - self.bonded_energy(gap)
+
+    @property
+    def rupture_loss(self) -> jax.Array:
+        """Energy [J] lost when one bond breaks."""
+        gap = jnp.asarray(self.breaking_gap)
+        return self.bonded_energy(gap) - self.energy(gap)
+
+    def __add__(self, other: Law) -> Sum:
+        return Sum((*terms(self), *terms(other)))
+
+
+class Sum(Law):
+    """Laws that act side by side on the same asperity.
+
+    Raises
+    ------
+    InputError
+        If two of them contain the same force.
+    """
+
+    parts: tuple[Law, ...]
+
+    def __init__(self, parts: Sequence[Law]) -> None:
+        seen: dict[str, str] = {}
+        for law in parts:
+            for name in sorted(law.counts):
+                if name in seen:
+                    raise InputError(
+                        f"{type(law).__name__} and {seen[name]} both contain the {name} force; "
+                        "it would count twice"
+                    )
+                seen[name] = type(law).__name__
+        self.parts = tuple(parts)
+
+    def force(self, gap: jax.Array) -> jax.Array:
+        return sum((law.force(gap) for law in self.parts), jnp.zeros_like(gap))
+
+    def energy(self, gap: jax.Array) -> jax.Array:
+        return sum((law.energy(gap) for law in self.parts), jnp.zeros_like(gap))
+
+
+def terms(law: Law) -> tuple[Law, ...]:
+    """The laws of a sum; a law alone is a sum of one."""
+    return law.parts if isinstance(law, Sum) else (law,)

@@ -1,0 +1,129 @@
+"""Adhesive elastic contact of soft bodies."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import ClassVar
+
+from .._jax import jax, jnp
+from .base import Law, Real, quantity
+
+
+class Jkr(Law):
+    """Johnson-Kendall-Roberts contact of a paraboloid and a plane, Hertz included.
+
+    Parameters
+    ----------
+    radius
+        Radius at the tip [m].
+    modulus
+        Contact modulus E* [Pa].
+    work_of_adhesion
+        Energy to part unit area w [J/m^2].
+
+    With the contact radius a: overlap = a^2/radius - sqrt(2 pi a w/E*) and force
+    4 E* a^3/(3 radius) - sqrt(8 pi w E* a^3). The bond forms at gap 0, where the force
+    jumps to -(4/3) pi w radius, and breaks at the fold of the branch, where it is
+    -(5/6) pi w radius. Johnson, Kendall and Roberts (1971), eqs. 14-19.
+    """
+
+    radius: Real = quantity()
+    modulus: Real = quantity()
+    work_of_adhesion: Real = quantity()
+
+    counts: ClassVar[frozenset[str]] = frozenset({"elastic", "adhesion"})
+
+    @property
+    def hysteretic(self) -> bool:
+        return True
+
+    @property
+    def breaking_gap(self) -> jax.Array:
+        return 3.0 * 2.0 ** (-8.0 / 3.0) * self._depth
+
+    @property
+    def kinks(self) -> tuple[jax.Array | float, ...]:
+        return (self.breaking_gap,)
+
+    @property
+    def length(self) -> jax.Array | float:
+        return self._depth
+
+    @property
+    def _depth(self) -> jax.Array:
+        """Overlap at which the two terms of the overlap are equal in size [m]."""
+        w, r, e = self.work_of_adhesion, self.radius, self.modulus
+        return jnp.cbrt((2.0 * pi * w / e) ** 2 * r)
+
+    def contact_radius(self, gap: jax.Array) -> jax.Array:
+        """Contact radius [m] on the bonded branch; at the fold's beyond the fold.
+
+        In u = sqrt(a), scaled, the branch is u^4 - u = overlap: Newton from above.
+        """
+        overlap = jnp.maximum(-gap / self._depth, -3.0 * 2.0 ** (-8.0 / 3.0))
+        return self._radius_scale * _branch(overlap) ** 2
+
+    @property
+    def _radius_scale(self) -> jax.Array:
+        w, r, e = self.work_of_adhesion, self.radius, self.modulus
+        return jnp.cbrt(2.0 * pi * w * r**2 / e)
+
+    def force(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap)
+
+    def energy(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap)
+
+    def bonded_force(self, gap: jax.Array) -> jax.Array:
+        parts = self.components(gap, jnp.asarray(True))
+        return parts["elastic"] + parts["adhesion"]
+
+    def bonded_energy(self, gap: jax.Array) -> jax.Array:
+        """Elastic energy of both stress fields less the work of adhesion of the disc.
+
+        E* a (overlap_1^2 - (2/3) a^2 overlap_1/R + a^4/(5 R^2)) - pi a^2 w, overlap_1 the
+        overlap: the energy of a flat punch pressed through overlap_1 - a^2/R after the
+        paraboloid touched over a (Johnson 1985, section 5.5).
+        """
+        a = self.contact_radius(gap)
+        depth, rise = -gap, a**2 / self.radius
+        elastic = self.modulus * a * (depth**2 - 2.0 / 3.0 * depth * rise + rise**2 / 5.0)
+        return elastic - pi * a**2 * self.work_of_adhesion
+
+    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """Hertz force at this contact radius, and the pull of the adhesive stress."""
+        a = self.contact_radius(gap)
+        elastic = 4.0 / 3.0 * self.modulus * a**3 / self.radius
+        pull = -jnp.sqrt(8.0 * pi * self.work_of_adhesion * self.modulus * a**3)
+        return {
+            "elastic": jnp.where(bonded, elastic, 0.0),
+            "adhesion": jnp.where(bonded, pull, 0.0),
+        }
+
+
+_FOLD = 2.0 ** (-2.0 / 3.0)  # where d(u^4 - u)/du = 0
+
+
+@jax.custom_jvp
+def _branch(overlap: jax.Array) -> jax.Array:
+    """Larger real root u of u^4 - u = overlap, for overlap not below the fold's."""
+    excess = jnp.maximum(overlap + 3.0 * 2.0 ** (-8.0 / 3.0), 0.0)
+    # excess = 6 f^2 s^2 + 4 f s^3 + s^4 in s = u - f, f the fold: both starts lie above s,
+    # and from above Newton descends on this convex function without overshooting.
+    u = _FOLD + jnp.minimum(jnp.sqrt(excess / (6.0 * _FOLD**2)), jnp.sqrt(jnp.sqrt(excess)))
+
+    def newton(_: int, u: jax.Array) -> jax.Array:
+        slope = 4.0 * u**3 - 1.0
+        step = (u**4 - u - overlap) / jnp.where(slope > 1e-14, slope, 1.0)
+        return jnp.maximum(u - jnp.where(slope > 1e-14, step, 0.0), _FOLD)
+
+    return jax.lax.fori_loop(0, 12, newton, u)
+
+
+@_branch.defjvp
+def _branch_jvp(primals, tangents):  # type: ignore[no-untyped-def]
+    (overlap,), (change,) = primals, tangents
+    u = _branch(overlap)
+    slope = 4.0 * u**3 - 1.0
+    regular = slope > 1e-7
+    return u, jnp.where(regular, change / jnp.where(regular, slope, 1.0), 0.0)

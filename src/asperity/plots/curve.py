@@ -1,0 +1,72 @@
+"""Force against separation, in and out, and the energy lost between."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from asperity.plots import style
+from asperity.plots.style import Panel, Row, colour
+from asperity.result import Curve
+
+_DWARFED = 4.0
+
+
+def panels(curve: Curve) -> Row:
+    """The whole curve; beside it the pull-off where contact forces dwarf it.
+
+    Without a pull-off the difference of the branches stands there: the loss.
+    """
+    row = [Panel(1.0, lambda axes: _branches(axes, curve, zoomed=False))]
+    push = np.nanmax(curve.force_approach, initial=0.0)
+    if 0.0 < _DWARFED * curve.pull_off < push:
+        row.append(Panel(1.0, lambda axes: _branches(axes, curve, zoomed=True)))
+    elif curve.pull_off <= 0.0 < curve.loss:
+        row.append(Panel(1.0, lambda axes: _difference(axes, curve)))
+    return row
+
+
+def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
+    metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
+    size = np.array([curve.pull_off]) if zoomed else curve.force_approach
+    newtons, unit = style.scale_of(size, unit="N")
+    gap = curve.rigid_separation / metres
+    inward, outward = curve.force_approach / newtons, curve.force_parting / newtons
+    axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
+    axes.fill_between(gap, inward, outward, color=colour("lost"), lw=0.0, label="energy lost")
+    axes.plot(gap, inward, color=colour("approach"), label="approach")
+    axes.plot(gap, outward, color=colour("parting"), ls=(0, (5, 1.5)), label="parting")
+    axes.set_xlabel(style.label("rigid separation", length_unit))
+    axes.set_ylabel(style.label("force", unit))
+    axes.margins(x=0.02)
+    if zoomed:
+        _frame(axes, curve, metres, newtons)
+        axes.set_title("pull-off")
+    else:
+        style.legend_above(axes)
+
+
+def _difference(axes: Axes, curve: Curve) -> None:
+    metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
+    difference = curve.force_parting - curve.force_approach
+    newtons, unit = style.scale_of(difference, unit="N")
+    gap = curve.rigid_separation / metres
+    axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
+    axes.fill_between(gap, 0.0, difference / newtons, color=colour("lost"), lw=0.0)
+    axes.plot(gap, difference / newtons, color=colour("parting"))
+    axes.set_xlabel(style.label("rigid separation", length_unit))
+    axes.set_ylabel(style.label("parting less approach", unit))
+    axes.margins(x=0.02)
+    axes.set_title("energy lost")
+
+
+def _frame(axes: Axes, curve: Curve, metres: float, newtons: float) -> None:
+    """The part of the curve where forces are of the size of the pull-off."""
+    pull = curve.pull_off
+    near = np.minimum(np.abs(curve.force_approach), np.abs(curve.force_parting)) < 1.5 * pull
+    felt = np.maximum(np.abs(curve.force_approach), np.abs(curve.force_parting)) > 0.01 * pull
+    span = curve.rigid_separation[near & felt]
+    if span.size > 1:
+        margin = 0.08 * np.ptp(span)
+        axes.set_xlim((span.min() - margin) / metres, (span.max() + margin) / metres)
+    axes.set_ylim(-1.3 * pull / newtons, 1.3 * pull / newtons)

@@ -1,0 +1,78 @@
+"""Where the energy is: kinetic, potential, stored, and what each mechanism took."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from asperity.plots import impacts, style
+from asperity.plots.style import Panel, Row, colour
+from asperity.result import Result
+
+_MANY = 3
+_FLOATING = ("potential", "stored")
+
+
+def panels(result: Result) -> Row:
+    """The motion as far as one can tell it apart, the first contact, the losses of all."""
+    points, shown = impacts.beginning(result)
+    row = [Panel(1.7, lambda axes: _stack(axes, result, points, shown))]
+    contact = impacts.first_contact(result)
+    if contact is not None:
+        row.append(Panel(1.0, lambda axes: _contact(axes, result, contact)))
+    many = result.events.get("deepest_time", np.empty(0)).size >= _MANY
+    if many and any(name.startswith("lost_") for name in result.energies):
+        row.append(Panel(1.0, lambda axes: _losses(axes, result)))
+    return row
+
+
+def _stack(axes: Axes, result: Result, points: slice, shown: str) -> None:
+    time_unit = _stacked(axes, result, points, 0.0)
+    axes.set_xlabel(style.label("time since release", time_unit) + shown)
+    style.legend_above(axes)
+
+
+def _contact(axes: Axes, result: Result, points: slice) -> None:
+    time_unit = _stacked(axes, result, points, result.events["deepest_time"][0])
+    axes.set_xlabel(style.label("time from closest", time_unit))
+    axes.set_title("first contact")
+
+
+def _stacked(axes: Axes, result: Result, points: slice, start: float) -> str:
+    """Energies on top of each other: with the losses lowest, the top edge stays level."""
+    energies = _above_lowest(result)
+    names = [name for name in energies if name.startswith("lost_")]
+    names += [name for name in energies if name not in names]
+    time = result.time[points] - start
+    seconds, time_unit = style.scale_of(time, unit="s")
+    joules, unit = style.scale_of(np.sum(list(energies.values()), axis=0), unit="J")
+    axes.stackplot(
+        time / seconds,
+        [energies[name][points] / joules for name in names],
+        colors=[colour(name) for name in names],
+        labels=[name.replace("lost_", "lost to ") for name in names],
+        lw=0.0,
+    )
+    axes.set_ylabel(style.label("energy above lowest", unit))
+    axes.margins(x=0.0, y=0.0)
+    return time_unit
+
+
+def _losses(axes: Axes, result: Result) -> None:
+    lost = {name: values for name, values in result.energies.items() if name.startswith("lost_")}
+    seconds, time_unit = style.scale_of(result.time, unit="s")
+    joules, unit = style.scale_of(*lost.values(), unit="J")
+    for name, values in lost.items():
+        axes.plot(result.time / seconds, values / joules, color=colour(name))
+    axes.set_xlabel(style.label("time since release", time_unit))
+    axes.set_ylabel(style.label("energy lost", unit))
+    axes.margins(x=0.0)
+    axes.set_title("whole motion")
+
+
+def _above_lowest(result: Result) -> dict[str, np.ndarray]:
+    """Energies with those whose zero is free counted from their lowest value of the motion."""
+    return {
+        name: values - values.min() if name in _FLOATING else values
+        for name, values in result.energies.items()
+    }

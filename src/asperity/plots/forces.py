@@ -1,0 +1,75 @@
+"""Forces of the first contact, and the largest of every impact."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from asperity.plots import impacts, style
+from asperity.plots.style import Panel, Row, colour
+from asperity.result import Result
+
+_PULLS = ("adhesion", "capillary")
+_SMALL = 0.2
+_MANY = 3
+
+
+def panels(result: Result) -> Row:
+    """First contact; its pulls on their own scale where they are small; peaks where many."""
+    shown = [name for name in ("contact", "elastic", *_PULLS) if name in result.forces]
+    others = [name for name in result.forces if name not in (*shown, "weight", "total")]
+    if impacts.first_contact(result) is None and "weight" in result.forces:
+        shown.append("weight")  # nothing else acts yet
+    row = [Panel(1.0, lambda axes: _contact(axes, result, [*shown, *others]))]
+    pulls = [name for name in _PULLS if np.any(result.forces.get(name, 0.0))]
+    peak = np.max(np.abs(result.forces.get("contact", np.zeros(1))))
+    pull = max((np.max(np.abs(result.forces[name])) for name in pulls), default=0.0)
+    if 0.0 < pull < _SMALL * peak:
+        row.append(Panel(1.0, lambda axes: _contact(axes, result, pulls)))
+    if result.events.get("deepest_time", np.empty(0)).size >= _MANY:
+        row.append(Panel(0.9, lambda axes: _peaks(axes, result)))
+    return row
+
+
+def _contact(axes: Axes, result: Result, names: list[str]) -> None:
+    points = impacts.first_contact(result)
+    start = 0.0 if points is None else result.events["deepest_time"][0]
+    points = points or slice(None)
+    time = result.time[points] - start
+    forces = {name: result.forces[name][points] for name in names}
+    seconds, time_unit = style.scale_of(time, unit="s")
+    newtons, unit = style.scale_of(*forces.values(), unit="N")
+    axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
+    for name, force in forces.items():
+        whole = name == "contact"
+        axes.plot(
+            time / seconds,
+            force / newtons,
+            color=colour(name),
+            lw=1.8 if whole else 1.0,
+            alpha=0.35 if whole else 1.0,
+            label="contact, all" if whole else name,
+        )
+    since = "time from closest approach" if start else "time since release"
+    axes.set_xlabel(style.label(since, time_unit))
+    axes.set_ylabel(style.label("force", unit))
+    axes.margins(x=0.0)
+    style.legend_above(axes)
+
+
+def _peaks(axes: Axes, result: Result) -> None:
+    found = {
+        "push": impacts.largest(result, "contact", 1.0),
+        **{name: impacts.largest(result, name, -1.0) for name in _PULLS},
+    }
+    found = {name: np.where(f > 0.0, f, np.nan) for name, f in found.items() if np.any(f > 0.0)}
+    newtons, unit = style.scale_of(*found.values(), unit="N")
+    for name, force in found.items():
+        size = 2.5 if force.size <= 40 else 1.5
+        tint = colour("contact" if name == "push" else name)
+        number = np.arange(1, force.size + 1)
+        axes.plot(number, force / newtons, "o", ms=size, mew=0.0, color=tint, label=name)
+    style.log_axis(axes, *found.values())
+    style.count_axis(axes, "impact")
+    axes.set_ylabel(style.label("largest force", unit))
+    style.legend_above(axes, 2)

@@ -1,0 +1,192 @@
+"""One look for all pictures: sizes in print, colours, axes with units."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
+
+from asperity.summary import scaled
+
+COLUMN, PAGE = 85.0, 170.0
+"""Widths of a picture [mm]: one column and a whole page of a journal."""
+
+RESOLUTION = 200
+"""Dots per inch of a PNG."""
+
+_INCH = 25.4
+_MARGINS = {"left": 14.0, "right": 3.0, "top": 9.0, "bottom": 11.0}
+_GAP = 17.0
+_HEIGHT = 42.0
+_ONE_ROW = 3
+_MARKER_SCALE = 1.5
+
+COLOURS = {
+    "motion": "#0072B2",
+    "central": "#56B4E9",
+    "apex": "#E69F00",
+    "deepest": "#D55E00",
+    "quiet": "#888888",
+    "contact": "#000000",
+    "total": "#000000",
+    "weight": "#888888",
+    "elastic": "#0072B2",
+    "adhesion": "#D55E00",
+    "capillary": "#009E73",
+    "kinetic": "#0072B2",
+    "potential": "#56B4E9",
+    "stored": "#F0E442",
+    "lost_adhesion": "#D55E00",
+    "lost_capillary": "#009E73",
+    "approach": "#0072B2",
+    "parting": "#D55E00",
+    "lost": "#F5D0B5",
+}
+"""Okabe and Ito's colours, which the colour-blind can tell apart; the same thing has the same
+colour in every picture."""
+
+_SPARE = ("#CC79A7", "#444444", "#8C6D31")
+
+_LOOK: Any = {
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.4,
+    "legend.columnspacing": 1.2,
+    "legend.borderaxespad": 0.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-3, 4),
+    "axes.titlelocation": "left",
+    "lines.linewidth": 1.0,
+    "lines.markersize": 2.5,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.minor.size": 1.5,
+    "ytick.minor.size": 1.5,
+    "path.simplify": True,
+    "agg.path.chunksize": 10000,
+    "savefig.dpi": RESOLUTION,
+}
+
+
+class Panel(NamedTuple):
+    """One pair of axes: its width relative to its neighbours', and what draws into it."""
+
+    width: float
+    draw: Callable[[Axes], None]
+
+
+Row = list[Panel]
+
+
+class Picture(Figure):
+    """A figure that a notebook shows by itself, without a window system."""
+
+    def _repr_png_(self) -> bytes:
+        return png(self)
+
+
+def look() -> Any:
+    """A context within which figures take on the style."""
+    return mpl.rc_context(_LOOK)
+
+
+def colour(name: str) -> str:
+    """The colour of a quantity; one of a few spare ones for an unknown."""
+    return COLOURS.get(name) or _SPARE[sum(map(ord, name)) % len(_SPARE)]
+
+
+def figure_of(rows: Sequence[Row]) -> Figure:
+    """A figure with rows of panels at fixed distances; a panel alone is one column wide.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        The panels from top to bottom, each with its relative width and what draws it.
+    """
+    width = COLUMN if [len(row) for row in rows] == [1] else PAGE
+    step = _HEIGHT + _MARGINS["top"] + _MARGINS["bottom"]
+    tall = step * len(rows)
+    figure = Picture(figsize=(width / _INCH, tall / _INCH), dpi=RESOLUTION)
+    FigureCanvasAgg(figure)
+    for number, row in enumerate(rows):
+        room = width - _MARGINS["left"] - _MARGINS["right"] - _GAP * (len(row) - 1)
+        left, bottom = _MARGINS["left"], tall - step * (number + 1) + _MARGINS["bottom"]
+        for panel in row:
+            size = room * panel.width / sum(one.width for one in row)
+            place = (left / width, bottom / tall, size / width, _HEIGHT / tall)
+            panel.draw(figure.add_axes(place))
+            left += size + _GAP
+    return figure
+
+
+def scale_of(*arrays: np.ndarray, unit: str) -> tuple[float, str]:
+    """What to divide arrays by, and the unit for the axis, from their largest finite value."""
+    largest = 0.0
+    for values in arrays:
+        finite = values[np.isfinite(values)]
+        largest = max(largest, float(np.max(np.abs(finite), initial=0.0)))
+    factor, prefixed = scaled(largest, unit)
+    return factor, prefixed.replace("u", "µ") if prefixed != unit else unit
+
+
+def log_axis(axes: Axes, *arrays: np.ndarray) -> None:
+    """A logarithmic vertical axis with plain numbers, where values span more than a decade."""
+    values = np.concatenate(arrays)
+    values = values[values > 0.0]
+    if values.size and values.max() > 10.0 * values.min():
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_locator(NullLocator())
+
+
+def count_axis(axes: Axes, name: str) -> None:
+    """A horizontal axis that counts."""
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=6, min_n_ticks=1))
+    axes.set_xlabel(name)
+
+
+def label(quantity: str, unit: str) -> str:
+    """An axis label, e.g. ``separation [nm]``."""
+    return f"{quantity} [{unit}]"
+
+
+def legend_above(axes: Axes, rows: int | None = None) -> None:
+    """A legend over the axes, where no data can be under it; there is room for two rows."""
+    handles, _ = axes.get_legend_handles_labels()
+    if handles:
+        rows = rows or (1 if len(handles) <= _ONE_ROW else 2)
+        columns = -(-len(handles) // rows)
+        axes.legend(
+            loc="lower left", bbox_to_anchor=(0.0, 1.02), ncols=columns, markerscale=_MARKER_SCALE
+        )
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as PNG; the same figure gives the same bytes."""
+    store = io.BytesIO()
+    with look():
+        figure.savefig(
+            store,
+            format="png",
+            dpi=RESOLUTION,
+            metadata={"Software": None},
+            pil_kwargs={"compress_level": 3},
+        )
+    return store.getvalue()

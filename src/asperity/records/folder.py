@@ -1,0 +1,168 @@
+"""A folder of results: written aside and then renamed, so that no file is ever half there."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import shutil
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+
+from asperity.errors import InputError, OutputError
+
+RUN_FILES = ("record.nc", "motion.png", "forces.png", "energy.png", "summary.txt")
+"""Names that a run may write."""
+
+CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
+"""Names that a curve may write. They stand beside those of a run without touching them."""
+
+
+def check_folder(
+    directory: str | os.PathLike[str], own: Collection[str], *, force: bool = False
+) -> None:
+    """See to it, before anything is computed, that results can go into a folder.
+
+    Parameters
+    ----------
+    directory : path
+        The folder; it need not be there.
+    own : collection of str
+        Names of the files to come.
+    force : bool
+        Whether files of these names may be replaced.
+
+    Raises
+    ------
+    InputError
+        Where the folder is not empty and ``force`` is not set. A curve's files do not count for a
+        run, nor a run's for a curve.
+    OutputError
+        Where nothing can be written there.
+    """
+    target = Path(directory)
+    with _told(target):
+        _refuse_occupied(target, own, force=force)
+        place = target
+        while not place.exists() and place != place.parent:
+            place = place.parent
+        trial = _aside(place)
+        trial.rmdir()
+
+
+def write_folder(
+    directory: str | os.PathLike[str],
+    files: Mapping[str, bytes],
+    own: Collection[str],
+    *,
+    force: bool = False,
+) -> list[Path]:
+    """Write files into a folder, all or none.
+
+    Parameters
+    ----------
+    directory : path
+        The folder, made where it is missing.
+    files : mapping of str to bytes
+        Contents by name.
+    own : collection of str
+        Names that the same kind of result may have; those not in ``files`` are what an earlier
+        result left, and go. No other file is touched.
+    force : bool
+        Whether files of these names may be replaced.
+
+    Returns
+    -------
+    list of Path
+        The files, in the order of ``own``.
+
+    Raises
+    ------
+    InputError, OutputError
+        As `check_folder`; the folder is then as it was before.
+    """
+    target = Path(directory)
+    with _told(target), _parents(target):
+        _refuse_occupied(target, own, force=force)
+        there = target.is_dir()
+        aside = _aside(target if there else target.parent)
+        try:
+            for name, content in files.items():
+                with _told(target / name):
+                    (aside / name).write_bytes(content)
+            if there:
+                _move_in(aside, target, files, own)
+            else:
+                aside.rename(target)
+        finally:
+            shutil.rmtree(aside, ignore_errors=True)
+    return [target / name for name in own if name in files]
+
+
+def _move_in(aside: Path, target: Path, files: Collection[str], own: Collection[str]) -> None:
+    for name in files:
+        with _told(target / name):
+            (aside / name).replace(target / name)
+    for name in own:
+        if name not in files:
+            (target / name).unlink(missing_ok=True)
+
+
+def _refuse_occupied(target: Path, own: Collection[str], *, force: bool) -> None:
+    if not target.exists():
+        if target.is_symlink():
+            raise OutputError(f"{target}: cannot be written: a link to nowhere", path=str(target))
+        return
+    found = {entry.name: entry for entry in target.iterdir()}
+    if not force:
+        other = {*RUN_FILES, *CURVE_FILES} - set(own)
+        kept = sorted(name for name in found if name not in other)
+        if kept:
+            raise InputError(
+                f"{target}: folder must be empty, or --force replaces the results in it and "
+                f"leaves the rest; got {kept[0]}{' and others' if len(kept) > 1 else ''}",
+                file=str(target),
+            )
+    for name in own:
+        if name in found and found[name].is_dir() and not found[name].is_symlink():
+            raise OutputError(
+                f"{found[name]}: cannot be written: Is a directory", path=str(found[name])
+            )
+
+
+def _aside(place: Path) -> Path:
+    """A new folder with the usual rights, hidden, on the same file system."""
+    aside = place / f".asperity-{secrets.token_hex(6)}"
+    aside.mkdir()
+    return aside
+
+
+@contextlib.contextmanager
+def _parents(target: Path) -> Iterator[None]:
+    """The folders above, made where they are missing, and gone again if the rest fails."""
+    missing = []
+    place = target.parent
+    while not place.exists() and place != place.parent:
+        missing.append(place)
+        place = place.parent
+    try:
+        for place in reversed(missing):
+            place.mkdir(exist_ok=True)
+        yield
+    except BaseException:
+        for place in missing:
+            with contextlib.suppress(OSError):
+                place.rmdir()
+        raise
+
+
+@contextlib.contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Failures of the system as `OutputError`, with the path and the reason."""
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(f"{path}: cannot be written: {reason}", path=str(path)) from error

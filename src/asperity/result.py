@@ -1,0 +1,212 @@
+"""What a case gives: `Result` of a motion, `Curve` of force against separation."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asperity import summary
+from asperity.errors import Outcome
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from asperity.case import Case
+
+Arrays = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """A motion from release to its end, with its measures.
+
+    Parameters
+    ----------
+    case : Case
+        The resolved case.
+    name : str
+        What the case is called.
+    outcome : Outcome
+        How the motion ended.
+    time : numpy.ndarray
+        Time since the release [s].
+    separation, central_separation : numpy.ndarray
+        Rigid separation, and with the bodies' deformation [m]; as long as ``time``.
+    speed : numpy.ndarray
+        d(separation)/dt [m/s], positive apart; as long as ``time``.
+    forces : dict of str to numpy.ndarray
+        "weight", "elastic", "adhesion", "capillary", "contact" (all but the weight), "total" [N],
+        positive apart; those that the case has, as long as ``time``.
+    energies : dict of str to numpy.ndarray
+        "kinetic", "potential", "stored" and "lost_MECHANISM" [J]; as long as ``time``.
+    regime, measures, ledger : dict
+        Plain numbers, lists and text in SI, None where one does not apply; see ``asperity run
+        --json``.
+    warnings : list of str
+        What to know before the numbers are used.
+    events : dict of str to numpy.ndarray
+        "deepest_time", "apex_time" [s], "deepest_separation", "apex_separation" [m], per impact.
+    input_sha256 : str, optional
+        SHA-256 of the text that the case was read from; without it, of the resolved case's.
+    """
+
+    case: Case
+    name: str
+    outcome: Outcome
+    time: np.ndarray
+    separation: np.ndarray
+    central_separation: np.ndarray
+    speed: np.ndarray
+    forces: Arrays
+    energies: Arrays
+    regime: dict[str, Any]
+    measures: dict[str, Any]
+    ledger: dict[str, Any]
+    warnings: list[str]
+    events: Arrays
+    input_sha256: str | None = None
+
+    def dataset(self) -> xarray.Dataset:
+        """Everything as a dataset with units; the case and the measures are its attributes."""
+        from asperity import records
+
+        return records.dataset(self)
+
+    def plot(self) -> Figure:
+        """Motion, forces and energy in one figure."""
+        from asperity import plots
+
+        return plots.figure(self)
+
+    def summary(self) -> str:
+        """Outcome and measures as text."""
+        from asperity import records
+
+        return summary.of_result(self, records.attributes(self))
+
+    def files(self, *, pictures: bool | None = None) -> dict[str, bytes]:
+        """Content of every file of the result, by name.
+
+        Parameters
+        ----------
+        pictures : bool, optional
+            Whether to draw; without it as the case's ``output.pictures`` says.
+        """
+        from asperity import records
+
+        found = {"record.nc": records.encode(self), "summary.txt": self.summary().encode()}
+        if self.case.output.pictures if pictures is None else pictures:
+            from asperity import plots
+
+            found |= plots.pictures(self)
+        return found
+
+    def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:
+        """Write record, summary and pictures, all or none; the paths written.
+
+        Parameters
+        ----------
+        directory : path
+            Folder to write into, made where it is missing.
+        force : bool
+            Whether to replace the files of an earlier result there; others stay in any case.
+
+        Raises
+        ------
+        InputError
+            Where the folder is not empty and ``force`` is not set.
+        OutputError
+            Where the files cannot be written.
+        """
+        from asperity import records
+
+        return records.write_folder(directory, self.files(), records.RUN_FILES, force=force)
+
+    def __repr__(self) -> str:
+        return f"<Result {self.name}: {self.outcome.value}, {self.time.size} points>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve:
+    """Force against separation, on the way in and on the way out, without motion.
+
+    Parameters
+    ----------
+    case : Case
+        The resolved case.
+    name : str
+        What the case is called.
+    rigid_separation, central_separation : numpy.ndarray
+        Rigid separation, and with the bodies' deformation on the way in [m].
+    force_approach, force_parting : numpy.ndarray
+        Contact force [N], positive apart; as long as ``rigid_separation``.
+    components_approach, components_parting : dict of str to numpy.ndarray
+        The forces taken apart by mechanism [N].
+    deepest : float
+        Closest rigid separation [m].
+    pull_off : float
+        Largest tension while parting [N].
+    work_of_separation : float
+        Work against tension while parting [J].
+    loss : float
+        Energy lost over in and out [J].
+    input_sha256 : str, optional
+        SHA-256 of the text that the case was read from; without it, of the resolved case's.
+    """
+
+    case: Case
+    name: str
+    rigid_separation: np.ndarray
+    central_separation: np.ndarray
+    force_approach: np.ndarray
+    force_parting: np.ndarray
+    components_approach: Arrays
+    components_parting: Arrays
+    deepest: float
+    pull_off: float
+    work_of_separation: float
+    loss: float
+    input_sha256: str | None = None
+
+    def dataset(self) -> xarray.Dataset:
+        """Everything as a dataset with units; the case is its attribute."""
+        from asperity import records
+
+        return records.dataset(self)
+
+    def plot(self) -> Figure:
+        """Force against separation, with the loss between the branches."""
+        from asperity import plots
+
+        return plots.figure(self)
+
+    def summary(self) -> str:
+        """The curve's numbers as text."""
+        from asperity import records
+
+        return summary.of_curve(self, records.attributes(self))
+
+    def files(self, *, pictures: bool | None = None) -> dict[str, bytes]:
+        """Content of every file of the curve, by name; ``pictures`` as for `Result.files`."""
+        from asperity import records
+
+        found = {"curve.nc": records.encode(self), "curve.txt": self.summary().encode()}
+        if self.case.output.pictures if pictures is None else pictures:
+            from asperity import plots
+
+            found |= plots.pictures(self)
+        return found
+
+    def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:
+        """Write record, summary and picture, all or none; as `Result.save`."""
+        from asperity import records
+
+        return records.write_folder(directory, self.files(), records.CURVE_FILES, force=force)
+
+    def __repr__(self) -> str:
+        return f"<Curve {self.name}: {self.rigid_separation.size} points>"

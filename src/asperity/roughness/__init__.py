@@ -1,0 +1,5 @@
+"""Rough surfaces: distributions of asperity heights."""
+
+from .heights import Gaussian, Heights
+
+__all__ = ["Gaussian", "Heights"]

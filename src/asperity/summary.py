@@ -1,0 +1,231 @@
+"""Results in words and tables, for a terminal and for ``summary.txt``; 80 columns."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from asperity.result import Curve, Result
+
+WIDTH = 80
+FEW = 5
+"""How many impacts a terminal shows."""
+
+_PREFIXES = {
+    -24: "y", -21: "z", -18: "a", -15: "f", -12: "p", -9: "n", -6: "u", -3: "m",
+    0: "", 3: "k", 6: "M", 9: "G", 12: "T",
+}  # fmt: skip
+
+_ADHESION_LAWS = {
+    "none": "none",
+    "hertz": "Hertz",
+    "bradley": "Bradley",
+    "dmt": "DMT",
+    "jkr": "JKR",
+    "maugis": "Maugis-Dugdale",
+}
+_COLUMNS = (
+    ("height", "rebound_height", "m"),
+    ("restitution", "restitution", ""),
+    ("decrement", "log_decrement", ""),
+    ("period", "impact_time", "s"),
+    ("power loss", "power_loss", "W"),
+    ("one-way", "power_loss_published", "W"),
+)
+
+
+def scaled(value: float, unit: str) -> tuple[float, str]:
+    """What to divide by, and the unit with its prefix, to show a value between 1 and 1000.
+
+    Parameters
+    ----------
+    value : float
+        A typical value, in ``unit``.
+    unit : str
+        SI unit without a prefix; an empty one takes none.
+
+    Returns
+    -------
+    tuple
+        E.g. ``(1e-9, "nm")`` for 4.6e-8 m. ASCII: "u" for micro.
+    """
+    if not unit or not math.isfinite(value) or value == 0.0:
+        return 1.0, unit
+    # A value that rounds to 1000 at four digits takes the next prefix.
+    power = 3 * math.floor(math.log10(abs(value) * 1.00005) / 3)
+    power = min(max(power, -24), 12)
+    return float(f"1e{power}"), _PREFIXES[power] + unit
+
+
+def amount(value: float | None, unit: str = "") -> str:
+    """A value with its unit at four digits, e.g. ``45.9 nm``; ``-`` where there is none."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    if value == 0.0:
+        return f"0 {unit}".strip()
+    factor, prefixed = scaled(value, unit)
+    return f"{value / factor:.4g} {prefixed}".strip()
+
+
+def of_result(result: Result, made: Mapping[str, object]) -> str:
+    """All of a result: outcome, measures, regime, energy, every impact, warnings, provenance.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    made : mapping of str to object
+        Its record's attributes, for the versions and the hash of the input.
+    """
+    return "\n".join(
+        [
+            *_heading(result.name, result.outcome.message),
+            *_section("Motion", _motion(result.measures)),
+            *_section("Energy", _energy(result.ledger)),
+            *_section("Regime", _regime(result.regime)),
+            *_impacts(result.measures, None),
+            *_warnings(result.warnings),
+            *_provenance(made),
+            "",
+        ]
+    )
+
+
+def of_curve(curve: Curve, made: Mapping[str, object]) -> str:
+    """The numbers of a curve, and where they come from; ``made`` as for `of_result`."""
+    heading = _heading(curve.name, "Force against separation, in and out.")
+    return "\n".join([*heading, *_section("Curve", _curve(curve)), *_provenance(made), ""])
+
+
+def brief(result: Result) -> str:
+    """What a terminal shows of a result: verdict, measures, the first impacts, warnings."""
+    rows = [*_motion(result.measures), *_energy(result.ledger)]
+    return "\n".join(
+        [
+            f"{result.name}: {result.outcome.value}",
+            *_wrapped(result.outcome.message),
+            *_section("", rows),
+            *_impacts(result.measures, FEW),
+            *_warnings(result.warnings),
+        ]
+    )
+
+
+def brief_curve(curve: Curve) -> str:
+    """What a terminal shows of a curve."""
+    title = f"{curve.name}: force against separation"
+    return "\n".join([title, *_section("", _curve(curve))])
+
+
+def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
+    captured = {True: "yes", False: "no", None: "-"}[measures.get("captured")]
+    heights = measures.get("rebound_height") or []
+    return [
+        ("impact speed", amount(measures.get("impact_speed"), "m/s")),
+        ("impacts", str(len(heights))),
+        ("captured", captured),
+        ("time to capture", amount(measures.get("capture_time"), "s")),
+        ("time to rest", amount(measures.get("stiction_time"), "s")),
+    ]
+
+
+def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
+    initial = ledger.get("initial")
+    rows = [("energy at release", amount(initial, "J"))]
+    for mechanism, energy in (ledger.get("lost") or {}).items():
+        share = ""
+        if energy and initial and initial > 0.0:
+            share = f"  ({amount(100.0 * energy / initial)} %)"
+        rows.append((f"lost to {mechanism}", amount(energy, "J") + share))
+    closure = ledger.get("closure")
+    closed = "-" if closure is None else f"{closure:.1e} of the impact energy"
+    return [*rows, ("balance closes to", closed)]
+
+
+def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    for name, value in regime.items():
+        if isinstance(value, str):
+            text = _ADHESION_LAWS.get(value.lower(), value)
+        elif isinstance(value, bool):
+            text = "yes" if value else "no"
+        else:
+            text = amount(value)
+        rows.append((name.replace("_", " ").replace("tabor", "Tabor"), text))
+    return rows
+
+
+def _curve(curve: Curve) -> list[tuple[str, str]]:
+    return [
+        ("closest rigid separation", amount(curve.deepest, "m")),
+        ("pull-off force", amount(curve.pull_off, "N")),
+        ("work of separation", amount(curve.work_of_separation, "J")),
+        ("lost over in and out", amount(curve.loss, "J")),
+    ]
+
+
+def _impacts(measures: dict[str, Any], most: int | None) -> list[str]:
+    """The table of impacts, each column in one unit; its first ``most`` rows."""
+    given = [measures.get(key) or [] for _, key, _ in _COLUMNS]
+    count = max(len(values) for values in given)
+    if not count:
+        return []
+    shown = min(count, most or count)
+    units = [_column_unit(values[:shown], _COLUMNS[i][2]) for i, values in enumerate(given)]
+    lines = ["", "Impacts (one-way: the power loss as the publication counts it)"]
+    lines.append(_row("", [title for title, _, _ in _COLUMNS]))
+    lines.append(_row("", [unit for _, unit in units]))
+    for number in range(shown):
+        cells = [
+            _cell(values[number] if number < len(values) else None, factor, unit)
+            for values, (factor, unit) in zip(given, units, strict=True)
+        ]
+        lines.append(_row(str(number + 1), cells))
+    return lines if shown == count else [*lines, f"  and {count - shown} more"]
+
+
+def _column_unit(values: Sequence[float | None], unit: str) -> tuple[float, str]:
+    return scaled(max((abs(v) for v in values if v is not None), default=0.0), unit)
+
+
+def _cell(value: float | None, factor: float, unit: str) -> str:
+    """A value of the table; a ratio with more digits, since it may be close to 1."""
+    digits = 4 if unit else 6
+    return "-" if value is None or not math.isfinite(value) else f"{value / factor:.{digits}g}"
+
+
+def _row(first: str, cells: Iterable[str]) -> str:
+    return (f"{first:>6}" + "".join(f"{cell:>12}" for cell in cells)).rstrip()
+
+
+def _heading(name: str, sentence: str) -> list[str]:
+    return [name, "=" * min(len(name), WIDTH), "", *_wrapped(sentence)]
+
+
+def _section(title: str, rows: Sequence[tuple[str, str]]) -> list[str]:
+    if not rows:
+        return []
+    head = ["", title] if title else [""]
+    return [*head, *(f"  {label:<26}{text}" for label, text in rows)]
+
+
+def _warnings(warnings: Sequence[str]) -> list[str]:
+    if not warnings:
+        return []
+    lines = ["", "Warnings"]
+    for warning in warnings:
+        lines += textwrap.wrap(warning, WIDTH, initial_indent="  - ", subsequent_indent="    ")
+    return lines
+
+
+def _provenance(made: Mapping[str, object]) -> list[str]:
+    names = ("asperity", "jax", "numpy", "python")
+    versions = ", ".join(f"{name} {made[f'{name}_version']}" for name in names)
+    return ["", "Made by", *_wrapped(versions, "  "), f"  input {made['input_sha256']}"]
+
+
+def _wrapped(text: str, indent: str = "") -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent)

@@ -1,0 +1,138 @@
+"""Text with a unit -> SI float: ``"50 um"`` -> ``5e-05``. The only room that knows pint."""
+
+from __future__ import annotations
+
+import decimal
+import functools
+import math
+import re
+import reprlib
+from typing import Any
+
+from asperity.errors import InputError
+
+# Plain decimal notation only: pint itself would read "1,5 m" as 15 m and "5 um 3" as 15 um.
+_NUMBER = re.compile(
+    r"([+-]?(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)(.*)"
+)
+_UNIT = re.compile(r"[A-Za-zµμÅΩ°%_0-9 ^*/·()⁻⁰¹²³⁴⁵⁶⁷⁸⁹+-]{1,60}")
+_LONG_DIGITS = re.compile(r"[0-9]{3}")
+_NOT_A_NUMBER = re.compile(r"\s*[+-]?(nan|inf|infinity)\b", re.IGNORECASE)
+
+_KINDS = {
+    "m": ("a length", "50 um"),
+    "1/m^2": ("a number per area", "1.69e16 1/m^2"),
+    "Pa": ("a pressure", "80 GPa"),
+    "kg/m^3": ("a density", "2200 kg/m^3"),
+    "J/m^2": ("an energy per area", "30 mJ/m^2"),
+    "N/m": ("a surface tension", "75 mN/m"),
+    "m^3/mol": ("a molar volume", "18.05 cm^3/mol"),
+    "K": ("a temperature", "20 degC"),
+    "rad": ("an angle", "73 deg"),
+    "m/s": ("a speed", "0.1 m/s"),
+    "m/s^2": ("an acceleration", "9.81 m/s^2"),
+    "s": ("a time", "10 ms"),
+}
+
+_shown = reprlib.Repr()
+_shown.maxstring = _shown.maxother = _shown.maxlong = 60
+_shown.maxlevel = 2
+
+
+def shown(value: object) -> str:
+    """A value as it appears in a message: its ``repr``, shortened."""
+    try:
+        return _shown.repr(value)
+    except (ValueError, RecursionError):  # Python refuses to print integers of many digits
+        return "a value too long to show"
+
+
+def example(unit: str) -> str:
+    """A value in the kind of quantity that ``unit`` measures, e.g. ``"50 um"`` for ``"m"``."""
+    return _KINDS[unit][1] if unit in _KINDS else f"1 {unit}"
+
+
+def quantity(text: object, unit: str, name: str = "value") -> float:
+    """Value of a text in a unit.
+
+    The conversion is done in decimal arithmetic and rounded once, so that ``"50 um"``,
+    ``"0.05 mm"`` and ``"5e-05 m"`` are the same float.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit, e.g. ``"50 um"``, ``"1.69e16 1/m^2"``, ``"20 degC"`` (absolute).
+    unit : str
+        Unit wanted, e.g. ``"m"``; pint's notation.
+    name : str
+        What to call the value in messages.
+
+    Returns
+    -------
+    float
+        The value in ``unit``.
+
+    Raises
+    ------
+    InputError
+        Where the text is no number with a unit, the unit is unknown or of another dimension, or
+        the value is not finite in ``unit``.
+    """
+    kind, sample = _KINDS.get(unit, (f"a value in {unit}", f"1 {unit}"))
+    if not isinstance(text, str):
+        raise _refusal(name, f"must be text with a number and a unit, such as '{sample}'", text)
+    number, unit_text = _split(text, name, sample)
+    value = _measure(number, unit_text, text, name, f"{kind}, such as '{sample}'")
+    wanted = _registry().Quantity(decimal.Decimal(1), unit)
+    with decimal.localcontext(_CONTEXT):
+        # Root units, not dimensions: a percentage is as dimensionless as an angle, and is none.
+        if value.to_root_units().units != wanted.to_root_units().units:
+            raise _refusal(name, f"must be {kind}, such as '{sample}'", text)
+        result = float(value.m_as(wanted.units))
+    if not math.isfinite(result) or (result == 0.0 and decimal.Decimal(number) != 0):
+        raise _refusal(name, "must be a number that a float can hold", text)
+    return result
+
+
+_CONTEXT = decimal.Context(prec=50)
+
+
+def _split(text: str, name: str, sample: str) -> tuple[str, str]:
+    """Number and unit of a text, apart."""
+    if _NOT_A_NUMBER.match(text):
+        raise _refusal(name, "must be finite", text)
+    match = _NUMBER.fullmatch(text.strip())
+    if match is None:
+        raise _refusal(name, f"must be a number with a unit, such as '{sample}'", text)
+    number, unit_text = match.group(1), match.group(2).strip()
+    if not unit_text:
+        raise _refusal(name, f"must have a unit, such as '{sample}'", text)
+    return number, unit_text
+
+
+def _measure(number: str, unit_text: str, text: str, name: str, kind: str) -> Any:
+    """The pint quantity of a number and a unit."""
+    readable = _UNIT.fullmatch(unit_text) and not _LONG_DIGITS.search(unit_text)
+    # A difference of temperatures would pass for an absolute one.
+    if not readable or "delta" in unit_text:
+        raise _refusal(name, f"must be {kind}, in a known unit", text)
+    try:
+        with decimal.localcontext(_CONTEXT):
+            units = _registry().parse_units(unit_text)
+            value = _registry().Quantity(decimal.Decimal(number), units)
+            value.to_root_units()
+    except Exception as error:  # pint's parser raises more than its own errors on odd text
+        raise _refusal(name, f"must be {kind}, in a known unit", text) from error
+    return value
+
+
+def _refusal(name: str, rule: str, value: object) -> InputError:
+    return InputError(f"`{name}` {rule}; got {shown(value)}")
+
+
+@functools.cache
+def _registry() -> Any:
+    """The registry of units, read at the first conversion: it takes 0.5 s."""
+    import pint
+
+    return pint.UnitRegistry(non_int_type=decimal.Decimal)

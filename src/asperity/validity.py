@@ -1,0 +1,147 @@
+"""What a user must know before believing a result: regimes outside a model's validity."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ._jax import jnp
+from .case import Case, Roughness
+from .case.build import Problem
+from .contact import Contact
+from .impact import Motion
+from .impact.table import CENTRAL, TOUCHING, outer_row, quantities
+from .regimes import Regime
+from .special import height_integral
+
+FEW = 10.0
+"""Touching asperities below which a mean over asperities says little of one impact."""
+
+
+class AtDepth(NamedTuple):
+    """The contact at the deepest point of the first impact.
+
+    Attributes
+    ----------
+    touching
+        Expected number of touching asperities.
+    elastic
+        Elastic part of the force [N].
+    central
+        Separation of the deformed mean planes at the axis [m].
+    """
+
+    touching: float
+    elastic: float
+    central: float
+
+    @classmethod
+    def of(cls, contact: Contact, motion: Motion) -> AtDepth:
+        """Read off the curve of first approach."""
+        row = np.asarray(outer_row(motion.table, 0, jnp.asarray(motion.impacts.deepest[0])))
+        elastic = row[quantities(contact).components][0]
+        return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
+
+
+def warnings_of(
+    case: Case, problem: Problem, regime: Regime, at_depth: AtDepth, motion: Motion
+) -> list[str]:
+    """One line for each way in which a case leaves the validity of its models.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    regime
+        Its dimensionless numbers.
+    at_depth
+        The contact at closest approach.
+    motion
+        The motion.
+    """
+    return [
+        *_asperities(case, at_depth),
+        *_adhesion(regime),
+        *_menisci(case),
+        *_shape(case, motion),
+    ]
+
+
+def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
+    rough = case.roughness
+    if rough is None:
+        return []
+    out = []
+    touching = at_depth.touching
+    if touching < FEW:
+        scatter = 100.0 / np.sqrt(touching) if touching > 0.0 else np.inf
+        out.append(
+            f"only {touching:.2g} asperities are expected to touch at closest approach: the "
+            f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
+            "in that number (Poisson)"
+        )
+    central = at_depth.central
+    share = rough.asperity_density * pi * rough.asperity_radius * _mean_overlap(rough, central)
+    if share > 0.1:
+        out.append(
+            f"touching asperities cover {100 * share:.0f} % of the area at the axis at closest "
+            "approach: neighbours interact, which the sum over single asperities leaves out"
+        )
+    return out
+
+
+def _mean_overlap(rough: Roughness, central: float) -> float:
+    """Mean overlap per asperity [m], sigma F_1(h/sigma)."""
+    sigma = rough.rms_height
+    return float(sigma * height_integral(1.0, central / sigma))
+
+
+def _adhesion(regime: Regime) -> list[str]:
+    out = []
+    psi, mu = regime.plasticity_index, regime.tabor_number
+    if psi is not None and psi > 1.0:
+        out.append(
+            f"the plasticity index is {psi:.3g}: above 1 the asperities yield, and this model "
+            "keeps them elastic"
+        )
+    law = regime.adhesion_law
+    if mu is not None and law in ("dmt", "bradley") and mu > 0.1:
+        out.append(
+            f"the Tabor number is {mu:.3g}: the {law.upper()} law holds below 0.1"
+            + (", JKR above 5" if mu <= 5 else "; JKR is meant for this")
+        )
+    if mu is not None and law == "jkr" and mu < 5.0:
+        out.append(f"the Tabor number is {mu:.3g}: the JKR law holds above 5, DMT below 0.1")
+    return out
+
+
+def _menisci(case: Case) -> list[str]:
+    liquid, kelvin_radius = case.liquid, case.kelvin_radius
+    if liquid is None or kelvin_radius == 0.0:
+        return []
+    out = []
+    if kelvin_radius < liquid.molecule_size:
+        out.append(
+            f"the Kelvin radius is {kelvin_radius * 1e9:.2g} nm, less than a molecule of "
+            f"{liquid.name} ({liquid.molecule_size * 1e9:.2g} nm): no meniscus of continuum liquid"
+        )
+    rough = case.roughness
+    if rough is not None and kelvin_radius > rough.asperity_density**-0.5:
+        out.append(
+            f"the Kelvin radius is {kelvin_radius * 1e9:.3g} nm, above the asperity spacing of "
+            f"{rough.asperity_density**-0.5 * 1e9:.3g} nm: menisci coalesce, and this model "
+            "keeps them isolated"
+        )
+    return out
+
+
+def _shape(case: Case, motion: Motion) -> list[str]:
+    depth = -float(motion.impacts.deepest[0])
+    if depth <= 0.02 * case.body.radius:
+        return []
+    return [
+        f"the body sinks in by {100 * depth / case.body.radius:.0f} % of its radius: paraboloid "
+        "and half-space are approximations for small indentations"
+    ]

@@ -1,0 +1,34 @@
+"""For the whole session: one thread a worker, a compile cache, no screen, steady examples."""
+
+import os
+import tempfile
+from pathlib import Path
+
+import hypothesis
+import platformdirs
+
+
+def _compile_cache(worker: str) -> Path:
+    """A folder for compiled code that outlives the session; a worker does not share its own."""
+    try:
+        folder = platformdirs.user_cache_path("asperity") / "tests" / worker
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="asperity-tests-"))
+    return folder
+
+
+# Before anything imports JAX, which reads these once. Programs that the tests start inherit them.
+_worker = os.environ.get("PYTEST_XDIST_WORKER", "alone")
+os.environ.setdefault("JAX_PLATFORMS", "cpu")
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(_compile_cache(_worker)))
+os.environ.setdefault("MPLBACKEND", "Agg")
+if _worker != "alone":
+    os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false")
+    for _variable in ("NPROC", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(_variable, "1")
+
+# Compiling takes the first example over any deadline; on CI the examples are always the same.
+hypothesis.settings.register_profile("here", deadline=None)
+hypothesis.settings.register_profile("ci", deadline=None, derandomize=True)
+hypothesis.settings.load_profile("ci" if os.environ.get("CI") else "here")

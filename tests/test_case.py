@@ -1,0 +1,281 @@
+"""Case files: what is read is what was written, and what is wrong is said in one line."""
+
+import importlib.resources
+import json
+import math
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import BaseModel, ValidationError
+
+from asperity import case as case_room
+from asperity.case import BUILTINS, Body, Case, builtin, load, load_file, template
+from asperity.case.problems import tables_of
+from asperity.errors import InputError, Tolerance
+from asperity.materials import LIQUIDS, SOLIDS, kelvin_radius
+from asperity.units import quantity
+
+TEMPLATE = template()
+SMALL = """
+[body]
+radius = "10 um"
+material = "silica"
+[counterface]
+material = "silicon"
+[impact]
+speed = "0.1 m/s"
+"""
+
+
+def altered(old, new):
+    """The template with one thing replaced."""
+    assert old in TEMPLATE
+    return TEMPLATE.replace(old, new, 1)
+
+
+# --- what is read ------------------------------------------------------------------------------
+
+
+def test_the_published_case_is_the_one_of_the_publication():
+    case = builtin("published-exact")
+    assert case.body.radius == 50e-6
+    assert case.roughness.asperity_density == 1.69e16
+    assert case.roughness.asperity_radius == 0.25e-9
+    assert case.roughness.rms_height == 10.5e-9
+    assert (case.adhesion.model, case.adhesion.work, case.adhesion.range) == ("dmt", 0.03, 2e-10)
+    assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "contact")
+    assert (case.capillary.humidity, case.capillary.temperature) == (0.6, 293.15)
+    assert case.capillary.contact_angle == math.radians(73)
+    assert (case.impact.release_gap, case.impact.speed, case.impact.gravity) == (60e-9, None, 9.81)
+    assert case.counterface.deformation == "half-space"
+    assert case.body_solid == SOLIDS["silica"]
+    assert case.counterface_solid == SOLIDS["silicon carbide"]
+    assert case.body_density == 2200.0
+    assert case.tolerance == Tolerance()
+
+
+def test_a_case_needs_little_and_has_neither_roughness_nor_adhesion_nor_water_by_default():
+    case = load(SMALL)
+    assert case.roughness is None
+    assert case.adhesion.model == "none"
+    assert case.capillary.model == "none"
+    assert case.liquid is None
+    assert case.kelvin_radius == 0.0
+    assert case.output.motion
+    assert case.output.pictures
+    assert case.output.directory is None
+
+
+def test_the_liquid_has_the_tension_of_the_cases_temperature():
+    case = load(altered('"20 degC"', '"40 degC"'))
+    assert case.liquid == LIQUIDS["water"].at(313.15)
+    assert case.kelvin_radius == kelvin_radius(case.liquid, 0.6, 313.15)
+
+
+def test_the_case_can_set_its_own_tension_and_molar_volume():
+    own = TEMPLATE.replace("# tension", "tension")
+    assert load(own).liquid.tension == 0.075
+    assert load(own).liquid.molar_volume == LIQUIDS["water"].molar_volume
+    own = own.replace("# molar_volume", "molar_volume").replace('"20 degC"', '"-10 degC"')
+    assert load(own).liquid.molar_volume == 1.805e-5
+    assert load(own).liquid.molecule_size == LIQUIDS["water"].molecule_size
+    other = load(own.replace('"water"', '"my oil"')).liquid
+    assert (other.name, other.tension) == ("my oil", 0.075)
+
+
+def test_dry_air_is_a_humidity_of_zero():
+    assert load(altered("humidity = 0.6", "humidity = 0")).kelvin_radius == 0.0
+
+
+def test_a_material_of_ones_own_by_table_or_in_place():
+    table = (
+        '[materials."my glass"]\nyoungs_modulus = "70 GPa"\npoisson = 0.2\ndensity = "2.5 g/cc"\n'
+    )
+    case = load(SMALL.replace('"silica"', '"my glass"') + table)
+    assert case.body_solid.name == "my glass"
+    assert (case.body_solid.youngs_modulus, case.body_density) == (70e9, 2500.0)
+    in_place = 'youngs_modulus = "1 GPa"\npoisson = 0.3'
+    case = load(SMALL.replace('material = "silicon"', in_place))
+    assert case.counterface_solid.youngs_modulus == 1e9
+    assert case.counterface_solid.density is None
+
+
+def test_ones_own_table_comes_before_the_catalogue():
+    table = '[materials.silica]\nyoungs_modulus = "1 GPa"\npoisson = 0.2\ndensity = "1 g/cc"\n'
+    assert load(SMALL + table).body_solid.youngs_modulus == 1e9
+
+
+def test_jkr_needs_no_range():
+    assert load(SMALL + '[adhesion]\nmodel = "jkr"\nwork = "50 mJ/m^2"').adhesion.range is None
+
+
+def test_a_case_may_float_without_gravity_where_it_has_a_speed():
+    assert load(SMALL + 'gravity = "0 m/s^2"').impact.gravity == 0.0
+
+
+def test_a_byte_order_mark_and_windows_line_ends_do_no_harm(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_bytes(b"\xef\xbb\xbf" + SMALL.replace("\n", "\r\n").encode())
+    assert load_file(file) == load(SMALL)
+
+
+def test_a_case_is_frozen():
+    with pytest.raises(ValidationError):
+        builtin("published-exact").body.radius = 1.0
+
+
+# --- what is written ---------------------------------------------------------------------------
+
+
+def test_the_template_loads_and_is_the_published_case():
+    assert load(TEMPLATE) == builtin("published-exact")
+
+
+def every_key(model, place=()):
+    for name, field in model.model_fields.items():
+        inside = tables_of(field.annotation)
+        for table in inside:
+            yield from every_key(table, (*place, name))
+        if not inside:
+            yield place, name, field
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "field"), list(every_key(Case)), ids=lambda value: str(value)[:40]
+)
+def test_every_key_has_a_unit_a_meaning_an_example_and_a_line_in_the_template(place, name, field):
+    assert field.description.endswith(".")
+    assert isinstance(field.json_schema_extra["unit"], str)
+    assert field.examples[0] is not None
+    assert re.search(rf"^(# )?{field.alias or name} = ", TEMPLATE, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "field"),
+    [key for key in every_key(Case) if key[0] not in ((), ("materials",))],
+    ids=lambda value: str(value)[:40],
+)
+def test_the_example_of_every_key_is_read(place, name, field):
+    table = {
+        "body": {"radius": "1 um", "material": "gold"},
+        "counterface": {"material": "gold"},
+        "impact": {"speed": "1 m/s"},
+    }
+    if name in ("youngs_modulus", "poisson", "density", "hardness"):
+        table[place[0]] |= {"youngs_modulus": "1 GPa", "poisson": 0.2, "density": "1 g/cc"}
+        table[place[0]].pop("material")
+    if place[0] == "roughness":
+        table["roughness"] = {
+            "asperity_density": "1 1/um^2",
+            "asperity_radius": "1 nm",
+            "rms_height": "1 nm",
+        }
+    if place[0] in ("adhesion", "capillary"):
+        table[place[0]] = {"model": "none"}
+        if name == "model":
+            return
+    table.setdefault(place[0], {})[name] = field.examples[0]
+    value = getattr(getattr(Case.model_validate(table), place[0]), name)
+    unit, example = field.json_schema_extra["unit"], field.examples[0]
+    assert value == (example if unit in ("", "1") else quantity(example, unit))
+
+
+def test_the_schema_of_a_form_can_be_made():
+    schema = json.loads(json.dumps(Case.model_json_schema()))
+    radius = schema["$defs"]["Body"]["properties"]["radius"]
+    assert (radius["type"], radius["unit"]) == ("string", "m")
+    assert schema["$defs"]["Numerics"]["properties"]["rings"]["maximum"] == 400
+
+
+names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
+numbers = st.floats(1e-12, 0.9, allow_subnormal=False)
+
+
+@given(name=names, radius=numbers, angle=st.floats(0, 1.5), gap=numbers, humidity=numbers)
+def test_a_case_reads_back_exactly_from_its_own_text(name, radius, angle, gap, humidity):
+    case = load(TEMPLATE).replace(
+        {
+            "body.radius": f"{radius!r} m",
+            "capillary.contact_angle": f"{angle!r} rad" if angle > 1e-9 else "0 rad",
+            "capillary.humidity": humidity,
+            "impact.release_gap": f"{gap!r} m",
+            "impact.speed": "0.1 m/s",
+            "numerics.time_limit": "1 ms",
+            "output.directory": name.replace("\0", "0") + "x",
+            "materials": {name: {"youngs_modulus": "1 Pa", "poisson": 0.5, "density": "1 kg/m^3"}},
+            "counterface.material": name,
+        }
+    )
+    assert case.body.radius == radius
+    assert list(case.materials) == [name]
+    assert load(case.toml()) == case
+    assert load(case.toml()).toml() == case.toml()
+
+
+@pytest.mark.parametrize("text", [SMALL, TEMPLATE])
+def test_the_text_of_a_case_states_its_defaults(text):
+    tables = tomllib.loads(load(text).toml())
+    assert tables["schema"] == 1
+    assert tables["numerics"]["rings"] == 96
+    assert tables["impact"]["gravity"] == "9.81 m/s^2"
+    assert tables["adhesion"]["model"]
+
+
+def test_replacing_values_checks_them():
+    case = builtin("published-exact")
+    dry = case.replace({"capillary": None, "body.radius": "20 um", "adhesion.model": "none"})
+    assert (dry.capillary.model, dry.body.radius) == ("none", 20e-6)
+    assert case.body.radius == 50e-6
+    with pytest.raises(InputError, match=r"body\.radius: `radius` must be positive"):
+        case.replace({"body.radius": "-1 um"})
+    with pytest.raises(InputError, match="did you mean 'radius'"):
+        case.replace({"body.raduis": "1 um"})
+    with pytest.raises(InputError, match="`radius` is no table"):
+        case.replace({"body.radius.x": 1})
+
+
+# --- built-in cases ----------------------------------------------------------------------------
+
+
+def test_the_built_in_cases_are_those_of_the_package():
+    files = (importlib.resources.files("asperity") / "cases").iterdir()
+    assert sorted(BUILTINS) == sorted(Path(file.name).stem for file in files)
+    assert "published-exact" in BUILTINS
+
+
+@pytest.mark.parametrize("name", BUILTINS)
+def test_every_built_in_case_loads_and_reads_back(name):
+    assert load(builtin(name).toml()) == builtin(name)
+
+
+def test_an_unknown_built_in_case_is_refused_with_a_hint():
+    with pytest.raises(InputError) as caught:
+        builtin("published-exakt")
+    assert "did you mean 'published-exact'?" in str(caught.value)
+    assert "`asperity run FILE.toml`" in str(caught.value)
+
+
+def test_importing_cases_is_light():
+    code = (
+        "import sys, asperity.case; "
+        "print([name for name in ('jax', 'pint', 'numpy') if name in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert run.stdout.strip() == "[]"
+
+
+def test_every_model_is_frozen_refuses_unknown_keys_and_checks_its_defaults():
+    models = [Case, *(part for part in vars(case_room).values() if isinstance(part, type))]
+    for model in models:
+        if issubclass(model, BaseModel):
+            config = model.model_config
+            assert config["frozen"]
+            assert config["extra"] == "forbid"
+            assert config["validate_default"]
+    assert Body in models

@@ -1,0 +1,243 @@
+"""Pictures: every kind of motion can be drawn, in one style, and nothing runs over the edge."""
+
+from __future__ import annotations
+
+import dataclasses
+import struct
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from asperity import plots
+from asperity.errors import InputError, Outcome
+from asperity.plots import impacts, style
+from asperity.result import Result
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from fake_result import GRAVITY, MASS, PULL, RELEASE, SURFACE, bounce, loading
+
+
+def shorten(result: Result, points: int) -> Result:
+    """The start of a result, without the events that it did not reach."""
+    cut = slice(0, points)
+    last = result.time[cut][-1] if points else -1.0
+    events = {
+        key: values[result.events[f"{key.split('_')[0]}_time"] <= last]
+        for key, values in result.events.items()
+    }
+    tops = events["apex_time"].size
+    return dataclasses.replace(
+        result,
+        outcome=Outcome.TIME_LIMIT,
+        **{key: getattr(result, key)[cut] for key in ("time", "separation", "speed")},
+        central_separation=result.central_separation[cut],
+        forces={key: values[cut] for key, values in result.forces.items()},
+        energies={key: values[cut] for key, values in result.energies.items()},
+        events=events,
+        measures={
+            key: value[:tops] if isinstance(value, list) else value
+            for key, value in result.measures.items()
+        },
+    )
+
+
+def without(result: Result, *names: str) -> Result:
+    """The result of a case without some mechanisms."""
+    return dataclasses.replace(
+        result,
+        forces={k: v for k, v in result.forces.items() if k not in names},
+        energies={k: v for k, v in result.energies.items() if k.removeprefix("lost_") not in names},
+    )
+
+
+MOTIONS = {
+    "few rebounds": bounce(0.3, 2),
+    "many rebounds": bounce(0.98, 200),
+    "one rebound": bounce(0.5, 1),
+    "no loss": bounce(1.0, 5),
+    "no impact yet": shorten(bounce(impacts=2), 10),
+    "cut short within the contact": shorten(bounce(impacts=2), 36),
+    "dry": without(bounce(impacts=4), "capillary"),
+    "elastic": without(bounce(impacts=4), "capillary", "adhesion"),
+}
+
+
+@pytest.fixture(params=MOTIONS)
+def motion(request: pytest.FixtureRequest) -> Result:
+    return MOTIONS[request.param]
+
+
+def size_mm(png: bytes) -> tuple[float, float]:
+    width, height = struct.unpack(">II", png[16:24])
+    return width / style.RESOLUTION * 25.4, height / style.RESOLUTION * 25.4
+
+
+def texts_outside(figure: Figure) -> list[str]:
+    """Texts of a drawn figure that reach over its edge."""
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+    page = figure.bbox
+    outside = []
+    for axes in figure.axes:
+        labels = [axes.xaxis.label, axes.yaxis.label, axes._left_title]  # type: ignore[attr-defined]
+        for axis in (axes.xaxis, axes.yaxis):
+            labels += [tick.label1 for tick in axis._update_ticks()]  # type: ignore[attr-defined]
+        legend = axes.get_legend()
+        labels += legend.get_texts() if legend else []
+        for text in labels:
+            box = text.get_window_extent(renderer)
+            inside = page.x0 <= box.x0 and box.x1 <= page.x1 and page.y0 <= box.y0
+            if text.get_text() and not (inside and box.y1 <= page.y1):
+                outside.append(text.get_text())
+    return outside
+
+
+def overlapping(figure: Figure) -> list[tuple[str, str]]:
+    """Pairs of labels, titles and legend texts of a drawn figure that lie on each other."""
+    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+    placed = []
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        texts = [axes.xaxis.label, axes.yaxis.label, axes._left_title]  # type: ignore[attr-defined]
+        for text in [*texts, *(legend.get_texts() if legend else [])]:
+            if text.get_text():
+                placed.append((text.get_text(), text.get_window_extent(renderer)))
+    return [
+        (a, b)
+        for number, (a, first) in enumerate(placed)
+        for b, second in placed[number + 1 :]
+        if first.overlaps(second)
+    ]
+
+
+def test_every_motion_is_drawn_page_wide(motion: Result):
+    pictures = plots.pictures(motion)
+    assert list(pictures) == ["motion.png", "forces.png", "energy.png"]
+    for png in pictures.values():
+        assert png.startswith(b"\x89PNG")
+        if size_mm(png)[0] != pytest.approx(style.PAGE, abs=0.2):
+            assert size_mm(png)[0] == pytest.approx(style.COLUMN, abs=0.2)
+
+
+def test_no_text_runs_over_the_edge_or_over_another(motion: Result):
+    figure = motion.plot()
+    assert texts_outside(figure) == []
+    assert overlapping(figure) == []
+
+
+@pytest.mark.parametrize("stiff", [1.0, 1e4])
+def test_a_curve_is_drawn_with_its_pull_off_enlarged_where_it_is_small(stiff: float):
+    curve = loading()
+    elastic = curve.components_approach["elastic"]
+    curve = dataclasses.replace(
+        curve,
+        force_approach=curve.force_approach + stiff * elastic,
+        force_parting=curve.force_parting + stiff * elastic,
+    )
+    figure = curve.plot()
+    assert len(figure.axes) == (2 if stiff > 100 else 1)
+    assert texts_outside(figure) == []
+    assert overlapping(figure) == []
+    assert list(plots.pictures(curve)) == ["curve.png"]
+
+
+def test_the_same_result_gives_the_same_picture():
+    result = bounce(impacts=3)
+    assert plots.pictures(result) == plots.pictures(result)
+
+
+def test_axes_carry_units():
+    for result in (bounce(impacts=4), loading()):
+        for axes in result.plot().axes:
+            assert "[" in axes.get_ylabel()
+            assert "[" in axes.get_xlabel() or axes.get_xlabel().startswith(("impact", "rebound"))
+
+
+def test_a_unit_takes_the_prefix_of_the_largest_value():
+    assert style.scale_of(np.array([1e-9, -4.6e-8, np.nan]), unit="m") == (1e-9, "nm")
+    assert style.scale_of(np.array([2e-6]), unit="N") == (1e-6, "µN")
+    assert style.scale_of(np.zeros(3), unit="s") == (1.0, "s")
+
+
+def test_parts_can_be_drawn_alone_and_unknown_ones_are_refused():
+    result = bounce(impacts=4)
+    whole = plots.figure(result).get_figheight()
+    assert plots.figure(result, "energy").get_figheight() == pytest.approx(whole / 3)
+    with pytest.raises(InputError, match="must be of motion, forces, energy; got 'map'"):
+        plots.figure(result, "map")
+
+
+def test_a_result_without_motion_is_not_drawn():
+    result = shorten(bounce(impacts=1), 0)
+    assert plots.pictures(result) == {}
+    with pytest.raises(InputError, match="must hold its motion"):
+        result.plot()
+
+
+def test_a_notebook_shows_a_figure_by_itself():
+    assert bounce(impacts=1).plot()._repr_png_().startswith(b"\x89PNG")
+
+
+def test_drawing_leaves_the_users_own_style_alone():
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    bounce(impacts=1).plot()
+    assert dict(mpl.rcParams) == before
+
+
+def test_the_first_contact_is_found():
+    result = bounce(0.8, 10)
+    start, end = impacts.window(result) or (0.0, 0.0)
+    way_in = np.pi / 2 * np.sqrt(MASS / 2e4)
+    assert start < -way_in
+    assert way_in < end < 0.2 * result.events["apex_time"][0]
+
+
+def test_largest_forces_belong_to_their_impacts():
+    result = bounce(0.8, 10)
+    push = impacts.largest(result, "elastic", 1.0)
+    fast = np.sqrt(2 * GRAVITY * (RELEASE - SURFACE)) * 0.8 ** np.arange(10)
+    np.testing.assert_allclose(push, fast * np.sqrt(2e4 * MASS), rtol=1e-9)
+    np.testing.assert_allclose(impacts.largest(result, "capillary", -1.0), PULL)
+    assert impacts.largest(result, "magnetic", 1.0).size == 0
+
+
+def test_heights_count_from_static_equilibrium():
+    assert impacts.datum(bounce(impacts=2)) == pytest.approx(SURFACE)
+    assert impacts.datum(shorten(bounce(impacts=2), 10)) is None
+
+
+def test_all_pictures_of_two_hundred_rebounds_take_a_moment():
+    result = bounce(0.98, 200)
+    plots.pictures(result)
+    start = time.process_time()
+    plots.pictures(result)
+    assert time.process_time() - start < 2.5
+
+
+def test_slow_decay_is_drawn_from_its_beginning_and_fast_decay_whole():
+    slow, shown = impacts.beginning(bounce(0.98, 200))
+    assert shown == ", first 25 of 200 rebounds"
+    assert bounce(0.98, 200).time[slow][-1] == bounce(0.98, 200).events["apex_time"][24]
+    assert impacts.beginning(bounce(0.8, 100)) == (slice(None), "")
+    assert impacts.beginning(bounce(0.98, 20)) == (slice(None), "")
+
+
+def test_a_loss_without_a_pull_off_is_drawn_as_the_difference_of_the_branches():
+    curve = loading()
+    lifted = dataclasses.replace(
+        curve,
+        force_approach=curve.force_approach + 1e-6,
+        force_parting=curve.force_parting + 1e-6,
+        pull_off=0.0,
+    )
+    axes = lifted.plot().axes[1]
+    bridge = curve.components_parting["capillary"]
+    np.testing.assert_allclose(axes.lines[-1].get_ydata(), bridge * 1e9, atol=1e-6)
+    assert texts_outside(lifted.plot()) == []

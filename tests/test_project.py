@@ -1,0 +1,262 @@
+"""The project itself: the wheel, the locks, the environment's tool, what files may not say."""
+
+import importlib.metadata
+import importlib.util
+import json
+import os
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import asperity
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src" / "asperity"
+LOCKS = ("requirements.lock", "requirements-dev.lock")
+# In pieces, so that this file does not name what it looks for.
+INDEX_HOSTS = [".".join(parts) for parts in (("py" + "pi", "org"), ("python" + "hosted", "org"))]
+MACHINE_PATH = re.compile(
+    r"(?<![\w.}~/-])/(?:home|Users|root|work|tmp|opt|mnt|var/tmp)/[\w.-]+|\b[A-Z]:\\{1,2}Users\b"
+)
+FENCE = re.compile(r"^```(?:\{code-cell\} )?(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def project() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+def project_files() -> list[Path]:
+    """Files that are or would be committed; in an unpacked archive, all that are not made."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        check=False,
+    )
+    if listed.returncode == 0 and listed.stdout:
+        found = [ROOT / os.fsdecode(name) for name in listed.stdout.split(b"\0") if name]
+        return [path for path in found if path.is_file()]
+    made = {".venv", "build", "dist", "_build", "__pycache__"}
+    return [
+        path
+        for path in ROOT.rglob("*")
+        if path.is_file()
+        and not any(
+            part in made or part.endswith(("-out", "_cache", ".egg-info"))
+            for part in path.relative_to(ROOT).parts
+        )
+    ]
+
+
+def text_of(path: Path) -> str:
+    content = path.read_bytes()
+    return "" if b"\0" in content else content.decode()
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    """Fenced blocks of one language in a Markdown page."""
+    return [code for found, code in FENCE.findall(path.read_text()) if found == language]
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, built without the network."""
+    folder = tmp_path_factory.mktemp("wheel")
+    command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel"]
+    subprocess.run([*command, "--directory", str(folder)], cwd=ROOT, check=True)
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+def test_wheel_holds_the_package_its_cases_and_the_licence(wheel: Path):
+    cases = sorted((SOURCE / "cases").glob("*.toml"))
+    assert cases
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        metadata = next(name for name in names if name.endswith(".dist-info/METADATA"))
+        described = archive.read(metadata).decode()
+    wanted = [*cases, *SOURCE.rglob("*.py")]
+    assert {path.relative_to(ROOT / "src").as_posix() for path in wanted} <= names
+    assert any(name.endswith("/licenses/LICENSE") for name in names)
+    assert "License-Expression: MIT" in described
+
+
+def test_wheel_runs_from_any_folder_without_the_repository(wheel: Path, tmp_path: Path):
+    site, folder = tmp_path / "site", tmp_path / "elsewhere"
+    folder.mkdir()
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps"]
+    subprocess.run([*pip, "--target", str(site), str(wheel)], check=True)
+    program = (
+        "import sys, asperity; assert asperity.__file__.startswith(sys.argv.pop(1)); "
+        "from asperity.cli import main; sys.exit(main())"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", program, str(site), "run", "published-exact", "--json"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(site)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert json.loads(ran.stdout)["outcome"]
+    assert list(folder.iterdir()) == []
+
+
+def test_no_file_names_a_package_index_or_a_path_of_one_machine():
+    found = [
+        f"{path.relative_to(ROOT)}: {line.strip()}"
+        for path in project_files()
+        for line in text_of(path).splitlines()
+        if any(host in line for host in INDEX_HOSTS) or MACHINE_PATH.search(line)
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("parts", [("'", "home", "ada'"), ("see ", "work", "x"), ("=", "tmp", "x")])
+def test_a_path_of_one_machine_is_recognised(parts: tuple[str, ...]):
+    assert MACHINE_PATH.search("/".join(parts))
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_locks_hash_every_requirement(name: str):
+    lock = (ROOT / name).read_text()
+    assert not re.search(r"^\s*--(?!hash)", lock, re.MULTILINE)
+    requirements = re.findall(r"^([\w.-]+)==((?:.*\\\n)*.*)", lock, re.MULTILINE)
+    assert len(requirements) > 20
+    assert [name for name, rest in requirements if "--hash=sha256:" not in rest] == []
+
+
+def test_dev_lock_holds_the_run_lock():
+    pins = [
+        set(re.findall(r"^([\w.-]+==[^\s\\]+)", (ROOT / lock).read_text(), re.MULTILINE))
+        for lock in LOCKS
+    ]
+    assert pins[0] - pins[1] == set()
+
+
+def test_locks_hold_every_direct_requirement():
+    stated = project()
+    flat = [entry for entry in stated["dependency-groups"]["dev"] if isinstance(entry, str)]
+    lock = (ROOT / "requirements-dev.lock").read_text().lower()
+    names = [
+        re.split(r"[<>=!~;\[ ]", entry)[0] for entry in stated["project"]["dependencies"] + flat
+    ]
+    assert [name for name in names if f"\n{name.lower()}==" not in "\n" + lock] == []
+
+
+def test_version_is_said_once():
+    version = project()["project"]["version"]
+    assert asperity.__version__ == importlib.metadata.version("asperity") == version
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f"## [{version}]" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_licence_is_mit():
+    assert (ROOT / "LICENSE").read_text().startswith("MIT License\n")
+    assert project()["project"]["license"] == "MIT"
+
+
+def test_readme_links_lead_somewhere():
+    targets = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / "README.md").read_text())
+    assert len(targets) > 5
+    assert [t for t in targets if "://" not in t and not (ROOT / t).exists()] == []
+
+
+def test_readme_python_runs(tmp_path: Path):
+    (code,) = blocks(ROOT / "README.md", "python")
+    assert len(code.splitlines()) <= 10
+    ran = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "motion.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/cli.md"])
+def test_commands_named_in_the_pages_exist(page: str):
+    shown = "\n".join(blocks(ROOT / page, "console") + blocks(ROOT / page, "text"))
+    named = set(re.findall(r"^(?:\$ )?asperity (\w+)", shown, re.MULTILINE))
+    assert named
+    assert named <= command_names()
+
+
+def test_every_command_is_documented():
+    page = (ROOT / "docs" / "cli.md").read_text()
+    headings = set(re.findall(r"^## asperity (\w+)$", page, re.MULTILINE))
+    assert headings == command_names()
+
+
+def command_names() -> set[str]:
+    """Commands that the program's help lists."""
+    from typer.main import get_command
+
+    from asperity.cli import app
+
+    return set(get_command(app).commands)  # type: ignore[attr-defined]
+
+
+def test_case_in_the_pages_is_the_built_in_case():
+    from asperity.case import builtin, load
+
+    (shown,) = blocks(ROOT / "docs" / "cli.md", "toml")
+    assert load(shown, file=None) == builtin("published-exact")
+
+
+def environment_tool() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("environment", ROOT / "tools" / "environment.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def environment_steps(noted: dict[str, str] | None, kind: str) -> list[str]:
+    tool = environment_tool()
+    return tool.steps(noted, tool.wanted(kind))
+
+
+def test_environment_is_made_when_missing_or_half_made():
+    assert environment_steps(None, "run") == ["make", "run", "package"]
+    assert environment_steps(None, "dev") == ["make", "dev", "package"]
+
+
+def test_environment_for_tests_serves_runs_too():
+    note = environment_tool().wanted("dev")
+    assert environment_steps(note, "dev") == []
+    assert environment_steps(note, "run") == []
+
+
+def test_environment_for_runs_is_only_added_to():
+    note = environment_tool().wanted("run")
+    assert environment_steps(note, "run") == []
+    assert environment_steps(note, "dev") == ["dev"]
+
+
+@pytest.mark.parametrize("key", ["run", "root", "python"])
+def test_stale_environment_is_made_anew(key: str):
+    note = {**environment_tool().wanted("dev"), key: "other"}
+    assert environment_steps(note, "run") == ["make", "run", "package"]
+    assert environment_steps(note, "dev") == ["make", "dev", "package"]
+
+
+def test_stale_dev_lock_concerns_tests_alone():
+    note = {**environment_tool().wanted("dev"), "dev": "other"}
+    assert environment_steps(note, "run") == []
+    assert environment_steps(note, "dev") == ["make", "dev", "package"]
+
+
+def test_changed_project_file_installs_the_package_alone():
+    note = {**environment_tool().wanted("dev"), "package": "other"}
+    assert environment_steps(note, "dev") == ["package"]
