@@ -34,8 +34,9 @@ validate: dev-environment
 bench: dev-environment
 	$(BIN)/python -m benchmarks
 
+# -E: executed pages and docstrings follow the code, not the last build.
 docs: dev-environment
-	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
 
 lint: dev-environment
 	$(BIN)/ruff check

@@ -42,7 +42,7 @@ def project_files() -> list[Path]:
     if listed.returncode == 0 and listed.stdout:
         found = [ROOT / os.fsdecode(name) for name in listed.stdout.split(b"\0") if name]
         return [path for path in found if path.is_file()]
-    made = {".venv", "build", "dist", "_build", "__pycache__"}
+    made = {".git", ".venv", ".hypothesis", ".benchmarks", "build", "dist", "_build", "__pycache__"}
     return [
         path
         for path in ROOT.rglob("*")

@@ -12,7 +12,7 @@ from .case import Case, Roughness
 from .case.build import Problem
 from .contact import Contact
 from .impact import Motion
-from .impact.table import CENTRAL, TOUCHING, outer_row, quantities
+from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
 from .regimes import Regime
 from .special import height_integral
 
@@ -41,7 +41,7 @@ class AtDepth(NamedTuple):
     def of(cls, contact: Contact, motion: Motion) -> AtDepth:
         """Read off the curve of first approach."""
         row = np.asarray(outer_row(motion.table, 0, jnp.asarray(motion.impacts.deepest[0])))
-        elastic = row[quantities(contact).components][0]
+        elastic = row[FORCE] - row[PULL]
         return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
 
 

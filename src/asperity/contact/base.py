@@ -32,6 +32,10 @@ class State(NamedTuple):
         Expected number of asperities in contact.
     error
         Estimated relative error of the force: 1e-16 where it is a closed form.
+    size
+        Length [m] on which the contact is resolved in the plane; 0 where it needs none.
+    elastic
+        The elastic part of the force [N].
     """
 
     force: jax.Array
@@ -41,6 +45,8 @@ class State(NamedTuple):
     parts: jax.Array
     touching: jax.Array
     error: jax.Array
+    size: jax.Array
+    elastic: jax.Array
 
 
 class Contact(eqx.Module):
@@ -64,6 +70,12 @@ class Contact(eqx.Module):
     def discrete(self) -> bool:
         """Whether a bond is one yes or no, as on a smooth body."""
         return False
+
+    def elastic_part(self, parts: jax.Array) -> jax.Array:
+        """The elastic force among the parts [N]."""
+        if "elastic" not in self.components:
+            return jnp.zeros_like(parts[0])
+        return parts[self.components.index("elastic")]
 
     @property
     def reversal_nodes(self) -> int:
@@ -90,9 +102,18 @@ class Contact(eqx.Module):
         """The contact at many separations, each reached from ``memory``."""
         return jax.vmap(lambda d: self.state(d, memory))(separations)
 
+    def states_near(self, separations: jax.Array, memory: Memory) -> State:
+        """The same close to the reversal that ``memory`` holds, where work can be saved."""
+        return self.states(separations, memory)
+
     @abc.abstractmethod
-    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        """Memory after a monotone motion from ``memory`` to ``separation``."""
+    def remember(
+        self, memory: Memory, separation: jax.Array, size: jax.Array | None = None
+    ) -> Memory:
+        """Memory after a monotone motion from ``memory`` to ``separation``.
+
+        ``size`` is that of the state there, where it is known already.
+        """
 
     @abc.abstractmethod
     def bonded(self, memory: Memory) -> jax.Array:

@@ -115,7 +115,9 @@ class ElasticContact(Contact):
         return RingMemory(rows, jnp.zeros(()), jnp.ones(()), jnp.zeros(count))
 
     def state(self, separation: jax.Array, memory: RingMemory) -> State:
-        field = self.field(separation, memory)
+        return self._measured(separation, memory, self.field(separation, memory))
+
+    def _measured(self, separation: jax.Array, memory: RingMemory, field: Field) -> State:
         h, size = field.separation, field.size
         mesh = ring_mesh(self.rings)
         inside = self.interface.measure(h, memory.thresholds)
@@ -137,23 +139,50 @@ class ElasticContact(Contact):
             parts=parts,
             touching=whole(inside.touching, outside.touching),
             error=field.residual,
+            size=size,
+            elastic=self.elastic_part(parts),
         )
 
     def states(self, separations: jax.Array, memory: RingMemory) -> State:
         """One after the other: each takes as many Newton steps as it needs, no more."""
         return jax.lax.map(lambda d: self.state(d, memory), separations)
 
+    def states_near(self, separations: jax.Array, memory: RingMemory) -> State:
+        """On the mesh of the reversal, from its displacement."""
+        size = jnp.where(memory.size > 0.0, memory.size, _first_size(self, separations[0]))
+
+        def near(separation: jax.Array) -> State:
+            field = self._solved(separation, memory, size, memory.lift)
+            return self._measured(separation, memory, field)
+
+        return jax.lax.map(near, separations)
+
     def field(self, separation: jax.Array, memory: RingMemory) -> Field:
-        """Solve for the rings. Gradients pass by the last Newton step, with the mesh held."""
+        """Solve for the rings, on a mesh that fits where ``memory`` holds none."""
         frozen = jax.lax.stop_gradient((self, separation, memory))
         size, start = jax.lax.cond(
             frozen[2].size > 0.0, lambda _, __, m: (m.size, m.lift), _search, *frozen
         )
-        held = _newton(frozen[0], frozen[1], frozen[2].thresholds, size, start, self.rings)
+        return self._solved(separation, memory, size, start)
+
+    def _solved(
+        self, separation: jax.Array, memory: RingMemory, size: jax.Array, lift: jax.Array
+    ) -> Field:
+        """Solve on a given mesh. Gradients pass by the last Newton step, with the mesh held."""
+        contact, place, old, size, lift = jax.lax.stop_gradient(
+            (self, separation, memory, size, lift)
+        )
+        held = _newton(contact, place, old.thresholds, size, lift, self.rings)
         return _polish(self, separation, memory.thresholds, size, held)
 
-    def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
-        field = self.field(separation, memory)
+    def remember(
+        self, memory: RingMemory, separation: jax.Array, size: jax.Array | None = None
+    ) -> RingMemory:
+        if size is None:
+            field = self.field(separation, memory)
+        else:
+            kept = jnp.where(memory.size > 0.0, memory.size, size)
+            field = self._solved(separation, memory, kept, memory.lift)
         mesh = ring_mesh(self.rings)
         matrix = mesh.compliance * field.size / self.modulus * field.slope[:-1]
         count = len(mesh.radius)
@@ -175,6 +204,7 @@ class ElasticContact(Contact):
         rows = []
         for law in self.interface.hysteretic:
             width = 1.02 * (law.breaking_gap - law.forming_gap) / memory.rates
+            width = jnp.where(memory.size > 0.0, width, 0.0)  # else on a branch already
             rows.append(separation + jnp.where(parting, width, -width))
         return jnp.stack(rows) if rows else jnp.zeros((0,))
 
@@ -203,6 +233,13 @@ def _last(thresholds: Thresholds) -> Thresholds:
     return tuple(b[-1:] for b in thresholds)
 
 
+def _first_size(contact: ElasticContact, separation: jax.Array) -> jax.Array:
+    """Size of the mesh before anything is solved: light contact, and Hertz's radius."""
+    sigma, radius = contact.interface.heights.rms, contact.shape.radius
+    light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
+    return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
+
+
 def _search(
     contact: ElasticContact, separation: jax.Array, memory: RingMemory
 ) -> tuple[jax.Array, jax.Array]:
@@ -211,14 +248,12 @@ def _search(
     The size is sqrt(3 <r^2>), the mean weighted with the pressure squared: the radius of
     a Hertz contact, and 1.7 standard deviations of a contact of Gaussian tails.
     """
-    sigma, radius = contact.interface.heights.rms, contact.shape.radius
     coarse, fine = ring_mesh(_COARSE), ring_mesh(contact.rings)
     branch = tuple(
         jnp.full(len(coarse.radius) + 1, jnp.where(b[0] > 0, jnp.inf, -jnp.inf))
         for b in memory.thresholds
     )
-    light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
-    first = jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
+    first = _first_size(contact, separation)
 
     def improve(carry):  # type: ignore[no-untyped-def]
         size, lift, _, count = carry

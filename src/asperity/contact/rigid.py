@@ -71,9 +71,13 @@ class RigidContact(Contact):
             parts=parts,
             touching=self._measure * means.touching,
             error=jnp.full_like(separation, 1e-16),
+            size=jnp.zeros_like(separation),
+            elastic=self.elastic_part(parts),
         )
 
-    def remember(self, memory: Thresholds, separation: jax.Array) -> Thresholds:
+    def remember(
+        self, memory: Thresholds, separation: jax.Array, size: jax.Array | None = None
+    ) -> Thresholds:
         return self.interface.remember(memory, separation)
 
     def bonded(self, memory: Thresholds) -> jax.Array:

@@ -78,9 +78,13 @@ class SmoothContact(Contact):
             parts=parts,
             touching=jnp.where(separation < 0.0, 1.0, 0.0),
             error=jnp.full_like(separation, 1e-16),
+            size=jnp.zeros_like(separation),
+            elastic=self.elastic_part(parts),
         )
 
-    def remember(self, memory: Flags, separation: jax.Array) -> Flags:
+    def remember(
+        self, memory: Flags, separation: jax.Array, size: jax.Array | None = None
+    ) -> Flags:
         rows = []
         for k, law in enumerate(self._hysteretic):
             formed = separation <= law.forming_gap

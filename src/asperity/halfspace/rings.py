@@ -70,15 +70,19 @@ def ring_mesh(rings: int) -> Rings:
 def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:
     """Displacement at all targets for each Lagrange polynomial of one panel."""
     low, high = _PANELS[panel], _PANELS[panel + 1]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
     out = np.empty((len(targets), len(node)))
-    for i, r in enumerate(targets):
-        s, weight = _graded(low, high, r)
-        basis = _lagrange(node, 2.0 * (s - low) / (high - low) - 1.0)
-        out[i] = basis @ (weight * _kernel(r, s))
+    far = np.abs(targets - middle) > 3.0 * half
+    s, weight = middle + half * _GAUSS[0], half * _GAUSS[1]
+    basis = _lagrange(node, _GAUSS[0])
+    out[far] = (weight * _kernel(targets[far, None], s)) @ basis.T
+    for i in np.flatnonzero(~far):
+        s, weight = _graded(low, high, targets[i])
+        out[i] = _lagrange(node, (s - middle) / half) @ (weight * _kernel(targets[i], s))
     return out
 
 
-def _kernel(r: float, s: np.ndarray) -> np.ndarray:
+def _kernel(r: float | np.ndarray, s: np.ndarray) -> np.ndarray:
     return 4.0 / np.pi * s / (r + s) * ellipkm1(((r - s) / (r + s)) ** 2)
 
 
@@ -92,8 +96,6 @@ def _graded(low: float, high: float, target: float) -> tuple[np.ndarray, np.ndar
     steps = width * 0.2 ** np.arange(0, 14)
     ends = np.concatenate([[low, nearest, high], nearest - steps, nearest + steps])
     ends = np.unique(np.clip(ends, low, high))
-    if abs(nearest - target) > width:
-        ends = np.array([low, high])
     half = 0.5 * np.diff(ends)[:, None]
     s = (0.5 * (ends[:-1] + ends[1:]))[:, None] + half * _GAUSS[0]
     return s.ravel(), (half * _GAUSS[1]).ravel()

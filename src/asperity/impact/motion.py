@@ -14,7 +14,10 @@ from ..laws.base import Real, quantity
 from .datum import Datum, find_datum
 from .phase import Turn, Work, find_turn, kinetic_along, travel_time, work_along
 from .table import (
+    DRIVE,
     FORCE,
+    PULL,
+    SIZE,
     STORED,
     TOUCHING,
     Pieces,
@@ -27,6 +30,7 @@ from .table import (
     local,
     outer_row,
     quantities,
+    row_at,
     tabulate,
 )
 
@@ -292,12 +296,11 @@ def _leg(
     """One phase down or up, and the bonds that it makes or breaks."""
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = branch_of(contact, progress.memory, parting)
-    pieces = join(table, branch, inner, progress.place, parting)
+    pieces = join(table, branch, inner, progress.place, parting, DRIVE)
     work = work_along(pieces, progress.kinetic, body.weight)
     turn = find_turn(work)
     time = progress.time + jnp.sum(travel_time(work, body.mass, turn.place, parting))
-    x = local(pieces.low[turn.piece], pieces.high[turn.piece], turn.place)
-    row = chebyshev_sum(pieces.values[turn.piece], x)
+    row = row_at(table, branch, inner, turn.piece, turn.place, parting)
     bonds = row[quantities(contact).bonds]
     formed = jnp.maximum(bonds - progress.bonds, 0.0)
     broken = jnp.maximum(progress.bonds - bonds, 0.0)
@@ -308,9 +311,9 @@ def _leg(
         progress.place, turn.place, progress.kinetic, progress.time, branch, inner,
         progress.lost, progress.bonds,
     )  # fmt: skip
-    pull = -_pull_work(contact, work, turn.place, parting)
+    pull = -_pull_work(work, turn.place, parting)
     after = progress._replace(
-        memory=contact.remember(progress.memory, turn.place), place=turn.place,
+        memory=contact.remember(progress.memory, turn.place, row[SIZE]), place=turn.place,
         kinetic=kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
     return after, _Leg(turn, phase, row, lost, kinetic, time, bonds, pull)
@@ -367,13 +370,10 @@ def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
     return code
 
 
-def _pull_work(contact: Contact, work: Work, last: jax.Array, parting: jax.Array) -> jax.Array:
+def _pull_work(work: Work, last: jax.Array, parting: jax.Array) -> jax.Array:
     """Integral of the adhesive and capillary forces over a phase [J]."""
-    columns = quantities(contact).components
-    chosen = jnp.asarray([0.0 if name == "elastic" else 1.0 for name in contact.components])
     p = work.pieces
-    pull = jnp.einsum("pkq,q->kp", p.values[..., columns], chosen)
-    integral = antiderivative(pull) * (0.5 * (p.high - p.low))
+    integral = antiderivative(p.values[..., PULL].T) * (0.5 * (p.high - p.low))
 
     def until(place: jax.Array) -> jax.Array:
         inside = jnp.where(parting, jnp.minimum(place, last), jnp.maximum(place, last))

@@ -23,7 +23,8 @@ _ANTIDERIVATIVE = np.array([chebyshev.chebint(row) for row in np.eye(NODES)])
 class Quantities(NamedTuple):
     """How the numbers of a :class:`State` lie in one row.
 
-    Force, stored, central, touching, then the bonds, then the parts.
+    Force, its attractive parts, stored, central, touching, size, then the bonds, then the
+    parts.
     """
 
     laws: int
@@ -32,15 +33,17 @@ class Quantities(NamedTuple):
     @property
     def bonds(self) -> slice:
         """Columns of the bonds."""
-        return slice(4, 4 + self.laws)
+        return slice(6, 6 + self.laws)
 
     @property
     def components(self) -> slice:
         """Columns of the forces by mechanism."""
-        return slice(4 + self.laws, 4 + self.laws + self.parts)
+        return slice(6 + self.laws, 6 + self.laws + self.parts)
 
 
-FORCE, STORED, CENTRAL, TOUCHING = range(4)
+FORCE, PULL, STORED, CENTRAL, TOUCHING, SIZE = range(6)
+DRIVE = slice(FORCE, PULL + 1)
+"""The columns that a motion integrates."""
 
 
 class Table(NamedTuple):
@@ -88,7 +91,8 @@ class Pieces(NamedTuple):
 
 def rows_of(state: State) -> jax.Array:
     """The numbers of a state in one row."""
-    head = jnp.stack([state.force, state.stored, state.central, state.touching])
+    pull = state.force - state.elastic
+    head = jnp.stack([state.force, pull, state.stored, state.central, state.touching, state.size])
     return jnp.concatenate([head, state.bonds, state.parts])
 
 
@@ -125,14 +129,20 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
 
 
 def _fit(
-    contact: Contact, memory: Memory, low: jax.Array, high: jax.Array, nodes: int = NODES
+    contact: Contact,
+    memory: Memory,
+    low: jax.Array,
+    high: jax.Array,
+    nodes: int = NODES,
+    near: bool = False,
 ) -> tuple[jax.Array, jax.Array]:
     """Coefficients [piece, NODES, rows] of a contact reached from ``memory``."""
     x = chebyshev.chebpts1(nodes)
     to_coefficients = np.zeros((NODES, nodes))
     to_coefficients[:nodes] = np.linalg.inv(chebyshev.chebvander(x, nodes - 1))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    states = contact.states((middle[:, None] + half[:, None] * x).ravel(), memory)
+    places = (middle[:, None] + half[:, None] * x).ravel()
+    states = contact.states_near(places, memory) if near else contact.states(places, memory)
     rows = jax.vmap(rows_of)(states).reshape(low.shape[0], nodes, -1)
     return jnp.einsum("kn,pnq->pkq", jnp.asarray(to_coefficients), rows), states.error
 
@@ -148,7 +158,7 @@ def inner_pieces(
     marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
     first = jnp.concatenate([start[None], marks[:-1]])
     low, high = jnp.minimum(first, marks), jnp.maximum(first, marks)
-    values, _ = _fit(contact, memory, low, high, contact.reversal_nodes)
+    values, _ = _fit(contact, memory, low, high, contact.reversal_nodes, near=True)
     return Pieces(low, high, first, marks, values)
 
 
@@ -161,15 +171,45 @@ def branch_of(contact: Contact, memory: Memory, parting: jax.Array) -> jax.Array
 
 
 def join(
-    table: Table, branch: jax.Array, inner: Pieces, start: jax.Array, parting: jax.Array
+    table: Table,
+    branch: jax.Array,
+    inner: Pieces,
+    start: jax.Array,
+    parting: jax.Array,
+    columns: slice = slice(None),
 ) -> Pieces:
-    """All polynomials ahead of a body that leaves ``start``: the inner pieces, then a branch."""
+    """All polynomials ahead of a body that leaves ``start``: the inner pieces, then a branch.
+
+    Of the ``columns`` alone: a motion needs the force, not the rest of each row.
+    """
     begin = inner.leave[-1] if inner.leave.shape[0] else start
-    low, high, outer = table.ends[:-1], table.ends[1:], table.values[branch]
+    inner = inner._replace(values=inner.values[..., columns])
+    low, high, outer = table.ends[:-1], table.ends[1:], table.values[branch][..., columns]
     up = (low, high, jnp.maximum(low, begin), jnp.maximum(high, begin), outer)
     down = (low, high, jnp.minimum(high, begin), jnp.minimum(low, begin), outer)
     rest = [jnp.where(parting, a, b[::-1]) for a, b in zip(up, down, strict=True)]
     return Pieces(*(jnp.concatenate(pair) for pair in zip(inner, rest, strict=True)))
+
+
+def row_at(
+    table: Table,
+    branch: jax.Array,
+    inner: Pieces,
+    piece: jax.Array,
+    place: jax.Array,
+    parting: jax.Array,
+) -> jax.Array:
+    """All quantities at a place of a piece as :func:`join` counts them."""
+    count, ahead = table.ends.shape[0] - 1, inner.low.shape[0]
+    step = jnp.clip(piece - ahead, 0, count - 1)
+    panel = jnp.where(parting, step, count - 1 - step)
+    x = local(table.ends[panel], table.ends[panel + 1], place)
+    row = chebyshev_sum(table.values[branch, panel], x)
+    if not ahead:
+        return row
+    at = jnp.minimum(piece, ahead - 1)
+    near = chebyshev_sum(inner.values[at], local(inner.low[at], inner.high[at], place))
+    return jnp.where(piece < ahead, near, row)
 
 
 def outer_row(table: Table, branch: int, place: jax.Array) -> jax.Array:

@@ -1,0 +1,216 @@
+"""Run all benchmarks: ``make bench`` or ``python -m benchmarks``."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.case.build import Problem, build
+from asperity.errors import Tolerance
+from asperity.impact import simulate
+from asperity.measures import measure
+
+from .plain_scipy import Drop, fly
+
+PROGRAM = Path(sys.executable).with_name("asperity")
+BATCH = 1000  # a thread; two threads
+HALF_SPACE_BATCH = 8
+
+
+def main() -> None:
+    """Print every figure beside its goal."""
+    print(f"two threads at most; {os.cpu_count()} cores here\n")
+    _programs()
+    wet = _wet()
+    _accuracy(wet)
+    _one_motion(wet)
+    _batch(wet)
+    _half_space()
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    _line("peak memory of this run", f"{peak:.2f} GB", "1.5 GB")
+
+
+def _line(what: str, value: str, goal: str = "") -> None:
+    print(f"{what:<62}{value:>16}" + (f"   goal {goal}" if goal else ""), flush=True)
+
+
+def _best(action: Callable[[], Any], repeats: int = 5) -> float:
+    times = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - begun)
+    return float(np.median(times))
+
+
+def _programs() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        cache = {**os.environ, "JAX_COMPILATION_CACHE_DIR": str(Path(folder) / "cache")}
+        run = [str(PROGRAM), "run", "published-exact", "-q", "--force", "-o", f"{folder}/out"]
+
+        def call(command: list[str]) -> None:
+            subprocess.run(command, env=cache, check=True, capture_output=True)
+
+        _line(
+            "asperity run published-exact, first time",
+            f"{_best(lambda: call(run), 1):.1f} s",
+            "10 s",
+        )
+        _line(
+            "asperity run published-exact, after that",
+            f"{_best(lambda: call(run), 3):.1f} s",
+            "5 s",
+        )
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 2**20
+        _line("  its peak memory", f"{peak:.2f} GB", "1.5 GB")
+        help_ = _best(lambda: call([str(PROGRAM), "--help"]), 5)
+        _line("asperity --help", f"{help_:.2f} s", "0.3 s")
+
+
+def _wet() -> Problem:
+    """A rigid rough sphere in moist air that comes to rest after some twenty rebounds."""
+    case = asperity.load("published-exact").replace(
+        {
+            "counterface.deformation": "rigid",
+            "capillary.humidity": 0.97,
+            "roughness.rms_height": "8 nm",
+            "impact.release_gap": "80 nm",
+        }
+    )
+    return build(case)
+
+
+def _drop(problem: Problem) -> Drop:
+    contact, body = problem.contact, problem.body
+    interface = contact.interface
+    hertz, dmt, meniscus = interface.law.parts
+    return Drop(
+        radius=float(contact.shape.radius),
+        modulus=float(hertz.modulus),
+        density=float(interface.density),
+        summit_radius=float(hertz.radius),
+        rms=float(interface.heights.rms),
+        work=float(dmt.work_of_adhesion),
+        pull=float(meniscus.pull),
+        reach=float(meniscus.reach),
+        mass=float(body.mass),
+        gravity=float(body.gravity),
+        release=float(body.release),
+    )
+
+
+def _flight(impacts: int) -> Callable[..., Any]:
+    tolerance = Tolerance(max_impacts=impacts)
+
+    @eqx.filter_jit
+    def go(contact: Any, body: Any) -> Any:
+        motion = simulate(contact, body, tolerance=tolerance)
+        found = measure(motion, body)
+        return motion.impacts.apex, motion.end.made, found.log_decrement
+
+    return go
+
+
+def _accuracy(problem: Problem) -> None:
+    apex, made, _ = _flight(40)(problem.contact, problem.body)
+    count = min(int(made), 5)
+    other = np.array(fly(_drop(problem), count, tolerance=1e-11))
+    off = float(np.max(np.abs(np.asarray(apex)[:count] - other)) / problem.body.release)
+    _line(f"largest relative difference of {count} apexes from the SciPy script", f"{off:.1e}")
+
+
+def _one_motion(problem: Problem) -> None:
+    go = _flight(40)
+    made = int(jax.block_until_ready(go(problem.contact, problem.body))[1])
+    ours = _best(lambda: jax.block_until_ready(go(problem.contact, problem.body)), 20)
+    theirs = _best(lambda: fly(_drop(problem), made), 1)
+    _line(f"one warm rigid motion of {2 * made} phases", f"{ours * 1e3:.2f} ms", "10 ms")
+    _line("  the SciPy script on the same motion", f"{theirs * 1e3:.0f} ms")
+    _line("  ratio", f"{theirs / ours:.0f}")
+    exact = build(asperity.load("published-exact").replace({"counterface.deformation": "rigid"}))
+    go = _flight(200)
+    jax.block_until_ready(go(exact.contact, exact.body))
+    whole = _best(lambda: jax.block_until_ready(go(exact.contact, exact.body)), 10)
+    _line("one warm rigid motion of published-exact, 400 phases", f"{whole * 1e3:.2f} ms", "10 ms")
+
+
+def _batch(problem: Problem) -> None:
+    rms = jnp.linspace(7.5e-9, 8.5e-9, 2 * BATCH)
+    tolerance = Tolerance(max_impacts=40)
+
+    @jax.jit
+    def go(heights: jax.Array) -> tuple[jax.Array, jax.Array]:
+        def one(height: jax.Array) -> tuple[jax.Array, jax.Array]:
+            contact = eqx.tree_at(lambda c: c.interface.heights.rms_height, problem.contact, height)
+            motion = simulate(contact, problem.body, tolerance=tolerance)
+            return motion.impacts.apex[0], motion.end.made
+
+        return jax.vmap(one)(heights)
+
+    halves = jnp.split(rms, 2)
+    made = np.asarray(go(halves[0])[1])
+
+    def both() -> None:
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(lambda half: jax.block_until_ready(go(half)), halves))
+
+    rate = 2 * BATCH / _best(both, 3)
+    phases = 2 * float(np.mean(made))
+    _line(
+        f"rigid motions a second, {2 * BATCH} of {phases:.0f} phases, two threads",
+        f"{rate:.0f}",
+        "2000",
+    )
+
+
+def _half_space() -> None:
+    case = asperity.load("published-exact").replace(
+        {
+            "capillary.humidity": 0.97,
+            "roughness.rms_height": "8 nm",
+            "impact.release_gap": "80 nm",
+            "numerics.rings": 48,
+        }
+    )
+    problem = build(case)
+    tolerance = Tolerance(max_impacts=40)
+
+    @jax.jit
+    def go(heights: jax.Array) -> jax.Array:
+        def one(height: jax.Array) -> jax.Array:
+            contact = eqx.tree_at(lambda c: c.interface.heights.rms_height, problem.contact, height)
+            return simulate(contact, problem.body, tolerance=tolerance).end.made
+
+        return jax.lax.map(one, heights)
+
+    halves = jnp.split(jnp.linspace(7.5e-9, 8.5e-9, HALF_SPACE_BATCH), 2)
+    made = jax.block_until_ready(go(halves[0]))
+
+    def both() -> None:
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(lambda half: jax.block_until_ready(go(half)), halves))
+
+    rate = HALF_SPACE_BATCH / _best(both, 3)
+    phases = 2 * float(np.mean(made))
+    _line(
+        f"half-space motions a second, {phases:.0f} phases, 48 rings, two threads",
+        f"{rate:.1f}",
+        "50",
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,44 @@
+"""Load of an elastic rough sphere at a given central separation (Greenwood and Tripp 1967)."""
+
+from math import sqrt
+from pathlib import Path
+
+import equinox as eqx
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from asperity._jax import jnp
+from asperity.contact import ElasticContact
+from asperity.interface import Interface
+from asperity.laws import Hertz
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+
+FILE = Path(__file__).parent.parent / "data" / "greenwood_tripp.csv"
+ROWS = np.genfromtxt(FILE, delimiter=",", comments="#", skip_header=4)
+RADIUS, BETA, SIGMA, E = 50e-6, 0.25e-9, 10.5e-9, 56.8e9
+
+
+@eqx.filter_jit
+def state(contact, separation):
+    return contact.state(separation, contact.fresh())
+
+
+@pytest.mark.parametrize(("mu", "central", "load"), ROWS)
+def test_load_at_a_central_separation(mu, central, load):
+    density = 3.0 / 8.0 * mu / (SIGMA * sqrt(2.0 * RADIUS * BETA))
+    layer = Interface(Hertz(BETA, E), Gaussian(SIGMA), density)
+    contact = ElasticContact(layer, Sphere(RADIUS), E)
+
+    def miss(reduced):
+        return float(state(contact, jnp.asarray(reduced * SIGMA)).central) / SIGMA - central
+
+    d = brentq(miss, central - 40.0, central, xtol=1e-10)
+    force = float(state(contact, jnp.asarray(d * SIGMA)).force)
+    unit = 2.0 * RADIUS * SIGMA * E * sqrt(SIGMA / (8.0 * RADIUS))
+    assert force / unit == pytest.approx(load, rel=2e-4)
+
+
+def test_all_published_loads_are_read():
+    assert ROWS.shape == (3, 3)

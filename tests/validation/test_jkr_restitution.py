@@ -1,0 +1,41 @@
+"""Rebound of smooth JKR spheres without gravity against the work of one cycle."""
+
+from math import pi, sqrt
+from pathlib import Path
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from asperity.contact import SmoothContact
+from asperity.errors import Tolerance
+from asperity.impact import Body, simulate
+from asperity.laws import Jkr
+from asperity.measures import measure
+
+FILE = Path(__file__).parent.parent / "data" / "jkr_restitution.csv"
+ROWS = np.genfromtxt(FILE, delimiter=",", comments="#", skip_header=4)
+SPHERES = {"hard": (50e-6, 56.8e9, 0.05, 2200.0), "soft": (10e-6, 3e6, 0.03, 1050.0)}
+
+
+@eqx.filter_jit
+def restitution(contact, body):
+    return measure(simulate(contact, body, tolerance=Tolerance(max_impacts=1)), body).restitution
+
+
+@pytest.mark.parametrize("sphere", SPHERES.values(), ids=SPHERES)
+@pytest.mark.parametrize(("ratio", "expected"), ROWS)
+def test_restitution_at_a_speed(ratio, expected, sphere):
+    radius, modulus, work, density = sphere
+    mass = density * 4.0 / 3.0 * pi * radius**3
+    cycle = 7.092196 * (work**5 * radius**4 / modulus**2) ** (1.0 / 3.0)
+    law = Jkr(radius, modulus, work)
+    release = 3.0 * float(law.breaking_gap)
+    body = Body(mass, 0.0, release, ratio * sqrt(2.0 * cycle / mass))
+    found = float(restitution(SmoothContact(law), body)[0])
+    assert found == pytest.approx(expected, rel=1e-5)
+    assert found == pytest.approx(sqrt(1.0 - 1.0 / ratio**2), rel=1e-5)
+
+
+def test_all_speeds_are_read():
+    assert ROWS.shape == (5, 2)
