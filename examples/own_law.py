@@ -18,7 +18,7 @@ from asperity.shapes import Sphere
 from asperity.testing import check_law
 
 
-# [law]
+# The law, from here
 class Tether(Law):
     """A chain that grips on touch, pulls like a spring [N/m] and snaps at its extent [m]."""
 
@@ -42,7 +42,9 @@ class Tether(Law):
 
     def bonded_energy(self, gap):
         return 0.5 * self.stiffness * jnp.maximum(gap, 0.0) ** 2
-# [end of law]
+
+
+# to here.
 
 
 def main():

@@ -1,6 +1,7 @@
 """Many asperities: means over heights, energies, and the memory of every bond."""
 
 from functools import cache
+from itertools import pairwise
 from math import pi, radians
 
 import equinox as eqx
@@ -134,7 +135,7 @@ def test_bradley_pressure_is_the_mean_of_the_law():
         return -2.0 * pi * BETA * W * (4.0 * y**2 - y**8) / 3.0
 
     ends = [-8.5 * SIGMA, 0.0, 3e-10, 3e-9, h + 8.5 * SIGMA]
-    pieces = [scipy_mean(force, h, a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    pieces = [scipy_mean(force, h, a, b) for a, b in pairwise(ends)]
     found = float(means(law).pressure(jnp.asarray(h), ()))
     assert found == pytest.approx(sum(pieces), rel=1e-8)
 
@@ -189,7 +190,7 @@ def test_work_over_a_cycle_is_the_change_of_energy_and_the_losses(name):
         return work, state, interface.remember(memory, ends[-1])
 
     memory, lost, work = interface.fresh(), 0.0, 0.0
-    for first, last in zip(turns[:-1], turns[1:], strict=True):
+    for first, last in pairwise(turns):
         # Bonds begin to change where the play is used up: no panel spans that kink.
         kink = first + np.sign(last - first) * width
         ends = np.concatenate([np.linspace(first, kink, 3), np.linspace(kink, last, 41)[1:]])

@@ -31,10 +31,17 @@ def by_quadrature(order: float, separation: float) -> float:
     return float(total) * exp(-0.5 * outside**2) / sqrt(2.0 * pi)
 
 
+def _scaled(t: float, order: float, separation: float) -> float:
+    return t**order * exp(-0.5 * t * t - separation * t)
+
+
 def test_quadrature_of_this_file_agrees_with_an_adaptive_one():
     for order, l in ((0.5, -8.0), (1.5, -1.0), (2.5, 0.0), (1.5, 4.0), (0.5, 12.0)):
-        adaptive = quad(lambda t: t**order * exp(-0.5 * t * t - l * t), 0.0, 12.0 - min(l, 0.0),  # noqa: B023
-                        epsabs=0.0, epsrel=1e-10, points=[0.05, max(-l, 0.5)], limit=400)[0]  # fmt: skip
+        ends = (0.0, 12.0 - min(l, 0.0))
+        marks = [0.05, max(-l, 0.5)]
+        adaptive = quad(
+            _scaled, *ends, args=(order, l), epsabs=0.0, epsrel=1e-10, points=marks, limit=400
+        )[0]
         value = adaptive * exp(-0.5 * l * l) / sqrt(2.0 * pi)
         assert by_quadrature(order, l) == pytest.approx(value, rel=1e-9)
 

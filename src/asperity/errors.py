@@ -105,7 +105,7 @@ class Tolerance:
     Parameters
     ----------
     relative : float
-        Relative error allowed to the integrator of the motion [-].
+        Relative error allowed to the force curves that the motion runs on [-].
     rest : float
         The motion is at rest below this fraction of the first rebound height [-].
     time_limit : float

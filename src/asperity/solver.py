@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -12,14 +14,14 @@ import numpy as np
 from . import regimes
 from ._jax import jax, jnp
 from .case import Case
-from .case.build import Problem, build
+from .case.build import CLEARANCE, Problem, build
 from .contact import Contact
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
 from .impact.motion import ENDS, FLYING
-from .impact.sampling import Series, sample
-from .impact.table import CENTRAL, FORCE, STORED, outer_row, quantities
+from .impact.sampling import Series, sample, until
+from .impact.table import CENTRAL, FORCE, STORED, blank_table, outer_row, quantities
 from .measures import Measures, measure
 from .result import Curve, Result
 from .trace import trace
@@ -71,9 +73,10 @@ def solve(
     tell = progress or (lambda fraction, text: None)
     problem = build(case)
     tell(0.02, "force curves")
-    contact, table, datum = _prepared(problem, case.numerics.tolerance)
-    _check_release(case, problem.body, contact, table, datum)
-    flight = _fly(problem.body, contact, table, datum, case, tell, stop)
+    limits = Limits.of(case.tolerance)
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits)
+    _check_release(problem, table)
+    flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
     tell(0.9, "measures")
     result = _result(case, name, problem, flight)
     tell(1.0, "done")
@@ -104,22 +107,29 @@ def curve(
     tell = progress or (lambda fraction, text: None)
     problem = build(case)
     tell(0.1, "force curves")
-    contact, table, datum = _prepared(problem, case.numerics.tolerance)
-    _check_release(case, problem.body, contact, table, datum)
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits)
+    _check_release(problem, table)
     body = problem.body
     first, origin = _start(contact, body, table)
-    _, impacts = _fly_some(contact, body, table, datum, origin, first, Limits(0.0, np.inf, 1), 1)
+    _, impacts = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
     tell(0.6, "parting")
     drawn = trace(contact, table, impacts)
     tell(1.0, "done")
     return Curve(case, name, **drawn)
 
 
-def _prepared(problem: Problem, tolerance: float) -> tuple[Contact, Table, Datum]:
-    """Tables whose interpolation error meets the tolerance, by more panels where needed."""
+def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Contact, Table, Datum]:
+    """Tables whose interpolation error meets the tolerance, by more panels where needed.
+
+    Meanwhile the motion compiles in a thread of its own.
+    """
     for factor in _REFINEMENTS:
         contact = problem.contact.refined(factor)
-        table, datum = _prepare(contact, problem.body)
+        with ThreadPoolExecutor(1) as side:
+            compiling = side.submit(_compile_flight, contact, problem.body, limits)
+            table, datum = _prepare(contact, problem.body)
+            compiling.result()
         if float(table.error) <= tolerance:
             break
     else:
@@ -136,28 +146,45 @@ def _prepared(problem: Problem, tolerance: float) -> tuple[Contact, Table, Datum
     return contact, table, datum
 
 
+def _compile_flight(contact: Contact, body: Body, limits: Limits) -> None:
+    """Fly a motion that has ended already: nothing is computed, but all is compiled."""
+    table = blank_table(contact)
+    zero = jnp.zeros(())
+    datum = Datum(zero, zero, zero > 0.0)
+    progress, origin = _start(contact, body, table)
+    ended = progress._replace(outcome=jnp.asarray(ENDS.index(Outcome.REST)))
+    jax.block_until_ready(_fly_some(contact, body, table, datum, origin, ended, limits, _CHUNK))
+
+
 _prepare = eqx.filter_jit(prepare)
 _start = eqx.filter_jit(start)
 _fly_some = eqx.filter_jit(fly)
 _measure = eqx.filter_jit(measure)
 
 
-def _check_release(case: Case, body: Body, contact: Contact, table: Table, datum: Datum) -> None:
+def _check_release(problem: Problem, table: Table) -> None:
     """A release within contact is refused: it would not be a fall."""
-    force = abs(float(outer_row(table, 0, jnp.asarray(body.release))[FORCE]))
-    weight = float(body.weight)
+    body = problem.body
+    release, weight = float(body.release), float(body.weight)
+    force = abs(float(outer_row(table, 0, jnp.asarray(release))[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
     limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest
     if force <= limit:
         return
-    at_rest = float(datum.equilibrium)
-    where = f"; at rest the separation is {at_rest * 1e9:.4g} nm" if np.isfinite(at_rest) else ""
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
     raise InputError(
         f"`release_gap` must lie outside contact: the contact force there must be below {share} "
-        f"({limit:.3g} N), and is {force:.3g} N{where}; got {float(body.release) * 1e9:.6g} nm",
+        f"({limit:.3g} N), and is {force:.3g} N; {_at_rest(problem)}got {release * 1e9:.6g} nm",
         key="impact.release_gap",
     )
+
+
+def _at_rest(problem: Problem) -> str:
+    """Where the body would rest, seen from outside contact; empty where nothing holds it."""
+    body = problem.body
+    clear = Body(body.mass, body.gravity, problem.contact.reach + CLEARANCE, body.speed)
+    place = float(_prepare(problem.contact, clear)[1].equilibrium)
+    return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
 
 
 def _fly(
@@ -165,19 +192,18 @@ def _fly(
     contact: Contact,
     table: Table,
     datum: Datum,
-    case: Case,
+    limits: Limits,
     tell: Report,
     stop: threading.Event | None,
 ) -> _Flight:
     """The motion in chunks of impacts, so that it can be watched and stopped."""
-    limits = Limits.of(case.tolerance)
     progress, origin = _start(contact, body, table)
     chunks: list[Impacts] = []
     while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
         progress, rows = _fly_some(contact, body, table, datum, origin, progress, limits, _CHUNK)
         chunks.append(jax.tree_util.tree_map(np.asarray, rows))
         count = int(progress.made)
-        tell(0.1 + 0.75 * min(count / case.numerics.max_impacts, 1.0), f"impact {count}")
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
     if not chunks:
         raise SimulationError("stopped before the first impact")
     impacts = jax.tree_util.tree_map(lambda *parts: np.concatenate(parts), *chunks)
@@ -202,6 +228,8 @@ def _result(case: Case, name: str, problem: Problem, flight: _Flight) -> Result:
     made = int(np.sum(motion.impacts.made))
     measures = _padded(motion, body)
     series = sample(body, motion.table, motion.impacts)
+    if case.numerics.time_limit is not None:
+        series = until(series, case.numerics.time_limit)
     at_depth = AtDepth.of(flight.contact, motion)
     regime = _regime(case, problem, at_depth)
     forces, energies = _histories(flight.contact, motion, body, series)

@@ -131,7 +131,7 @@ def _branches(law: Law, gaps: np.ndarray) -> list[_Branch]:
 
 def _check_order(law: Law) -> None:
     forming, breaking = float(law.forming_gap), float(law.breaking_gap)
-    assert np.isfinite(forming) and np.isfinite(breaking), (
+    assert np.isfinite(forming + breaking), (
         f"{_name(law)}: `forming_gap` and `breaking_gap` must be finite; "
         f"got {forming:.6g} m and {breaking:.6g} m"
     )
@@ -257,7 +257,9 @@ def _check_far(law: Law) -> None:
     energy = np.abs(np.asarray(law.energy(at)))
     near = [branch.gaps for branch in _branches(law, _gaps(law))]
     largest = max(float(np.max(np.abs(_either(law, gaps)))) for gaps in near)
-    assert energy[0] <= 1e-4 * largest and energy[1] <= energy[0], (
+    vanishes = energy[0] <= 1e-4 * largest
+    falls = energy[1] <= energy[0]
+    assert all((vanishes, falls)), (
         f"{_name(law)}, free branch: the energy must tend to 0 far away; at the gap "
         f"{far:.6g} m it is {energy[0]:.6g} J, beside {largest:.6g} J at most"
     )
@@ -353,17 +355,18 @@ def _check_units(
         before, after = float(getattr(law, name)), float(getattr(other, name))
         assert after == before or np.isclose(after, per_length * before, rtol=1e-9, atol=0.0), (
             f"{_name(law)}: `{name}` must scale like a length; with lengths times "
-            f"{per_length:g} and forces times {per_force:g} it went from {before:.6g} to {after:.6g}"
+            f"{per_length:g} and forces times {per_force:g} it went from {before:.6g} "
+            f"to {after:.6g}"
         )
     away = _away(gaps, _kinks(law), 1e-6 * _lengths(law)[0])
     pairs = zip(_branches(law, gaps[away]), _branches(other, per_length * gaps[away]), strict=True)
     for old, new in pairs:
-        for what, before, after, factor in (
+        for what, old_curve, new_curve, factor in (
             ("force", old.force, new.force, per_force),
             ("energy", old.energy, new.energy, per_force * per_length),
         ):
-            expected = factor * np.asarray(before(jnp.asarray(old.gaps)))
-            got = np.asarray(after(jnp.asarray(old.gaps * per_length)))
+            expected = factor * np.asarray(old_curve(jnp.asarray(old.gaps)))
+            got = np.asarray(new_curve(jnp.asarray(old.gaps * per_length)))
             tiny = 1e-11 * float(np.max(np.abs(expected), initial=0.0))
             text = (
                 f"{_name(law)}, {old.title} branch: with lengths times {per_length:g} and forces "

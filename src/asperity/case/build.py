@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import ceil, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..contact import Contact, ElasticContact, RigidContact, SmoothContact
@@ -59,12 +59,17 @@ def build(case: Case) -> Problem:
     else:
         interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
         shape = Sphere(case.body.radius)
+        nodes, pieces = _reversal(interface, rough.rms_height)
         if case.counterface.deformation == "rigid":
-            contact = RigidContact(interface, shape)
+            contact = RigidContact(interface, shape, inner_panels=pieces)
         else:
-            nodes = _reversal_nodes(interface, rough.rms_height)
             contact = ElasticContact(
-                interface, shape, modulus, case.numerics.rings, inner_nodes=nodes
+                interface,
+                shape,
+                modulus,
+                case.numerics.rings,
+                inner_nodes=nodes,
+                inner_panels=pieces,
             )
     impact = case.impact
     release = impact.release_gap
@@ -75,11 +80,11 @@ def build(case: Case) -> Problem:
     return Problem(contact, body, modulus, tip)
 
 
-def _reversal_nodes(interface: Interface, rms_height: float) -> int:
-    """Enough nodes for a way between branches that is short beside the roughness."""
+def _reversal(interface: Interface, rms_height: float) -> tuple[int, int]:
+    """Nodes and pieces that resolve the way between branches, by its length over the rms."""
     widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
     share = max(widths, default=0.0) / rms_height
-    return 6 if share < 0.1 else 8 if share < 0.3 else 12
+    return 6 if share < 0.1 else 8 if share < 0.3 else 12, max(1, ceil(share / 1.5))
 
 
 def _law(case: Case, tip: float, modulus: float) -> Law:

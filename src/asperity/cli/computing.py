@@ -60,6 +60,9 @@ def compute(
         with progress_bar(not (quiet or as_json)) as progress:
             work = Work(lambda stop: _task(request, stop, progress))
             result, code = work.wait()
+    except InputError as error:
+        error.file = error.file or given.file
+        raise
     except SimulationError as error:
         if isinstance(error.partial, (Result, Curve)):
             _deliver(_ended(request, error.partial, Outcome.FAILED), request, 0)

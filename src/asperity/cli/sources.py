@@ -20,6 +20,7 @@ class Source:
     case: Case
     name: str
     input_sha256: str
+    file: str | None = None
 
 
 def source(argument: str) -> Source:
@@ -40,14 +41,14 @@ def source(argument: str) -> Source:
 
         record = read(argument)
         assert record.input_sha256 is not None
-        return Source(record.case, record.name, record.input_sha256)
+        return Source(record.case, record.name, record.input_sha256, argument)
     case = load_file(argument)
     try:
         text = path.read_bytes()
     except OSError as error:
         reason = error.strerror or error
         raise InputError(f"{argument}: cannot be read: {reason}", file=argument) from None
-    return Source(case, path.stem, hashlib.sha256(text).hexdigest())
+    return Source(case, path.stem, hashlib.sha256(text).hexdigest(), argument)
 
 
 def _builtin(name: str) -> Source:

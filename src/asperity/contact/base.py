@@ -78,6 +78,11 @@ class Contact(eqx.Module):
         return parts[self.components.index("elastic")]
 
     @property
+    def reversal_panels(self) -> int:
+        """Into how many pieces that way is cut, for each law."""
+        return 1
+
+    @property
     def reversal_nodes(self) -> int:
         """How many solutions resolve the way from a reversal to the outermost branch."""
         return 12

@@ -72,7 +72,9 @@ class ElasticContact(Contact):
     refinement
         Factor on the number of panels of its curves (static).
     inner_nodes
-        Solutions between a reversal and the outermost branch, at most 12 (static).
+        Solutions on a piece between a reversal and the outermost branch, at most 12 (static).
+    inner_panels
+        Number of these pieces (static); see :class:`RigidContact`.
 
     The separation is h(r) = d + rise(r) + u(r) with u the displacement of the pressure
     p(h), solved by Newton's method on rings whose mesh follows the size of the contact
@@ -85,6 +87,7 @@ class ElasticContact(Contact):
     rings: int = eqx.field(static=True, default=96)
     refinement: int = eqx.field(static=True, default=1)
     inner_nodes: int = eqx.field(static=True, default=12)
+    inner_panels: int = eqx.field(static=True, default=1)
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -93,6 +96,10 @@ class ElasticContact(Contact):
     @property
     def components(self) -> tuple[str, ...]:
         return self.interface.components
+
+    @property
+    def reversal_panels(self) -> int:
+        return self.inner_panels
 
     @property
     def reversal_nodes(self) -> int:
@@ -259,10 +266,12 @@ def _search(
         size, lift, _, count = carry
         h = _newton(contact, separation, branch, size, lift, _COARSE)
         pressure = contact.interface.pressure(h, branch)[:-1]
-        weight = coarse.area * pressure**2 / jnp.max(pressure**2)
+        largest = jnp.max(jnp.abs(pressure))
+        some = largest > 0.0
+        weight = coarse.area * jnp.where(some, pressure / jnp.where(some, largest, 1.0), 1.0) ** 2
         spread = jnp.sum(weight * coarse.radius**2) / jnp.sum(weight)
         rise = contact.shape.rise(size * jnp.append(coarse.radius, coarse.end))
-        ratio = jnp.clip(jnp.sqrt(3.0 * spread), 0.2, 3.0)
+        ratio = jnp.where(some, jnp.clip(jnp.sqrt(3.0 * spread), 0.2, 3.0), 1.0)
         return size * ratio, h - separation - rise, jnp.abs(ratio - 1.0), count + 1
 
     def go_on(carry):  # type: ignore[no-untyped-def]

@@ -29,6 +29,9 @@ class RigidContact(Contact):
         The body.
     refinement
         Factor on the number of panels of its curves (static).
+    inner_panels
+        Pieces of the way from a reversal to the outermost branch (static): one for every
+        1.5 rms that a law's bonds stretch.
 
     Every place of a rigid body moves alike, so one threshold a law remembers the whole
     contact. Forces are 2 pi R times the integral of the pressure over the separation,
@@ -38,6 +41,11 @@ class RigidContact(Contact):
     interface: Interface
     shape: Sphere
     refinement: int = eqx.field(static=True, default=1)
+    inner_panels: int = eqx.field(static=True, default=1)
+
+    @property
+    def reversal_panels(self) -> int:
+        return self.inner_panels
 
     @property
     def mechanisms(self) -> tuple[str, ...]:

@@ -121,8 +121,7 @@ class SmoothContact(Contact):
         rungs = _RUNGS * self.refinement
         ladder = jnp.maximum(high, -low) * _RATIO ** (-np.arange(0.0, rungs) / self.refinement)
         kink = jnp.stack([jnp.zeros(()), *kinks.values()])
-        ends = [kink, kink[0] - ladder, kink[0] + ladder]
-        ends += [k - ladder[rungs // 3 :] for k in kink[1:]]
+        ends = [kink, (kink[:, None] - ladder).ravel(), (kink[:, None] + ladder).ravel()]
         return jnp.sort(jnp.clip(jnp.concatenate([*ends, low[None], high[None]]), low, high))
 
     @staticmethod

@@ -56,7 +56,7 @@ class Rings(NamedTuple):
 @cache
 def ring_mesh(rings: int) -> Rings:
     """The mesh with about ``rings`` rings: an equal number on each of its 16 panels."""
-    order = max(2, round(rings / PANEL_COUNT))
+    order = max(1, round(rings / PANEL_COUNT))
     node, weight = np.polynomial.legendre.leggauss(order)
     low, high = _PANELS[:-1, None], _PANELS[1:, None]
     radius = (0.5 * (low + high) + 0.5 * (high - low) * node).ravel()

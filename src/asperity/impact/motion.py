@@ -95,14 +95,18 @@ class Phase(NamedTuple):
 class Limits(NamedTuple):
     """Ends of a motion as traced values: rest, time limit [s], largest number of impacts."""
 
-    rest: jax.Array | float
-    time: jax.Array | float
-    impacts: jax.Array | int
+    rest: jax.Array
+    time: jax.Array
+    impacts: jax.Array
 
     @classmethod
     def of(cls, tolerance: Tolerance) -> Limits:
         """The limits of a tolerance."""
-        return cls(tolerance.rest, tolerance.time_limit, tolerance.max_impacts)
+        return cls(
+            jnp.asarray(tolerance.rest, dtype=jnp.float64),
+            jnp.asarray(tolerance.time_limit, dtype=jnp.float64),
+            jnp.asarray(tolerance.max_impacts),
+        )
 
 
 class Progress(NamedTuple):

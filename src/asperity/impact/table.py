@@ -57,8 +57,8 @@ class Table(NamedTuple):
         Rows of quantities as Chebyshev coefficients, shape (branches, panels, NODES, rows).
         The first branch has no bonds kept, the last has all.
     error
-        Largest neglected Chebyshev coefficient of the force, relative to the largest force
-        in its panel, where that matters: an estimate of the interpolation error.
+        Work of the last Chebyshev coefficients of the force on a panel, relative to the work
+        from outside to there: an estimate of the interpolation error.
     residual
         Largest error estimate of the contact itself.
     """
@@ -121,11 +121,23 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     else:
         values, errors = (x[None] for x in _fit(contact, memories[0], ends[:-1], ends[1:]))
     force = values[..., FORCE]
-    tail = jnp.max(jnp.abs(force[..., -2:]), axis=-1)
-    size = jnp.max(jnp.abs(force), axis=-1)
-    matters = size > 1e-9 * jnp.max(size)
-    error = jnp.where(matters, tail / jnp.where(size > 0.0, size, 1.0), 0.0)
+    width = jnp.diff(ends)
+    tail = jnp.max(jnp.abs(force[..., -2:]), axis=-1) * width
+    done = jnp.max(jnp.abs(force), axis=-1) * width
+    # Against the work from outside down to each panel: what a body that turns there has done.
+    work = jnp.cumsum(done[:, ::-1], axis=1)[:, ::-1]
+    matters = work > 1e-9 * jnp.max(work)
+    error = jnp.where(matters, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
     return Table(ends, values, jnp.max(error), jnp.max(errors))
+
+
+def blank_table(contact: Contact) -> Table:
+    """A table of zeros, of the shapes that :func:`tabulate` gives."""
+    ends = jax.eval_shape(contact.panels, jnp.zeros(()), jnp.ones(())).shape[0]
+    layout = quantities(contact)
+    shape = (len(branches(contact)), ends - 1, NODES, layout.components.stop)
+    zero = jnp.zeros(())
+    return Table(jnp.linspace(0.0, 1.0, ends), jnp.zeros(shape), zero, zero)
 
 
 def _fit(
@@ -157,6 +169,9 @@ def inner_pieces(
         return Pieces(marks, marks, marks, marks, jnp.zeros((0, *table.values.shape[2:])))
     marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
     first = jnp.concatenate([start[None], marks[:-1]])
+    share = np.linspace(0.0, 1.0, contact.reversal_panels + 1)
+    steps = first[:, None] + (marks - first)[:, None] * share
+    first, marks = steps[:, :-1].ravel(), steps[:, 1:].ravel()
     low, high = jnp.minimum(first, marks), jnp.maximum(first, marks)
     values, _ = _fit(contact, memory, low, high, contact.reversal_nodes, near=True)
     return Pieces(low, high, first, marks, values)

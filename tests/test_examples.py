@@ -1,0 +1,131 @@
+"""Every example loads, runs, closes its ledger and ends as its first lines say."""
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+import asperity
+from asperity.errors import Outcome
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+CASES = sorted(path.stem for path in EXAMPLES.glob("*.toml"))
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """Each example solved once; the built-in case for a few impacts only."""
+    results = {}
+
+    def solve(name):
+        if name not in results:
+            case = asperity.load(str(EXAMPLES / f"{name}.toml"))
+            if name == "published-exact":
+                case = case.replace({"numerics.max_impacts": 3})
+            results[name] = asperity.solve(case, name=name)
+        return results[name]
+
+    return solve
+
+
+def test_there_is_an_example_for_each_question():
+    assert CASES == [
+        "dry-drop",
+        "fast-impact",
+        "jkr-bounce",
+        "jkr-stick",
+        "published-exact",
+        "wet-drop",
+    ]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_ledger_of_every_example_closes(solved, name):
+    assert solved(name).ledger["closure"] < 1e-6
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_example_says_first_what_to_expect(name):
+    first = (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8").splitlines()[0]
+    assert first.startswith("# Expect")
+
+
+def test_example_of_the_built_in_case_is_that_case():
+    assert asperity.load(str(EXAMPLES / "published-exact.toml")) == asperity.load("published-exact")
+
+
+def test_dry_drop_is_the_wet_drop_without_menisci():
+    wet = asperity.load(str(EXAMPLES / "wet-drop.toml"))
+    assert asperity.load(str(EXAMPLES / "dry-drop.toml")) == wet.replace({"capillary": None})
+
+
+def test_built_in_case_loses_little_at_each_impact(solved):
+    result = solved("published-exact")
+    assert result.outcome is Outcome.MAX_IMPACTS
+    assert result.measures["restitution"] == pytest.approx([0.999958] * 3, abs=1e-6)
+
+
+def test_wet_drop_comes_to_rest_captured_by_menisci(solved):
+    result = solved("wet-drop")
+    measures = result.measures
+    assert result.outcome is Outcome.REST
+    assert measures["captured"]
+    assert len(measures["restitution"]) == 13
+    assert measures["restitution"][0] == pytest.approx(0.922199, abs=1e-5)
+    assert measures["stiction_time"] == pytest.approx(8.164e-3, rel=1e-3)
+    assert set(result.ledger["lost"]) == {"capillary"}
+
+
+def test_dry_drop_loses_nothing(solved):
+    result = solved("dry-drop")
+    assert result.outcome is Outcome.OSCILLATING
+    assert not result.measures["captured"]
+    assert result.measures["restitution"][0] == pytest.approx(1.0, abs=1e-8)
+
+
+def test_fast_impact_dents_the_bulk_and_escapes(solved):
+    result = solved("fast-impact")
+    assert result.outcome is Outcome.ESCAPED
+    assert result.measures["restitution"][0] == pytest.approx(0.999996, abs=1e-6)
+    indentation = result.central_separation - result.separation
+    assert indentation.max() == pytest.approx(10.0e-9, rel=1e-2)
+
+
+def test_jkr_sphere_bounces_above_the_sticking_speed_with_the_closed_form(solved):
+    result = solved("jkr-bounce")
+    assert result.outcome is Outcome.ESCAPED
+    expected = (1.0 - (_sticking_speed(result.case) / result.case.impact.speed) ** 2) ** 0.5
+    assert result.measures["restitution"] == [pytest.approx(expected, abs=1e-5)]
+
+
+def test_jkr_sphere_sticks_below_the_sticking_speed(solved):
+    result = solved("jkr-stick")
+    assert result.case.impact.speed < _sticking_speed(result.case)
+    assert result.outcome is Outcome.OSCILLATING
+    assert result.measures["captured"]
+    assert result.measures["restitution"][0] == 0.0
+
+
+def _sticking_speed(case):
+    """Speed below which a JKR sphere sticks [m/s]: its kinetic energy is a cycle's loss."""
+    work, radius = case.adhesion.work, case.body.radius
+    first, second = case.body_solid, case.counterface_solid
+    modulus = 1.0 / (
+        (1.0 - first.poisson**2) / first.youngs_modulus
+        + (1.0 - second.poisson**2) / second.youngs_modulus
+    )
+    mass = case.body_density * 4.0 / 3.0 * 3.141592653589793 * radius**3
+    cycle = 7.092196 * (work**5 * radius**4 / modulus**2) ** (1.0 / 3.0)
+    return (2.0 * cycle / mass) ** 0.5
+
+
+def test_own_law_is_checked_and_takes_energy_from_the_bounce():
+    own = runpy.run_path(str(EXAMPLES / "own_law.py"))
+    measures = own["main"]()
+    assert [float(e) for e in measures.restitution[:2]] == pytest.approx([0.9511, 0.9477], abs=1e-4)
+
+
+def test_own_law_takes_at_most_twenty_lines():
+    text = (EXAMPLES / "own_law.py").read_text(encoding="utf-8")
+    body = text.split("# The law, from here")[1].split("# to here.")[0]
+    assert len([line for line in body.splitlines() if line.strip()]) <= 20

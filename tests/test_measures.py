@@ -1,0 +1,143 @@
+"""What a motion means: each measure against its definition and closed forms."""
+
+from math import pi, radians, sqrt
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from asperity._jax import jnp
+from asperity.contact import RigidContact
+from asperity.errors import Tolerance
+from asperity.impact import Body, simulate
+from asperity.interface import Interface
+from asperity.laws import Dmt, Hertz, Meniscus
+from asperity.measures import measure
+from asperity.regimes import load_parameter, plasticity_index, tabor_number
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+from asperity.special import height_integral
+
+RADIUS, BETA, SIGMA, E, N, W = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16, 0.03
+MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
+BODY = Body(MASS, 9.81, 200e-9)
+LAW = Hertz(BETA, E) + Dmt(BETA, W) + Meniscus(BETA, 0.0728, radians(73.0), 1.05e-9)
+CONTACT = RigidContact(Interface(LAW, Gaussian(SIGMA), N), Sphere(RADIUS))
+
+
+@pytest.fixture(scope="module")
+def flown():
+    run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=4)))
+    motion = run(CONTACT, BODY)
+    return motion, measure(motion, BODY)
+
+
+def test_impact_speed_is_that_at_the_static_equilibrium(flown):
+    """There the weight is carried and the speed largest: free fall less the stored energy."""
+    motion, found = flown
+    weight = float(BODY.weight)
+    fallen = weight * (200e-9 - float(motion.datum.equilibrium)) - float(motion.datum.stored)
+    assert float(found.impact_speed) == pytest.approx(sqrt(2.0 * fallen / MASS), rel=1e-4)
+
+
+def test_rebound_heights_count_from_the_static_equilibrium(flown):
+    motion, found = flown
+    state = CONTACT.state(motion.datum.equilibrium, CONTACT.fresh())
+    assert float(state.force) == pytest.approx(float(BODY.weight), rel=1e-7)
+    heights = np.asarray(motion.impacts.apex) - float(motion.datum.equilibrium)
+    np.testing.assert_allclose(found.rebound_height, heights, rtol=1e-12)
+
+
+def test_decrement_is_the_logarithm_of_successive_heights(flown):
+    motion, found = flown
+    release = 200e-9 - float(motion.datum.equilibrium)
+    heights = np.concatenate([[release], found.rebound_height])
+    np.testing.assert_allclose(found.log_decrement, np.log(heights[:-1] / heights[1:]), rtol=1e-12)
+    assert np.all(np.asarray(found.log_decrement) > 0.0)
+
+
+def test_restitution_of_a_drop_is_the_root_of_the_ratio_of_heights(flown):
+    """Apart, all energy is m g (d - d_ref)."""
+    motion, found = flown
+    above = np.concatenate([[200e-9], motion.impacts.apex]) - float(found.reference)
+    np.testing.assert_allclose(found.restitution, np.sqrt(above[1:] / above[:-1]), rtol=1e-6)
+
+
+def test_energies_are_compared_where_contact_ends(flown):
+    motion, found = flown
+    peak = float(motion.impacts.force[0])
+    torn = CONTACT.state(found.reference, CONTACT.extreme((True,)))
+    fresh = CONTACT.state(found.reference, CONTACT.fresh())
+    largest = max(abs(float(torn.force)), abs(float(fresh.force)))
+    assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
+
+
+def test_impact_time_is_from_maximum_to_maximum(flown):
+    motion, found = flown
+    times = np.concatenate([[0.0], motion.impacts.apex_time])
+    np.testing.assert_allclose(found.impact_time, np.diff(times), rtol=1e-12)
+
+
+def test_power_loss_is_the_energy_missing_at_the_next_maximum(flown):
+    motion, found = flown
+    energy = np.concatenate([[float(motion.release)], motion.impacts.mechanical])
+    power = -np.diff(energy) / np.asarray(found.impact_time)
+    np.testing.assert_allclose(found.power_loss, power, rtol=1e-5)
+
+
+def test_loss_of_a_cycle_is_that_of_the_menisci_made(flown):
+    """All asperities that touch at the deepest point lose 2 pi beta gamma cos(theta) c each."""
+    motion, _ = flown
+    formation, rupture = CONTACT.losses()
+    count = 2.0 * pi * RADIUS * SIGMA * N
+    count *= float(height_integral(1.0, motion.impacts.deepest[0] / SIGMA))
+    expected = count * float(formation[0] + rupture[0])
+    assert float(motion.impacts.lost[0, 0]) == pytest.approx(expected, rel=1e-8)
+
+
+def test_published_power_loss_is_the_work_of_attraction_on_the_way_out():
+    """Of DMT asperities: their whole adhesive energy at the deepest point, in closed form."""
+    law = Hertz(BETA, E) + Dmt(BETA, W)
+    contact = RigidContact(Interface(law, Gaussian(SIGMA), N), Sphere(RADIUS))
+    run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=1)))
+    motion = run(contact, BODY)
+    found = measure(motion, BODY)
+    deepest = float(motion.impacts.deepest[0]) / SIGMA
+    area = 2.0 * pi * RADIUS * SIGMA * 2.0 * pi * BETA * W * N * SIGMA
+    work = area * float(height_integral(2.0, deepest)) / 2.0
+    power = work / float(motion.impacts.apex_time[0])
+    assert float(found.power_loss_published[0]) == pytest.approx(power, rel=1e-7)
+    assert abs(float(found.power_loss[0])) < 1e-12 * power
+
+
+def test_what_does_not_apply_is_not_a_number(flown):
+    _, found = flown
+    assert not bool(found.captured)
+    assert np.isnan(float(found.stiction_time))
+    assert np.isnan(float(found.capture_time))
+
+
+def test_a_body_that_rests_has_a_stiction_time():
+    run = eqx.filter_jit(lambda c, b, t: simulate(c, b, tolerance=t))
+    motion = run(CONTACT, BODY, Tolerance(max_impacts=3, rest=2.0))
+    found = measure(motion, BODY)
+    assert float(found.stiction_time) == float(motion.impacts.apex_time[0])
+
+
+def test_tabor_number_of_the_publication():
+    assert tabor_number(0.25e-9, 0.03, 56.814e9, 0.2e-9) == pytest.approx(0.0206, abs=5e-5)
+
+
+def test_plasticity_index_of_the_publication():
+    assert plasticity_index(56.814e9, 9e9, 10.5e-9, 0.25e-9) == pytest.approx(41.0, abs=0.2)
+
+
+def test_load_parameter_of_one_rigid_asperity_pulled_off_is_two():
+    pull = 2.0 * pi * W * BETA
+    assert load_parameter(7.0 * pull, 7.0, W, BETA) == pytest.approx(2.0, rel=1e-14)
+
+
+def test_measures_are_arrays_of_one_row_an_impact(flown):
+    _, found = flown
+    for name in ("rebound_height", "restitution", "log_decrement", "impact_time", "power_loss"):
+        assert jnp.shape(getattr(found, name)) == (4,)

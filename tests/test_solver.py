@@ -1,0 +1,149 @@
+"""From a case to a result: regimes, rest, ledger, refusals and early ends."""
+
+import json
+import threading
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity import InputError, Outcome, SimulationError, solver
+
+CHANGES = {"counterface.deformation": "rigid", "numerics.max_impacts": 5}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return asperity.load("published-exact").replace(CHANGES)
+
+
+@pytest.fixture(scope="module")
+def result(case):
+    return solver.solve(case, name="published")
+
+
+def test_regime_numbers_of_the_publication(result):
+    assert result.regime["tabor_number"] == pytest.approx(0.0206, abs=5e-5)
+    assert result.regime["elasticity_parameter"] == pytest.approx(0.0239, abs=5e-5)
+    assert result.regime["plasticity_index"] == pytest.approx(41.0, abs=0.2)
+    assert result.regime["adhesion_law"] == "dmt"
+    assert result.regime["load_parameter"] > 1e3
+
+
+def test_outcome_is_the_limit_that_was_met(result):
+    assert result.outcome is Outcome.MAX_IMPACTS
+    assert len(result.measures["rebound_height"]) == 5
+    assert result.measures["captured"] is False
+    assert result.measures["stiction_time"] is None
+
+
+def test_ledger_closes(result):
+    assert result.ledger["closure"] < 1e-6
+    assert set(result.ledger["lost"]) == {"capillary"}
+    assert result.ledger["lost"]["capillary"] > 0.0
+
+
+def test_energies_of_the_whole_motion_add_up(result):
+    total = sum(result.energies.values())
+    kinetic = np.max(result.energies["kinetic"])
+    assert np.max(np.abs(total - result.ledger["initial"])) < 1e-6 * kinetic
+
+
+def test_forces_of_the_whole_motion_add_up(result):
+    forces = result.forces
+    contact = sum(forces[name] for name in ("elastic", "adhesion", "capillary"))
+    scale = np.max(np.abs(forces["elastic"]))
+    np.testing.assert_allclose(contact, forces["contact"], atol=1e-9 * scale)
+    np.testing.assert_allclose(forces["contact"] + forces["weight"], forces["total"], atol=1e-18)
+
+
+def test_speed_is_the_rate_of_the_separation(result):
+    """Simpson's rule on the samples of the first fall, away from its turning points."""
+    t, d, v = result.time, result.separation, result.speed
+    assert np.all(np.diff(t) >= 0.0)
+    mean = 0.5 * (v[1:] + v[:-1])
+    fast = np.abs(mean) > 0.3 * np.max(np.abs(v))
+    rate = np.diff(d)[fast] / np.diff(t)[fast]
+    np.testing.assert_allclose(rate, mean[fast], rtol=0.02)
+
+
+def test_a_rigid_body_has_the_same_separation_everywhere(result):
+    np.testing.assert_allclose(result.central_separation, result.separation, rtol=1e-7)
+
+
+def test_few_asperities_and_yielding_are_said(result):
+    text = " ".join(result.warnings)
+    assert "asperities" in text
+    assert len(result.warnings) >= 2
+
+
+def test_measures_are_plain_json(result):
+    for part in (result.measures, result.regime, result.ledger, result.warnings):
+        assert json.loads(json.dumps(part, allow_nan=False)) == part
+
+
+def test_events_lie_on_the_motion(result):
+    assert result.events["deepest_time"].shape == (5,)
+    at = np.interp(result.events["deepest_time"], result.time, result.separation)
+    np.testing.assert_allclose(at, result.events["deepest_separation"], rtol=1e-6)
+
+
+def test_release_inside_contact_is_refused_with_the_separation_at_rest(case):
+    inside = case.replace({"impact.release_gap": "40 nm"})
+    with pytest.raises(InputError, match=r"at rest the separation is 45\.\d+ nm") as refused:
+        solver.solve(inside)
+    assert refused.value.key == "impact.release_gap"
+
+
+def test_a_stop_set_before_the_first_impact_leaves_nothing(case):
+    stop = threading.Event()
+    stop.set()
+    with pytest.raises(SimulationError, match="stopped"):
+        solver.solve(case, stop=stop)
+
+
+def test_a_stop_set_on_the_way_keeps_what_was_computed(case):
+    stop = threading.Event()
+    longer = case.replace({"numerics.max_impacts": 60, "numerics.rest": 1e-12})
+
+    def report(fraction, text):
+        if text.startswith("impact"):
+            stop.set()
+
+    found = solver.solve(longer, progress=report, stop=stop)
+    assert found.outcome is Outcome.INTERRUPTED
+    assert 0 < len(found.measures["rebound_height"]) < 60
+    assert found.ledger["closure"] < 1e-6
+
+
+def test_progress_rises_to_one(case):
+    seen = []
+    solver.solve(case, progress=lambda fraction, text: seen.append(fraction))
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+def test_a_motion_that_fails_raises_with_what_was_computed_or_returns_it(case, monkeypatch):
+    """The failure is put in: the flight itself has no case that fails."""
+    fly = solver._fly
+
+    def failing(*args):
+        return fly(*args)._replace(outcome=Outcome.FAILED)
+
+    monkeypatch.setattr(solver, "_fly", failing)
+    kept = solver.solve(case, throw=False)
+    assert kept.outcome is Outcome.FAILED
+    with pytest.raises(SimulationError) as raised:
+        solver.solve(case)
+    assert raised.value.partial.outcome is Outcome.FAILED
+
+
+def test_curve_loses_what_the_first_impact_loses(case, result):
+    drawn = solver.curve(case)
+    assert drawn.deepest == pytest.approx(result.events["deepest_separation"][0], rel=1e-9)
+    energy = result.measures["power_loss"][0] * result.measures["impact_time"][0]
+    assert drawn.loss == pytest.approx(energy, rel=1e-4)
+    assert drawn.pull_off >= 0.0
+    gap = drawn.force_approach - drawn.force_parting
+    area = np.sum(0.5 * (gap[1:] + gap[:-1]) * np.diff(drawn.rigid_separation))
+    assert area == pytest.approx(drawn.loss, rel=0.02)

@@ -1,0 +1,65 @@
+"""Menisci of the humid air: Kelvin radius, capillary force and its mean over heights."""
+
+from math import cos, pi, radians
+
+import numpy as np
+import pytest
+
+from asperity._jax import jnp
+from asperity.interface import Interface
+from asperity.laws import ByKelvinGap, Meniscus
+from asperity.materials import Liquid, kelvin_radius
+from asperity.roughness import Gaussian
+
+WATER = Liquid("water", tension=0.075, molar_volume=1.805e-5, source="the publication's Table 1")
+ANGLE = radians(73.0)
+
+
+@pytest.mark.parametrize(("humidity", "radius"), [(0.5, 0.801e-9), (0.9, 5.27e-9), (0.99, 55.3e-9)])
+def test_kelvin_radius_of_water(humidity, radius):
+    assert kelvin_radius(WATER, humidity, 293.15) == pytest.approx(radius, rel=1e-3)
+
+
+@pytest.mark.parametrize("humidity", [0.3, 0.6, 0.95])
+def test_capillary_force_does_not_depend_on_humidity_but_its_range_does(humidity):
+    """4 pi R gamma cos(theta) at touch; zero at the Kelvin gap 2 r_k cos(theta)."""
+    r_k = kelvin_radius(WATER, humidity, 293.15)
+    law = Meniscus(50e-6, 0.075, ANGLE, r_k, ByKelvinGap())
+    touch = float(law.force(jnp.asarray(0.0)))
+    assert touch == pytest.approx(-4.0 * pi * 50e-6 * 0.075 * cos(ANGLE), rel=1e-13)
+    assert float(law.reach) == pytest.approx(2.0 * r_k * cos(ANGLE), rel=1e-14)
+    assert float(law.force(law.reach * 1.000001)) == 0.0
+
+
+def test_work_of_wet_separation_is_twice_the_tension_times_the_cosine():
+    """Derjaguin: the pull at touch is 2 pi R times the work per area, 2 gamma cos(theta)."""
+    law = Meniscus(50e-6, 0.075, ANGLE, 1e-9)
+    work = float(-law.bonded_force(jnp.asarray(0.0))) / (2.0 * pi * 50e-6)
+    assert work == pytest.approx(2.0 * 0.075 * cos(ANGLE), rel=1e-13)
+
+
+def banded(h, sigma, density, law, bands):
+    """The publication's eqs. 13-15 with the asperities that touch, heights in bands."""
+    c, pull = float(law.reach), float(law.pull)
+    edges = np.linspace(0.0, c, bands + 1)
+    gap = 0.5 * (edges[:-1] + edges[1:])
+    phi = np.exp(-0.5 * ((h - gap) / sigma) ** 2) / (np.sqrt(2.0 * pi) * sigma)
+    node, weight = np.polynomial.legendre.leggauss(80)
+    deep = 0.5 * 9.0 * (node + 1.0) * sigma
+    inside = np.exp(-0.5 * ((h + deep) / sigma) ** 2) / (np.sqrt(2.0 * pi) * sigma)
+    touching = 4.5 * sigma * np.sum(weight * inside)
+    return -density * pull * (np.sum(phi * (1.0 - gap / c)) * c / bands + touching)
+
+
+@pytest.mark.parametrize("reduced", [0.0, 2.0, 4.37])
+def test_banded_sum_tends_to_the_integral_with_second_order(reduced):
+    sigma, density = 10.5e-9, 1.69e16
+    law = Meniscus(0.25e-9, 0.075, ANGLE, 5.27e-9, ByKelvinGap())
+    exact = float(
+        Interface(law, Gaussian(sigma), density).pressure(jnp.asarray(reduced * sigma), ())
+    )
+    h = reduced * sigma
+    errors = [abs(banded(h, sigma, density, law, n) / exact - 1.0) for n in (4, 8, 16)]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.1)
+    assert banded(h, sigma, density, law, 20_000) == pytest.approx(exact, rel=1e-9)
