@@ -26,7 +26,7 @@ run: run-environment
 
 # pytest last, so that its summary closes the output.
 test: lint docs
-	$(PYTEST)
+	$(PYTEST) --durations=10
 
 validate: dev-environment
 	$(PYTEST) -m long

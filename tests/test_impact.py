@@ -235,11 +235,11 @@ def test_gradient_of_the_decrement_with_respect_to_roughness(decrement):
 
 
 def test_gravity_alone_sets_the_time_of_a_long_fall():
-    """Two sqrt(2 H / g) up and down, the contact being short."""
+    """Two sqrt(2 H / g) up and down; half a contact, 2e-5 of the fall, comes on top."""
     body = Body(MASS, 9.81, 1e-3)
     rows = fly(SmoothContact(Hertz(RADIUS, E)), body)[0].impacts
     fall = sqrt(2.0 * 1e-3 / 9.81)
-    assert float(rows.deepest_time[0]) == pytest.approx(fall, rel=1e-5)
+    assert float(rows.deepest_time[0]) == pytest.approx(fall, rel=1e-4)
     assert float(rows.apex_time[0]) == pytest.approx(2.0 * fall, rel=1e-5)
 
 

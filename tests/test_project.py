@@ -183,6 +183,12 @@ def test_readme_python_runs(tmp_path: Path):
     assert (tmp_path / "motion.png").stat().st_size > 1000
 
 
+def test_first_page_shows_the_same_python_as_the_readme():
+    (shown,) = blocks(ROOT / "docs" / "index.md", "python")
+    (readme,) = blocks(ROOT / "README.md", "python")
+    assert readme.startswith(shown)
+
+
 @pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/cli.md"])
 def test_commands_named_in_the_pages_exist(page: str):
     shown = "\n".join(blocks(ROOT / page, "console") + blocks(ROOT / page, "text"))

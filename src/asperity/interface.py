@@ -52,6 +52,8 @@ class Interface(eqx.Module):
     density
         Asperities per area [1/m^2].
 
+    Notes
+    -----
     Separation h [m] is the distance between the mean planes; the gap of an asperity of
     height z is h - z. Asperities differ in height alone, so the bonded ones are always
     those above a threshold b, which follows b <- clamp(b, h - g_break, h - g_form): a play

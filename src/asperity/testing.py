@@ -71,6 +71,8 @@ def check_law(
     InputError
         If a value's dimensions are not known.
 
+    Notes
+    -----
     The rules: force = -d(energy)/d(gap) on each branch where it exists, also across its
     kinks; the free energy tends to 0 and the force is negligible beyond ``reach``; a bond
     breaks at no smaller gap than it forms at, and neither step gains energy; everything is

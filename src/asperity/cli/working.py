@@ -60,7 +60,7 @@ class Work(Generic[Answer]):
     def _run(self) -> None:
         try:
             self._answer = self._task(self._stop)
-        except BaseException as error:
+        except BaseException as error:  # noqa: BLE001 - raised again by `wait`
             self._error = error
         finally:
             self._ended = True

@@ -152,8 +152,10 @@ class Contact(eqx.Module):
         """
 
 
-def first_out_of_reach(values: jax.Array, level: jax.Array, places: jax.Array) -> jax.Array:
-    """The first of descending ``places`` below the last at which ``values`` <= ``level``."""
-    below = values <= level
-    last = places.shape[0] - 1 - jnp.argmax(below[::-1])
-    return jnp.asarray(places)[jnp.minimum(last + 1, places.shape[0] - 1)]
+def first_out_of_reach(
+    values: jax.Array, level: jax.Array, places: jax.Array, release: jax.Array
+) -> jax.Array:
+    """The first of descending ``places`` below ``release`` where ``values`` exceed ``level``."""
+    above = jnp.logical_and(jnp.logical_not(values <= level), places < release)
+    index = jnp.where(jnp.any(above), jnp.argmax(above), places.shape[0] - 1)
+    return jnp.asarray(places)[index]

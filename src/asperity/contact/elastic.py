@@ -76,6 +76,8 @@ class ElasticContact(Contact):
     inner_panels
         Number of these pieces (static); see :class:`RigidContact`.
 
+    Notes
+    -----
     The separation is h(r) = d + rise(r) + u(r) with u the displacement of the pressure
     p(h), solved by Newton's method on rings whose mesh follows the size of the contact
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.

@@ -33,6 +33,8 @@ class RigidContact(Contact):
         Pieces of the way from a reversal to the outermost branch (static): one for every
         1.5 rms that a law's bonds stretch.
 
+    Notes
+    -----
     Every place of a rigid body moves alike, so one threshold a law remembers the whole
     contact. Forces are 2 pi R times the integral of the pressure over the separation,
     which for Gaussian heights raises the order of each height integral by one.
@@ -106,7 +108,7 @@ class RigidContact(Contact):
         stored = self._measure * self.interface.energy(ladder, self.fresh(), lift=1)
         energy = stored + weight * ladder
         level = energy[0] + kinetic
-        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:])
+        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         return asinh_panels(low, high, self.interface.heights.rms, _PANELS * self.refinement)

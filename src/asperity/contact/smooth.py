@@ -24,6 +24,8 @@ class SmoothContact(Contact):
     refinement
         Factor on the number of panels of its curves (static).
 
+    Notes
+    -----
     The separation is the gap. Memory: one flag a hysteretic law, whether it is bonded.
     """
 
@@ -109,7 +111,7 @@ class SmoothContact(Contact):
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
         energy = self.states(ladder, self.fresh()).stored + weight * ladder
         level = energy[0] + kinetic
-        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:])
+        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """The kinks of all laws, with ladders of panels that narrow towards each."""

@@ -272,6 +272,8 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     tolerance
         Ends of the motion; ``max_impacts`` is static.
 
+    Notes
+    -----
     Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
     """
     tolerance = tolerance or Tolerance()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import equinox as eqx
@@ -47,7 +48,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     parts = []
     for first in range(0, made, _BATCH):
         chosen = np.minimum(np.arange(first, first + _BATCH), made - 1)
-        rows = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[chosen], impacts)
+        rows = jax.tree_util.tree_map(partial(_rows, chosen), impacts)
         drawn = [
             _draw(body, table, phase, jnp.asarray(parting), places)
             for phase, parting in ((rows.fall, False), (rows.rise, True))
@@ -65,6 +66,10 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     return Series(
         *(np.concatenate([np.asarray(a)[None], b]) for a, b in zip(release, rest, strict=True))
     )
+
+
+def _rows(chosen: np.ndarray, leaf: jax.Array) -> np.ndarray:
+    return np.asarray(leaf)[chosen]
 
 
 def until(series: Series, limit: float) -> Series:

@@ -21,6 +21,8 @@ class Bradley(Law):
     spacing
         Interatomic spacing eps of the potential [m].
 
+    Notes
+    -----
     By Derjaguin's construction the force at a gap g is -2 pi radius W(g) with
     W/w = (4/3)(eps/(g+eps))^2 - (1/3)(eps/(g+eps))^8, constant at -2 pi radius w for
     g < 0. To be added to :class:`Hertz`, with which it is the DMT model with its tail.

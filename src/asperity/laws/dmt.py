@@ -19,6 +19,8 @@ class Dmt(Law):
     work_of_adhesion
         Energy to part unit area [J/m^2].
 
+    Notes
+    -----
     Force -2 pi radius work while the gap is negative, nothing beyond: the publication's
     eqs. 4-9. To be added to :class:`Hertz`. With the surface force outside the contact
     it is :class:`Bradley` + :class:`Hertz`. Derjaguin, Muller and Toporov (1975).

@@ -18,6 +18,8 @@ class Hertz(Law):
     modulus
         Contact modulus E* [Pa].
 
+    Notes
+    -----
     Force 4/3 E* sqrt(radius) overlap^1.5. Johnson (1985), eq. 4.23.
     """
 

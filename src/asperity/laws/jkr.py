@@ -21,6 +21,8 @@ class Jkr(Law):
     work_of_adhesion
         Energy to part unit area w [J/m^2].
 
+    Notes
+    -----
     With the contact radius a: overlap = a^2/radius - sqrt(2 pi a w/E*) and force
     4 E* a^3/(3 radius) - sqrt(8 pi w E* a^3). The bond forms at gap 0, where the force
     jumps to -(4/3) pi w radius, and breaks at the fold of the branch, where it is

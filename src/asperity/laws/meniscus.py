@@ -50,6 +50,8 @@ class Meniscus(Law):
     formation
         :class:`ByContact` (default) or :class:`ByKelvinGap`.
 
+    Notes
+    -----
     It spans gaps up to c = 2 r_k cos(angle) and pulls with 4 pi radius tension
     cos(angle) (1 - g/c), by its full value when the bodies touch. The publication's
     eq. 12, without the repulsion that it prints beyond c.
