@@ -17,7 +17,7 @@ _POINTS = 240
 
 
 def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
-    """Both branches between the release and the depth of the first impact.
+    """Both branches from where the forces begin to the depth of the first impact.
 
     Parameters
     ----------
@@ -33,7 +33,9 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
     The arrays and numbers of :class:`asperity.result.Curve`.
     """
     deepest = float(impacts.deepest[0])
-    places = _places(np.asarray(table.ends), deepest, float(impacts.fall.start[0]))
+    reach = float(contact.reach)
+    top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
+    places = _places(np.asarray(table.ends), deepest, top)
     approach = _states(contact, contact.fresh(), jnp.asarray(places))
     memory = _remember(contact, jnp.asarray(deepest))
     parting = _states(contact, memory, jnp.asarray(places))
