@@ -234,13 +234,17 @@ def test_gradient_of_the_decrement_with_respect_to_roughness(decrement):
     assert float(gradient) == pytest.approx(difference, rel=1e-5)
 
 
-def test_gravity_alone_sets_the_time_of_a_long_fall():
-    """Two sqrt(2 H / g) up and down; half a contact, 2e-5 of the fall, comes on top."""
-    body = Body(MASS, 9.81, 1e-3)
-    rows = fly(SmoothContact(Hertz(RADIUS, E)), body)[0].impacts
-    fall = sqrt(2.0 * 1e-3 / 9.81)
-    assert float(rows.deepest_time[0]) == pytest.approx(fall, rel=1e-4)
-    assert float(rows.apex_time[0]) == pytest.approx(2.0 * fall, rel=1e-4)
+def test_gravity_and_hertz_set_the_time_of_a_long_fall():
+    """sqrt(2 H / g) to the surface, and half a Hertz contact, 1.4716 depth / speed.
+
+    Depth (15 m v^2 / (16 E* sqrt(R)))^(2/5): Johnson (1985), eqs. 11.20 to 11.24.
+    """
+    rows = fly(SmoothContact(Hertz(RADIUS, E)), Body(MASS, 9.81, 1e-3))[0].impacts
+    speed = sqrt(2.0 * 1e-3 * 9.81)
+    depth = (15.0 * MASS * speed**2 / (16.0 * E * sqrt(RADIUS))) ** 0.4
+    half = speed / 9.81 + 1.4716 * depth / speed
+    assert float(rows.deepest_time[0]) == pytest.approx(half, rel=1e-7)
+    assert float(rows.apex_time[0]) == pytest.approx(2.0 * half, rel=1e-7)
 
 
 def test_limits_end_a_motion_and_are_named():
