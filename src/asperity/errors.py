@@ -120,7 +120,7 @@ class Tolerance:
     rest: float = 1e-3
     time_limit: float = math.inf
     max_impacts: int = 200
-    rings: int = 96
+    rings: int = 80
 
 
 def one_line(text: str) -> str:

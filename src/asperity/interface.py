@@ -150,22 +150,26 @@ class Interface(eqx.Module):
 
     def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+        return self._total(separation, memory, lift, "force")
+
+    def _total(self, separation: jax.Array, memory: Memory, lift: int, name: str) -> jax.Array:
+        """Mean of the force or of the energy of all laws."""
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         total = jnp.zeros_like(separation)
         flat: Powers = ()
         for k, law in enumerate(terms(self.law)):
             powers = law.powers(edges[k])
             if powers is None:
-                total = total + self._quadrature(law, edges[k], separation, lift, "force")
+                total = total + self._quadrature(law, edges[k], separation, lift, name)
             else:
-                flat += powers[0]
+                flat += powers[0 if name == "force" else 1]
         if flat:
             total = total + jnp.sum(self.heights.mean_powers(flat, lift, separation), axis=0)
         return self.density * total
 
     def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
-        return self.measure(separation, memory, lift).energy
+        return self._total(separation, memory, lift, "energy")
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""

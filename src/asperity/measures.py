@@ -14,8 +14,10 @@ from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import end_of_contact
 from .impact.motion import ENDS
+from .program import kept
 
 
+@kept
 class Measures(NamedTuple):
     """Measures of a motion.
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import dataclasses
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from . import regimes
-from ._jax import jax, jnp
+from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem, build
 from .contact import Contact
@@ -21,8 +19,9 @@ from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
 from .impact.motion import ENDS, FLYING
 from .impact.sampling import Series, sample, until
-from .impact.table import CENTRAL, FORCE, STORED, blank_table, outer_row, quantities
+from .impact.table import CENTRAL, FORCE, STORED, quantities, read_row
 from .measures import Measures, measure
+from .program import Program
 from .result import Curve, Result
 from .trace import trace
 from .validity import AtDepth, warnings_of
@@ -122,14 +121,12 @@ def curve(
 def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Contact, Table, Datum]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
-    Meanwhile the motion compiles in a thread of its own.
+    Meanwhile the motion compiles.
     """
     for factor in _REFINEMENTS:
         contact = problem.contact.refined(factor)
-        with ThreadPoolExecutor(1) as side:
-            compiling = side.submit(_compile_flight, contact, problem.body, limits)
-            table, datum = _prepare(contact, problem.body)
-            compiling.result()
+        _compile(contact, problem.body, limits)
+        table, datum = _prepare(contact, problem.body)
         if float(table.error) <= tolerance:
             break
     else:
@@ -146,27 +143,24 @@ def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Conta
     return contact, table, datum
 
 
-def _compile_flight(contact: Contact, body: Body, limits: Limits) -> None:
-    """Fly a motion that has ended already: nothing is computed, but all is compiled."""
-    table = blank_table(contact)
-    zero = jnp.zeros(())
-    datum = Datum(zero, zero, zero > 0.0)
-    progress, origin = _start(contact, body, table)
-    ended = progress._replace(outcome=jnp.asarray(ENDS.index(Outcome.REST)))
-    jax.block_until_ready(_fly_some(contact, body, table, datum, origin, ended, limits, _CHUNK))
+def _compile(contact: Contact, body: Body, limits: Limits) -> None:
+    """Compile the curves and the motion side by side."""
+    table, datum = _prepare.ahead(contact, body)
+    progress, origin = _start.ahead(contact, body, table)
+    _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
 
 
-_prepare = eqx.filter_jit(prepare)
-_start = eqx.filter_jit(start)
-_fly_some = eqx.filter_jit(fly)
-_measure = eqx.filter_jit(measure)
+_prepare = Program(prepare)
+_start = Program(start)
+_fly_some = Program(fly)
+_measure = Program(measure)
 
 
 def _check_release(problem: Problem, table: Table) -> None:
     """A release within contact is refused: it would not be a fall."""
     body = problem.body
     release, weight = float(body.release), float(body.weight)
-    force = abs(float(outer_row(table, 0, jnp.asarray(release))[FORCE]))
+    force = abs(float(read_row(table, 0, release)[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
     limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest
     if force <= limit:

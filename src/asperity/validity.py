@@ -6,15 +6,14 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr
 
-from ._jax import jnp
 from .case import Case, Roughness
 from .case.build import Problem
 from .contact import Contact
 from .impact import Motion
-from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
+from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, read_row
 from .regimes import Regime
-from .special import height_integral
 
 FEW = 10.0
 """Touching asperities below which a mean over asperities says little of one impact."""
@@ -40,7 +39,7 @@ class AtDepth(NamedTuple):
     @classmethod
     def of(cls, contact: Contact, motion: Motion) -> AtDepth:
         """Read off the curve of first approach."""
-        row = np.asarray(outer_row(motion.table, 0, jnp.asarray(motion.impacts.deepest[0])))
+        row = read_row(motion.table, 0, float(motion.impacts.deepest[0]))
         elastic = row[FORCE] - row[PULL]
         return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
 
@@ -93,9 +92,10 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
 
 
 def _mean_overlap(rough: Roughness, central: float) -> float:
-    """Mean overlap per asperity [m], sigma F_1(h/sigma)."""
-    sigma = rough.rms_height
-    return float(sigma * height_integral(1.0, central / sigma))
+    """Mean overlap per asperity [m], sigma F_1(h/sigma), in closed form."""
+    reduced = central / rough.rms_height
+    density = np.exp(-0.5 * reduced**2) / np.sqrt(2.0 * pi)
+    return float(rough.rms_height * (density - reduced * ndtr(-reduced)))
 
 
 def _adhesion(regime: Regime) -> list[str]:

@@ -59,17 +59,11 @@ def build(case: Case) -> Problem:
     else:
         interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
         shape = Sphere(case.body.radius)
-        nodes, pieces = _reversal(interface, rough.rms_height)
         if case.counterface.deformation == "rigid":
-            contact = RigidContact(interface, shape, inner_panels=pieces)
+            contact = RigidContact(interface, shape, **_pieces(interface, False))
         else:
             contact = ElasticContact(
-                interface,
-                shape,
-                modulus,
-                case.numerics.rings,
-                inner_nodes=nodes,
-                inner_panels=pieces,
+                interface, shape, modulus, case.numerics.rings, **_pieces(interface, True)
             )
     impact = case.impact
     release = impact.release_gap
@@ -80,11 +74,23 @@ def build(case: Case) -> Problem:
     return Problem(contact, body, modulus, tip)
 
 
-def _reversal(interface: Interface, rms_height: float) -> tuple[int, int]:
-    """Nodes and pieces that resolve the way between branches, by its length over the rms."""
+def _pieces(interface: Interface, deforms: bool) -> dict[str, int]:
+    """Panels and pieces that resolve the curves, by the reach of the forces over the rms.
+
+    More than the ledger needs to close to 1e-6 of the impact energy; the solver refines the
+    panels where they do not meet the tolerance.
+    """
+    rms = float(interface.heights.rms)
     widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
-    share = max(widths, default=0.0) / rms_height
-    return 6 if share < 0.1 else 8 if share < 0.3 else 12, max(1, ceil(share / 1.5))
+    share = max(widths, default=0.0) / rms
+    reach = 9.0 + max(float(interface.reach), 0.0) / rms
+    nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
+    pieces = ceil(share / 4.5) or 1
+    return {
+        "panel_count": ceil(reach / (1.7 if deforms else 2.2)),
+        "inner_nodes": nodes,
+        "inner_panels": pieces + 1 if deforms and share > 0.1 else pieces,
+    }
 
 
 def _law(case: Case, tip: float, modulus: float) -> Law:

@@ -6,6 +6,7 @@ import abc
 from typing import Any, NamedTuple
 
 import equinox as eqx
+import numpy as np
 
 from .._jax import jax, jnp
 
@@ -36,6 +37,8 @@ class State(NamedTuple):
         Length [m] on which the contact is resolved in the plane; 0 where it needs none.
     elastic
         The elastic part of the force [N].
+    field
+        What a contact that deforms needs to remember its bonds by; empty where it does not.
     """
 
     force: jax.Array
@@ -47,6 +50,43 @@ class State(NamedTuple):
     error: jax.Array
     size: jax.Array
     elastic: jax.Array
+    field: jax.Array
+
+
+class Way(NamedTuple):
+    """The way from a reversal to the outermost branch, solved at some places.
+
+    Attributes
+    ----------
+    enter, leave
+        Ends of its pieces [m] in the direction of motion, shape (pieces,).
+    states
+        The contact at Chebyshev points of each piece, in the direction of motion, shape
+        (pieces, points).
+    """
+
+    enter: jax.Array
+    leave: jax.Array
+    states: State
+
+
+class Held(NamedTuple):
+    """Where and how a phase ended: what the memory is renewed by.
+
+    Attributes
+    ----------
+    outer
+        Whether on an outermost branch, else still on the way to it.
+    parting
+        Whether the phase led outwards.
+    size, field
+        As in :class:`State`.
+    """
+
+    outer: jax.Array
+    parting: jax.Array
+    size: jax.Array
+    field: jax.Array
 
 
 class Contact(eqx.Module):
@@ -79,12 +119,12 @@ class Contact(eqx.Module):
 
     @property
     def reversal_panels(self) -> int:
-        """Into how many pieces that way is cut, for each law."""
+        """Into how many pieces the way from a reversal to a branch is cut, for each law."""
         return 1
 
     @property
     def reversal_nodes(self) -> int:
-        """How many solutions resolve the way from a reversal to the outermost branch."""
+        """How many solutions resolve each of these pieces."""
         return 12
 
     @abc.abstractmethod
@@ -103,22 +143,32 @@ class Contact(eqx.Module):
     def state(self, separation: jax.Array, memory: Memory) -> State:
         """The contact at a rigid separation, reached monotonically from ``memory``."""
 
-    def states(self, separations: jax.Array, memory: Memory) -> State:
-        """The contact at many separations, each reached from ``memory``."""
-        return jax.vmap(lambda d: self.state(d, memory))(separations)
+    def branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
+        """The contact on the outermost branch of ``memory``, at ascending places [m].
 
-    def states_near(self, separations: jax.Array, memory: Memory) -> State:
-        """The same close to the reversal that ``memory`` holds, where work can be saved."""
-        return self.states(separations, memory)
+        Shape (panels, places), on panels with the given ``ends``.
+        """
+        return jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places)
+
+    def way(
+        self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+    ) -> Way:
+        """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m]."""
+        steps = np.arange(1.0, self.reversal_panels + 1.0) / self.reversal_panels
+        last = self.switches(memory, start, parting)
+        marks = start + (last - start)[:, None] * steps
+        enter, leave = pieces_to(marks.ravel(), start, parting, within)
+        points = way_points(self.reversal_nodes)
+        places = enter[:, None] + (leave - enter)[:, None] * points
+        return Way(enter, leave, jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places))
 
     @abc.abstractmethod
-    def remember(
-        self, memory: Memory, separation: jax.Array, size: jax.Array | None = None
-    ) -> Memory:
-        """Memory after a monotone motion from ``memory`` to ``separation``.
+    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
+        """Memory after a monotone motion from ``memory`` to ``separation``."""
 
-        ``size`` is that of the state there, where it is known already.
-        """
+    def turned(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
+        """The same, where the state at ``separation`` is known already."""
+        return self.remember(memory, separation)
 
     @abc.abstractmethod
     def bonded(self, memory: Memory) -> jax.Array:
@@ -150,6 +200,22 @@ class Contact(eqx.Module):
 
         The force there is below 1e-6 of the largest pull.
         """
+
+
+def way_points(nodes: int) -> np.ndarray:
+    """Chebyshev points on a piece, as fractions of the way along it."""
+    points: np.ndarray = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(nodes))
+    return points
+
+
+def pieces_to(
+    marks: jax.Array, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+) -> tuple[jax.Array, jax.Array]:
+    """Ends of the pieces from a reversal to the last of the ``marks``, ``within`` bounds [m]."""
+    ahead = jnp.where(parting, 1.0, -1.0)
+    marks = jnp.clip(marks, *within)
+    marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
+    return jnp.concatenate([start[None], marks])[:-1], marks
 
 
 def first_out_of_reach(

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -15,16 +14,18 @@ from ..halfspace import ring_mesh
 from ..interface import Interface
 from ..interface import Memory as Thresholds
 from ..laws.base import Real, quantity
+from ..program import kept
 from ..shapes import Sphere
-from .base import Contact, State
-from .rigid import RigidContact, asinh_panels
+from .base import Contact, Held, State, Way, pieces_to, way_points
+from .rigid import FAR, RigidContact, rough_panels
+from .settling import Rest, asked_size, resting, rise_of, settle
 
-_PANELS = 10
-_COARSE = 32  # rings of the mesh on which the size of the contact is found
-_PASSES = 12  # of that search, at most
-_ITERATIONS = 80
+_FIT = 0.02  # how closely the mesh fits the pressure
+_PASSES = 12  # of that fit, at most
+_MORE = 1.02  # than the way at the first rate
 
 
+@kept
 class RingMemory(NamedTuple):
     """Thresholds on the rings of a mesh of a given size.
 
@@ -34,26 +35,47 @@ class RingMemory(NamedTuple):
         One array a hysteretic law, shape (rings + 1,); the last belongs to the mesh's end.
     size
         Length [m] of the mesh; 0 where all thresholds are infinite and the mesh is free.
-    rates
-        Smallest rate of a ring's separation per rigid separation at the last reversal.
     lift
         Displacement [m] of the rings at the last reversal, shape (rings + 1,).
     """
 
     thresholds: Thresholds
     size: jax.Array
-    rates: jax.Array
     lift: jax.Array
 
 
-class Field(NamedTuple):
-    """Solution on the rings: separation [m] and pressure [Pa], and how well they agree."""
+class _Trail(NamedTuple):
+    """The last three places and displacements of the rings there, newest first."""
 
-    size: jax.Array
-    separation: jax.Array
-    pressure: jax.Array
-    slope: jax.Array
-    residual: jax.Array
+    places: jax.Array
+    lifts: jax.Array
+
+    @classmethod
+    def straight(cls, place: jax.Array, lift: jax.Array, rate: jax.Array, step: jax.Array):  # type: ignore[no-untyped-def]
+        """Rings that came by ``rate`` in steps of ``step`` [m]."""
+        back = -step * np.arange(3.0)
+        return cls(place + back, lift + back[:, None] * rate)
+
+    def guess(self, place: jax.Array) -> jax.Array:
+        """The parabola through them, at a place further on."""
+        (a, b, c), x = self.places, place
+        apart = (a - b) * (b - c) * (c - a)
+        safe = jnp.where(apart == 0.0, 1.0, apart)
+        weights = jnp.stack(
+            [
+                (x - b) * (x - c) * (c - b) / safe,
+                (x - a) * (x - c) * (a - c) / safe,
+                (x - a) * (x - b) * (b - a) / safe,
+            ]
+        )
+        return jnp.where(apart == 0.0, self.lifts[0], weights @ self.lifts)
+
+    def append(self, place: jax.Array, lift: jax.Array) -> _Trail:
+        """With one more, the oldest dropped."""
+        return _Trail(
+            jnp.concatenate([place[None], self.places[:-1]]),
+            jnp.concatenate([lift[None], self.lifts[:-1]]),
+        )
 
 
 class ElasticContact(Contact):
@@ -69,12 +91,9 @@ class ElasticContact(Contact):
         Contact modulus E* [Pa] of the bulk.
     rings
         Number of rings (static). The force converges with a high order in it.
-    refinement
-        Factor on the number of panels of its curves (static).
-    inner_nodes
-        Solutions on a piece between a reversal and the outermost branch, at most 12 (static).
-    inner_panels
-        Number of these pieces (static); see :class:`RigidContact`.
+    panel_count, inner_nodes, inner_panels
+        As for :class:`RigidContact`; of several pieces the last one is where the rings that
+        lag behind reach the branch.
 
     Notes
     -----
@@ -86,10 +105,10 @@ class ElasticContact(Contact):
     interface: Interface
     shape: Sphere
     modulus: Real = quantity()
-    rings: int = eqx.field(static=True, default=96)
-    refinement: int = eqx.field(static=True, default=1)
-    inner_nodes: int = eqx.field(static=True, default=12)
-    inner_panels: int = eqx.field(static=True, default=1)
+    rings: int = eqx.field(static=True, default=80)
+    panel_count: int = eqx.field(static=True, default=8)
+    inner_nodes: int = eqx.field(static=True, default=16)
+    inner_panels: int = eqx.field(static=True, default=2)
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -113,24 +132,28 @@ class ElasticContact(Contact):
         return RigidContact(self.interface, self.shape)
 
     def refined(self, factor: int) -> ElasticContact:
-        return dataclasses.replace(self, refinement=factor)
+        return dataclasses.replace(self, panel_count=factor * self.panel_count)
 
     def fresh(self) -> RingMemory:
         return self.extreme((False,) * len(self.mechanisms))
 
     def extreme(self, bonded: tuple[bool, ...]) -> RingMemory:
-        count = len(ring_mesh(self.rings).radius) + 1
-        rows = tuple(jnp.full(count, -jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded)
-        return RingMemory(rows, jnp.zeros(()), jnp.ones(()), jnp.zeros(count))
+        rows = tuple(
+            jnp.full(self.rings + 1, -jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded
+        )
+        return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1))
 
     def state(self, separation: jax.Array, memory: RingMemory) -> State:
-        return self._measured(separation, memory, self.field(separation, memory))
+        size, rest = self._alone(separation, memory)
+        return self._measured(separation, memory.thresholds, size, rest)
 
-    def _measured(self, separation: jax.Array, memory: RingMemory, field: Field) -> State:
-        h, size = field.separation, field.size
+    def _measured(
+        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: Rest
+    ) -> State:
         mesh = ring_mesh(self.rings)
-        inside = self.interface.measure(h, memory.thresholds)
-        outside = self.interface.measure(h[-1:], _last(memory.thresholds), lift=1)
+        h = separation + rise_of(self, size, self.rings) + rest.lift
+        inside = self.interface.measure(h, thresholds)
+        outside = self.interface.measure(h[-1:], _last(thresholds), lift=1)
         area = mesh.area * size**2
         around = 2.0 * pi * self.shape.radius
 
@@ -138,84 +161,116 @@ class ElasticContact(Contact):
             return inner[..., :-1] @ area + around * outer[..., 0]
 
         parts = whole(inside.parts, outside.parts)
-        lift = mesh.compliance @ field.pressure * size / self.modulus
-        bulk = 0.5 * area @ (field.pressure * lift)
+        pressure = jnp.sum(inside.parts, axis=0)[:-1]
+        bulk = 0.5 * area @ (pressure * rest.lift[:-1])
         return State(
             force=jnp.sum(parts),
             stored=whole(inside.energy, outside.energy) + bulk,
-            central=separation + mesh.centre_compliance @ field.pressure * size / self.modulus,
+            central=mesh.axis @ h[:-1],
             bonds=whole(inside.bonds, outside.bonds),
             parts=parts,
             touching=whole(inside.touching, outside.touching),
-            error=field.residual,
+            error=rest.error,
             size=size,
             elastic=self.elastic_part(parts),
+            field=rest.lift,
         )
 
-    def states(self, separations: jax.Array, memory: RingMemory) -> State:
-        """One after the other: each takes as many Newton steps as it needs, no more."""
-        return jax.lax.map(lambda d: self.state(d, memory), separations)
-
-    def states_near(self, separations: jax.Array, memory: RingMemory) -> State:
-        """On the mesh of the reversal, from its displacement."""
-        size = jnp.where(memory.size > 0.0, memory.size, _first_size(self, separations[0]))
-
-        def near(separation: jax.Array) -> State:
-            field = self._solved(separation, memory, size, memory.lift)
-            return self._measured(separation, memory, field)
-
-        return jax.lax.map(near, separations)
-
-    def field(self, separation: jax.Array, memory: RingMemory) -> Field:
-        """Solve for the rings, on a mesh that fits where ``memory`` holds none."""
-        frozen = jax.lax.stop_gradient((self, separation, memory))
-        size, start = jax.lax.cond(
-            frozen[2].size > 0.0, lambda _, __, m: (m.size, m.lift), _search, *frozen
+    def _rest(
+        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: Rest
+    ) -> Rest:
+        """Rings that settled, with the derivatives of where they lie."""
+        held = jax.lax.stop_gradient((size, rest.lift))
+        return rest._replace(
+            lift=resting(self, separation, thresholds, *held, rings=self.rings)
         )
-        return self._solved(separation, memory, size, start)
 
-    def _solved(
-        self, separation: jax.Array, memory: RingMemory, size: jax.Array, lift: jax.Array
-    ) -> Field:
-        """Solve on a given mesh. Gradients pass by the last Newton step, with the mesh held."""
-        contact, place, old, size, lift = jax.lax.stop_gradient(
-            (self, separation, memory, size, lift)
-        )
-        held = _newton(contact, place, old.thresholds, size, lift, self.rings)
-        return _polish(self, separation, memory.thresholds, size, held)
+    def branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
+        """From outside in, each solution the first guess of the next.
 
-    def remember(
-        self, memory: RingMemory, separation: jax.Array, size: jax.Array | None = None
-    ) -> RingMemory:
-        if size is None:
-            field = self.field(separation, memory)
-        else:
-            kept = jnp.where(memory.size > 0.0, memory.size, size)
-            field = self._solved(separation, memory, kept, memory.lift)
-        mesh = ring_mesh(self.rings)
-        matrix = mesh.compliance * field.size / self.modulus * field.slope[:-1]
-        count = len(mesh.radius)
-        rates = _dense_solve(jnp.eye(count) - matrix, jnp.ones((count, 1)))
-        return RingMemory(
-            self.interface.remember(memory.thresholds, field.separation),
-            field.size,
-            jnp.clip(jnp.min(rates), 1e-3, 1.0),
-            field.separation
-            - separation
-            - self.shape.rise(field.size * np.append(mesh.radius, mesh.end)),
+        The ends of the panels come first: there the size of the mesh is found, which is linear
+        in between. Beyond the reach of the forces the body is as good as rigid.
+        """
+        near = places.shape[0] - FAR
+        down = places[:near].ravel()[::-1]
+        frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
+        sizes, rests = _descend(*frozen)
+
+        def one(place: jax.Array, size: jax.Array, rest: Rest) -> State:
+            rest = self._rest(place, memory.thresholds, size, rest)
+            return self._measured(place, memory.thresholds, size, rest)
+
+        states = jax.vmap(one)(down, sizes, rests)
+        inner = jax.tree_util.tree_map(
+            lambda leaf: leaf[::-1].reshape(near, places.shape[1], *leaf.shape[1:]), states
         )
+        thresholds = tuple(b[-1] for b in memory.thresholds)
+        outer = self.rigid.branch(ends, places[near:], thresholds)
+        still = jnp.zeros((FAR, places.shape[1], *inner.field.shape[2:]))
+        outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
+        return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
+
+    def way(
+        self, memory: RingMemory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+    ) -> Way:
+        """On the mesh of the reversal, from its displacement, step by step.
+
+        Nowhere for a body that turned where no bond reaches.
+        """
+        size = jax.lax.stop_gradient(memory.size)
+
+        def one(place: jax.Array, rest: Rest) -> State:
+            rest = self._rest(place, memory.thresholds, size, rest)
+            return self._measured(place, memory.thresholds, size, rest)
+
+        @jax.jit  # traced once, for its shapes and for itself
+        def back() -> Way:
+            frozen = jax.lax.stop_gradient((self, memory, start))
+            enter, leave, places, rests = _retrace(*frozen, size, parting, within)
+            return Way(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
+
+        shapes = jax.eval_shape(back)
+
+        def nowhere() -> Way:
+            blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+            still = jnp.broadcast_to(start, shapes.enter.shape)
+            return Way(still, still, blank.states)
+
+        bound = jnp.logical_and(memory.size > 0.0, start < self.reach)
+        return jax.lax.cond(bound, back, nowhere)
+
+    def _alone(self, separation: jax.Array, memory: RingMemory) -> tuple[jax.Array, Rest]:
+        """Size of the mesh and the rings at one separation, from nothing."""
+        frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
+        bound = old.size > 0.0
+        first = jnp.where(bound, old.size, _first_size(frozen, place))
+        size, rest = _fitted(
+            frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound)
+        )
+        return size, self._rest(separation, memory.thresholds, size, rest)
+
+    def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
+        size, rest = self._alone(separation, memory)
+        h = separation + rise_of(self, size, self.rings) + rest.lift
+        return RingMemory(self.interface.remember(memory.thresholds, h), size, rest.lift)
+
+    def turned(self, memory: RingMemory, separation: jax.Array, held: Held) -> RingMemory:
+        """From the displacement that the curves give there."""
+        size = jax.lax.stop_gradient(held.size)
+        h = separation + rise_of(self, size, self.rings) + held.field
+        # On an outermost branch no ring holds to what it remembered on its former mesh.
+        swept = jnp.where(held.parting, -jnp.inf, jnp.inf)
+        old = tuple(jnp.where(held.outer, swept, b) for b in memory.thresholds)
+        return RingMemory(self.interface.remember(old, h), size, held.field)
 
     def bonded(self, memory: RingMemory) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
 
     def switches(self, memory: RingMemory, separation: jax.Array, parting: jax.Array) -> jax.Array:
         """Where the slowest ring has passed from one outermost branch to the other."""
-        rows = []
-        for law in self.interface.hysteretic:
-            width = 1.02 * (law.breaking_gap - law.forming_gap) / memory.rates
-            width = jnp.where(memory.size > 0.0, width, 0.0)  # else on a branch already
-            rows.append(separation + jnp.where(parting, width, -width))
-        return jnp.stack(rows) if rows else jnp.zeros((0,))
+        _, rest = self._alone(separation, memory)
+        marks = _marks(self, memory, separation, parting, rest)
+        return marks[self.reversal_panels - 1 :: self.reversal_panels]
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
@@ -231,7 +286,7 @@ class ElasticContact(Contact):
         return lowest - 1.1 * depth
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return asinh_panels(low, high, self.interface.heights.rms, _PANELS * self.refinement)
+        return rough_panels(self.rigid, low, high, self.panel_count)
 
     @property
     def reach(self) -> jax.Array:
@@ -249,137 +304,127 @@ def _first_size(contact: ElasticContact, separation: jax.Array) -> jax.Array:
     return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
 
 
-def _search(
-    contact: ElasticContact, separation: jax.Array, memory: RingMemory
-) -> tuple[jax.Array, jax.Array]:
-    """Size of the mesh, and a first displacement on it, from a coarse mesh.
+def _marks(
+    contact: ElasticContact,
+    memory: RingMemory,
+    start: jax.Array,
+    parting: jax.Array,
+    rest: Rest,
+) -> jax.Array:
+    """Ends of the pieces of the way back: even ones until the fastest ring has passed from
+    one branch to the other, and one more until the slowest has, for each law.
 
-    The size is sqrt(3 <r^2>), the mean weighted with the pressure squared: the radius of
-    a Hertz contact, and 1.7 standard deviations of a contact of Gaussian tails.
+    There are no such ways for a body that is on a branch already.
     """
-    coarse, fine = ring_mesh(_COARSE), ring_mesh(contact.rings)
-    branch = tuple(
-        jnp.full(len(coarse.radius) + 1, jnp.where(b[0] > 0, jnp.inf, -jnp.inf))
-        for b in memory.thresholds
-    )
-    first = _first_size(contact, separation)
-
-    def improve(carry):  # type: ignore[no-untyped-def]
-        size, lift, _, count = carry
-        h = _newton(contact, separation, branch, size, lift, _COARSE)
-        pressure = contact.interface.pressure(h, branch)[:-1]
-        largest = jnp.max(jnp.abs(pressure))
-        some = largest > 0.0
-        weight = coarse.area * jnp.where(some, pressure / jnp.where(some, largest, 1.0), 1.0) ** 2
-        spread = jnp.sum(weight * coarse.radius**2) / jnp.sum(weight)
-        rise = contact.shape.rise(size * jnp.append(coarse.radius, coarse.end))
-        ratio = jnp.where(some, jnp.clip(jnp.sqrt(3.0 * spread), 0.2, 3.0), 1.0)
-        return size * ratio, h - separation - rise, jnp.abs(ratio - 1.0), count + 1
-
-    def go_on(carry):  # type: ignore[no-untyped-def]
-        return jnp.logical_and(carry[2] > 2e-3, carry[3] < _PASSES)
-
-    flat = jnp.zeros(len(coarse.radius) + 1)
-    size, lift, _, _ = jax.lax.while_loop(go_on, improve, (first, flat, jnp.inf, 0))
-    where = jnp.append(coarse.radius, coarse.end)
-    return size, jnp.interp(jnp.append(fine.radius, fine.end), where, lift)
+    slowest = jnp.clip(jnp.min(rest.rates), 1e-3, 1.0)
+    fastest = jnp.maximum(jnp.max(rest.rates), slowest)
+    even = np.arange(1.0, contact.reversal_panels) / max(contact.reversal_panels - 1, 1)
+    shares = jnp.append(even / fastest, _MORE / slowest)
+    ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
+    rows = [
+        start + ahead * (law.breaking_gap - law.forming_gap) * shares
+        for law in contact.interface.hysteretic
+    ]
+    return jnp.concatenate(rows)
 
 
-def _equations(
+def _fitted(
     contact: ElasticContact,
-    separation: jax.Array,
-    thresholds: Thresholds,
-    size: jax.Array,
-    rings: int,
-) -> Callable[[jax.Array], tuple[jax.Array, jax.Array, jax.Array, jax.Array]]:
-    """Residual of h = d + rise + u(p(h)), pressure and its slope, as a function of h."""
-    mesh = ring_mesh(rings)
-    rise = contact.shape.rise(size * np.append(mesh.radius, mesh.end))
-    rows = jnp.concatenate([mesh.compliance, mesh.end_compliance[None]]) * size / contact.modulus
-
-    def pressure_at(h: jax.Array) -> jax.Array:
-        return contact.interface.pressure(h, thresholds)
-
-    def equations(h: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
-        pressure, slope = jax.jvp(pressure_at, (h,), (jnp.ones_like(h),))
-        return h - separation - rise - rows @ pressure[:-1], pressure, slope, rows
-
-    return equations
-
-
-def _newton(
-    contact: ElasticContact,
-    separation: jax.Array,
+    place: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
     lift: jax.Array,
-    rings: int,
-) -> jax.Array:
-    """Separations h on the rings by Newton's method, from a first displacement.
+    free: jax.Array,
+) -> tuple[jax.Array, Rest]:
+    """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
+    rings = contact.rings
+    flat = jnp.zeros_like(lift)
 
-    Too small a separation is the safe side to start from: pressure falls and is convex in
-    h, so that a step never leaves that side far behind.
-    """
-    mesh = ring_mesh(rings)
-    equations = _equations(contact, separation, thresholds, size, rings)
-    rise = contact.shape.rise(size * np.append(mesh.radius, mesh.end))
+    def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
+        size, ratio, rest, passes = now
+        size = size * ratio
+        rest = settle(contact, place, thresholds, size, rest.lift, rings)
+        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
+
+    def unfit(now: tuple[Any, ...]) -> jax.Array:
+        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[3] < _PASSES)
+        return jnp.logical_or(now[3] == 0, off)
+
+    blank = Rest(lift, flat, flat[:-1], jnp.zeros(()))
+    size, _, rest, _ = jax.lax.while_loop(unfit, again, (size, jnp.ones(()), blank, 0))
+    return size, rest
+
+
+def _descend(
+    contact: ElasticContact, corners: jax.Array, places: jax.Array, thresholds: Thresholds
+) -> tuple[jax.Array, Rest]:
+    """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
+    count = corners.shape[0]
     sigma = contact.interface.heights.rms
+    flat = jnp.zeros(contact.rings + 1)
+    above = _Trail.straight(corners[0] + sigma, flat, flat, -sigma)
 
-    def step(carry):  # type: ignore[no-untyped-def]
-        h, _, count = carry
-        residual, _, slope, rows = equations(h)
-        change = _solve(rows, slope, residual)
-        small = 1e-13 * (sigma + jnp.abs(h))
-        return h - change, jnp.max(jnp.abs(change) / small), count + 1
+    def step(carry: tuple[_Trail, jax.Array, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
+        trail, factor, sizes = carry
+        k, place = job
+        corner = k < count
+        trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
+        light = _first_size(contact, place)
+        between = jnp.interp(place, corners[::-1], sizes[::-1])
+        size, rest = _fitted(
+            contact,
+            place,
+            thresholds,
+            jnp.where(corner, light * factor, between),
+            jnp.where(corner, trail.lifts[0], trail.guess(place)),
+            corner,
+        )
+        sizes = jnp.where(jnp.arange(count) == k, size, sizes)
+        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
 
-    def go_on(carry):  # type: ignore[no-untyped-def]
-        _, change, count = carry
-        return jnp.logical_and(change > 1.0, count < _ITERATIONS)
-
-    h = separation + rise + lift
-    return jax.lax.while_loop(go_on, step, (h, jnp.inf, 0))[0]
-
-
-@jax.custom_batching.sequential_vmap
-def _dense_solve(matrix: jax.Array, right: jax.Array) -> jax.Array:
-    """Solve one dense system; a batch of them one after the other.
-
-    Within a loop XLA's batched call is slower and makes all wait for the slowest.
-    """
-    return jnp.linalg.solve(matrix, right)
-
-
-def _solve(rows: jax.Array, slope: jax.Array, residual: jax.Array) -> jax.Array:
-    """(I - C diag(slope))^-1 residual; the mesh's end carries no pressure itself."""
-    inner = slope.shape[0] - 1
-    scaled = rows * slope[:-1]
-    change = _dense_solve(jnp.eye(inner) - scaled[:-1], residual[:-1, None])[:, 0]
-    return jnp.append(change, residual[-1] + scaled[-1] @ change)
+    begin = (above, jnp.ones(()), jnp.ones(count))
+    jobs = jnp.concatenate([corners, places])
+    _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
+    sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
+    return sizes, rests
 
 
-def _polish(
+def _retrace(
     contact: ElasticContact,
-    separation: jax.Array,
-    thresholds: Thresholds,
+    memory: RingMemory,
+    start: jax.Array,
     size: jax.Array,
-    held: jax.Array,
-) -> Field:
-    """One Newton step that carries derivatives (implicit function theorem)."""
-    equations = _equations(contact, separation, thresholds, size, contact.rings)
-    residual, pressure, slope, rows = equations(held)
-    scaled = jax.lax.stop_gradient(rows * slope[:-1])
-    matrix = jnp.eye(residual.shape[0] - 1) - scaled[:-1]
-    change = jax.lax.custom_linear_solve(
-        lambda x: matrix @ x,
-        residual[:-1],
-        lambda _, right: _dense_solve(matrix, right[:, None])[:, 0],
-        lambda _, right: _dense_solve(matrix.T, right[:, None])[:, 0],
+    parting: jax.Array,
+    within: tuple[Any, Any],
+) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
+    """Pieces of the way back, places on them and the rings there; first of all at the start."""
+    nodes = contact.reversal_nodes
+    steps = way_points(nodes)
+    sigma = contact.interface.heights.rms
+    pieces = len(contact.mechanisms) * contact.reversal_panels
+    whole = jnp.broadcast_to(start, (pieces,))
+    flat = jnp.zeros_like(memory.lift)
+
+    def step(carry: tuple[_Trail, jax.Array, jax.Array], k: jax.Array) -> Any:
+        trail, enter, leave = carry
+        piece = jnp.maximum(k - 1, 0) // nodes
+        share = jnp.asarray(steps)[jnp.maximum(k - 1, 0) % nodes]
+        place = enter[piece] + (leave - enter)[piece] * share
+        lift = jnp.where(k == 0, memory.lift, trail.guess(place))
+        rest = settle(contact, place, memory.thresholds, size, lift, contact.rings)
+        marks = _marks(contact, memory, start, parting, rest)
+        pair = pieces_to(marks, start, parting, within)
+        enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
+        back = jnp.where(parting, sigma, -sigma) * 1e-2
+        straight = _Trail.straight(place, rest.lift, rest.rates - 1.0, back)
+        trail = jax.tree_util.tree_map(
+            lambda a, b: jnp.where(k == 0, a, b), straight, trail.append(place, rest.lift)
+        )
+        return (trail, enter, leave), (place, rest)
+
+    begin = (_Trail.straight(start, memory.lift, flat, sigma), whole, whole)
+    (_, enter, leave), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
+    places, rests = jax.tree_util.tree_map(
+        lambda leaf: leaf[1:].reshape(pieces, nodes, *leaf.shape[1:]), found
     )
-    change = jnp.append(change, residual[-1] + scaled[-1] @ change)
-    # The step is within rounding: pressure follows it to first order.
-    pressure = pressure - slope * change
-    area = ring_mesh(contact.rings).area
-    load = jnp.sum(area * jnp.abs(pressure[:-1]))
-    off = jnp.sum(area * jnp.abs(slope * change)[:-1])
-    error = jax.lax.stop_gradient(off / jnp.where(load > 0.0, load, 1.0))
-    return Field(size, held - change, pressure[:-1], slope, error)
+    return enter, leave, places, rests

@@ -14,8 +14,9 @@ from ..interface import Memory as Thresholds
 from ..shapes import Sphere
 from .base import Contact, State, first_out_of_reach
 
-_PANELS = 26
-_LINEAR = 4.0  # panels are even in asinh(separation / (_LINEAR rms))
+_LINEAR = 8.0  # panels are even in asinh(separation / (_LINEAR rms))
+FAR = 3
+"""Panels beyond the reach of the forces, in geometric progression."""
 
 
 class RigidContact(Contact):
@@ -27,11 +28,13 @@ class RigidContact(Contact):
         What happens between the two mean planes.
     shape
         The body.
-    refinement
-        Factor on the number of panels of its curves (static).
+    panel_count
+        Number of panels of its curves within the reach of the forces (static).
+    inner_nodes
+        Solutions on a piece of the way from a reversal to the outermost branch, at most 16
+        (static).
     inner_panels
-        Pieces of the way from a reversal to the outermost branch (static): one for every
-        1.5 rms that a law's bonds stretch.
+        Number of these pieces, for each law (static).
 
     Notes
     -----
@@ -42,12 +45,17 @@ class RigidContact(Contact):
 
     interface: Interface
     shape: Sphere
-    refinement: int = eqx.field(static=True, default=1)
+    panel_count: int = eqx.field(static=True, default=8)
+    inner_nodes: int = eqx.field(static=True, default=16)
     inner_panels: int = eqx.field(static=True, default=1)
 
     @property
     def reversal_panels(self) -> int:
         return self.inner_panels
+
+    @property
+    def reversal_nodes(self) -> int:
+        return self.inner_nodes
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -62,7 +70,7 @@ class RigidContact(Contact):
         return jnp.asarray(2.0 * pi * self.shape.radius)
 
     def refined(self, factor: int) -> RigidContact:
-        return dataclasses.replace(self, refinement=factor)
+        return dataclasses.replace(self, panel_count=factor * self.panel_count)
 
     def fresh(self) -> Thresholds:
         return self.interface.fresh()
@@ -83,11 +91,10 @@ class RigidContact(Contact):
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=self.elastic_part(parts),
+            field=jnp.zeros(0),
         )
 
-    def remember(
-        self, memory: Thresholds, separation: jax.Array, size: jax.Array | None = None
-    ) -> Thresholds:
+    def remember(self, memory: Thresholds, separation: jax.Array) -> Thresholds:
         return self.interface.remember(memory, separation)
 
     def bonded(self, memory: Thresholds) -> jax.Array:
@@ -111,19 +118,27 @@ class RigidContact(Contact):
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return asinh_panels(low, high, self.interface.heights.rms, _PANELS * self.refinement)
+        return rough_panels(self, low, high, self.panel_count)
 
     @property
     def reach(self) -> jax.Array:
         return 9.0 * self.interface.heights.rms + self.interface.reach
 
 
-_LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 60.0, 0.5)])
+_LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 50.0)])
 
 
-def asinh_panels(low: jax.Array, high: jax.Array, rms: jax.Array | float, count: int) -> jax.Array:
-    """Ends of panels, even over a few rms around 0 and in proportion to |d| far from it."""
-    scale = _LINEAR * rms
-    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(high / scale), count + 1)
-    inner = scale * jnp.sinh(ends)
-    return inner.at[0].set(low).at[-1].set(high)
+def rough_panels(
+    contact: RigidContact, low: jax.Array, high: jax.Array, count: int
+) -> jax.Array:
+    """Ends of ``count`` panels over the reach of a rough contact, and of FAR beyond it.
+
+    Even over a few rms around 0 and in proportion to |d| far from it.
+    """
+    scale = _LINEAR * contact.interface.heights.rms
+    top = jnp.clip(contact.reach, low, high)
+    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(top / scale), count + 1)
+    near = (scale * jnp.sinh(ends)).at[0].set(low).at[-1].set(top)
+    ratio = jnp.maximum(high / jnp.where(top > 0.0, top, high), 1.0)
+    far = jnp.where(top < high, top * ratio ** (np.arange(1.0, FAR + 1.0) / FAR), high)
+    return jnp.concatenate([near, far.at[-1].set(high)])

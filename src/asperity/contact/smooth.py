@@ -82,11 +82,10 @@ class SmoothContact(Contact):
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=self.elastic_part(parts),
+            field=jnp.zeros(0),
         )
 
-    def remember(
-        self, memory: Flags, separation: jax.Array, size: jax.Array | None = None
-    ) -> Flags:
+    def remember(self, memory: Flags, separation: jax.Array) -> Flags:
         rows = []
         for k, law in enumerate(self._hysteretic):
             formed = separation <= law.forming_gap
@@ -109,7 +108,8 @@ class SmoothContact(Contact):
 
     def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
-        energy = self.states(ladder, self.fresh()).stored + weight * ladder
+        stored = jax.vmap(lambda d: self.state(d, self.fresh()).stored)(ladder)
+        energy = stored + weight * ladder
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 

@@ -20,9 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipkm1
 
-_INSIDE = np.array([0.0, 0.3, 0.6, 0.8, 0.9, 0.955, 0.985, 0.996])
-_OUTSIDE = np.array([1.0, 1.006, 1.03, 1.09, 1.22, 1.5, 2.1, 3.0, 4.5])
-_PANELS = np.concatenate([_INSIDE, _OUTSIDE])
+_PANELS = np.array([0.0, 0.6, 0.85, 0.954, 1.0, 1.057, 1.2, 1.7, 3.5])
 PANEL_COUNT = len(_PANELS) - 1
 
 
@@ -43,6 +41,8 @@ class Rings(NamedTuple):
         Displacement at the end per pressure at ring j, times E*, shape (n,).
     centre_compliance
         Displacement at the axis, likewise, shape (n,).
+    axis
+        Weights that give an even function of the radius at the axis from its values, (n,).
     """
 
     radius: np.ndarray
@@ -51,11 +51,12 @@ class Rings(NamedTuple):
     end: float
     end_compliance: np.ndarray
     centre_compliance: np.ndarray
+    axis: np.ndarray
 
 
 @cache
 def ring_mesh(rings: int) -> Rings:
-    """The mesh with about ``rings`` rings: an equal number on each of its 16 panels."""
+    """The mesh with about ``rings`` rings: an equal number on each of its 8 panels."""
     order = max(1, round(rings / PANEL_COUNT))
     node, weight = np.polynomial.legendre.leggauss(order)
     low, high = _PANELS[:-1, None], _PANELS[1:, None]
@@ -64,7 +65,9 @@ def ring_mesh(rings: int) -> Rings:
     end = float(_PANELS[-1])
     targets = np.concatenate([radius, [end, 0.0]])
     matrix = np.concatenate([_panel_columns(targets, k, node) for k in range(PANEL_COUNT)], axis=1)
-    return Rings(radius, area, matrix[:-2], end, matrix[-2], matrix[-1])
+    axis = np.zeros_like(radius)
+    axis[:order] = _lagrange(radius[:order] ** 2, np.zeros(1))[:, 0]
+    return Rings(radius, area, matrix[:-2], end, matrix[-2], matrix[-1], axis)
 
 
 def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:

@@ -8,13 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
+from ..program import kept
 from .table import FORCE, STORED, Table, chebyshev_sum, local
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
-_PLACES = 8
+_PLACES = 32
 _HALVINGS = 60
 
 
+@kept
 class Datum(NamedTuple):
     """Separations from which a motion is measured.
 

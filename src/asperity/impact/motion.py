@@ -8,29 +8,23 @@ import equinox as eqx
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
-from ..contact.base import Contact, Memory
+from ..contact.base import Contact, Held, Memory
 from ..errors import Outcome, Tolerance
 from ..laws.base import Real, quantity
+from ..program import kept
 from .datum import Datum, find_datum
-from .phase import Turn, Work, find_turn, kinetic_along, travel_time, work_along
+from .phase import Turn, find_turn, look_ahead, pull_work, row_at, travel_time
 from .table import (
-    DRIVE,
     FORCE,
-    PULL,
     SIZE,
     STORED,
     TOUCHING,
     Pieces,
     Table,
-    antiderivative,
     branch_of,
-    chebyshev_sum,
     inner_pieces,
-    join,
-    local,
     outer_row,
     quantities,
-    row_at,
     tabulate,
 )
 
@@ -79,6 +73,7 @@ class Body(eqx.Module):
         return 0.5 * self.mass * self.speed**2
 
 
+@kept
 class Phase(NamedTuple):
     """What a monotone phase started from; enough to draw it again."""
 
@@ -109,6 +104,7 @@ class Limits(NamedTuple):
         )
 
 
+@kept
 class Progress(NamedTuple):
     """A motion at the turning point before its next impact."""
 
@@ -124,6 +120,7 @@ class Progress(NamedTuple):
     made: jax.Array
 
 
+@kept
 class Impacts(NamedTuple):
     """One row an impact; rows after the last have ``made`` False.
 
@@ -239,10 +236,11 @@ def fly(
 ) -> tuple[Progress, Impacts]:
     """Go on for at most ``impacts`` impacts (static), inert once the motion has ended."""
 
+    @jax.jit  # traced once, for its shapes and for itself
     def one(progress: Progress, _: None) -> tuple[Progress, Impacts]:
         return _impact(contact, body, table, datum, origin, progress, limits)
 
-    shapes = eqx.filter_eval_shape(one, progress, None)[1]
+    shapes = jax.eval_shape(one, progress, None)[1]
 
     def none(progress: Progress, _: None) -> tuple[Progress, Impacts]:
         empty = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
@@ -290,7 +288,6 @@ class _Leg(NamedTuple):
     phase: Phase
     row: jax.Array
     lost: jax.Array
-    kinetic: jax.Array
     time: jax.Array
     bonds: jax.Array
     pull_work: jax.Array
@@ -302,27 +299,30 @@ def _leg(
     """One phase down or up, and the bonds that it makes or breaks."""
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = branch_of(contact, progress.memory, parting)
-    pieces = join(table, branch, inner, progress.place, parting, DRIVE)
-    work = work_along(pieces, progress.kinetic, body.weight)
-    turn = find_turn(work)
-    time = progress.time + jnp.sum(travel_time(work, body.mass, turn.place, parting))
-    row = row_at(table, branch, inner, turn.piece, turn.place, parting)
-    bonds = row[quantities(contact).bonds]
+    ahead = look_ahead(
+        table, branch, inner, progress.kinetic, body.weight, progress.place, parting
+    )
+    turn = find_turn(ahead)
+    time = progress.time + travel_time(ahead, turn, body.mass)
+    row = row_at(ahead, turn)
+    layout = quantities(contact)
+    bonds = row[layout.bonds]
     formed = jnp.maximum(bonds - progress.bonds, 0.0)
     broken = jnp.maximum(progress.bonds - bonds, 0.0)
     at_forming, at_breaking = contact.losses()
     lost = progress.lost + formed * at_forming + broken * at_breaking
-    kinetic = jnp.where(turn.found, 0.0, kinetic_along(work, pieces.leave[:, None])[-1, 0])
+    drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
-        progress.place, turn.place, progress.kinetic, progress.time, branch, inner,
+        progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
         progress.lost, progress.bonds,
     )  # fmt: skip
-    pull = -_pull_work(work, turn.place, parting)
+    held = Held(turn.piece >= ahead.pieces, parting, row[SIZE], row[layout.field])
     after = progress._replace(
-        memory=contact.remember(progress.memory, turn.place, row[SIZE]), place=turn.place,
-        kinetic=kinetic, time=time, lost=lost, bonds=bonds,
+        memory=contact.turned(progress.memory, turn.place, held), place=turn.place,
+        kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
-    return after, _Leg(turn, phase, row, lost, kinetic, time, bonds, pull)
+    row = row[: layout.components.stop]
+    return after, _Leg(turn, phase, row, lost, time, bonds, -pull_work(ahead, turn))
 
 
 def _impact(
@@ -342,7 +342,7 @@ def _impact(
     # One body of code for both directions: half to compile.
     end, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
     fall, rise = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
-    mechanical = both.kinetic + body.weight * both.turn.place + both.row[:, STORED]
+    mechanical = both.turn.kinetic + body.weight * both.turn.place + both.row[:, STORED]
     closure = jnp.max(jnp.abs(mechanical + jnp.sum(both.lost, axis=1) - origin))
     height = end.place - datum.equilibrium
     first = jnp.where(progress.made == 0, height, progress.first)
@@ -374,15 +374,3 @@ def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
     for holds, outcome in reversed(rules):
         code = jnp.where(holds, ENDS.index(outcome), code)
     return code
-
-
-def _pull_work(work: Work, last: jax.Array, parting: jax.Array) -> jax.Array:
-    """Integral of the adhesive and capillary forces over a phase [J]."""
-    p = work.pieces
-    integral = antiderivative(p.values[..., PULL].T) * (0.5 * (p.high - p.low))
-
-    def until(place: jax.Array) -> jax.Array:
-        inside = jnp.where(parting, jnp.minimum(place, last), jnp.maximum(place, last))
-        return chebyshev_sum(integral, local(p.low, p.high, inside))
-
-    return jnp.sum(until(p.leave) - until(p.enter))

@@ -5,18 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..program import Program
 from .motion import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
-from .table import Pieces, Table, chebyshev_sum, join, local, outer_row
+from .table import RATE, RISE, Pieces, Table, chebyshev_sum, join, local, read_row
 
-_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(12)
-_Y = 0.5 * (_GAUSS + 1.0)
-_RISE = np.sin(0.5 * np.pi * _Y) ** 2
-_RATE = 0.25 * np.pi * np.sin(np.pi * _Y) * _WEIGHT
 _BATCH = 16  # phases a compiled call
 _SAMPLES = 40  # on a phase, and again on its part in contact
 
@@ -60,7 +56,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     time, separation, speed, kept = (a.ravel() for a in (*joined[:3], joined[4]))
     values = joined[3].reshape(time.size, -1)
     keep = kept.astype(bool)
-    row = outer_row(table, 0, jnp.asarray(body.release))
+    row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
     release = (0.0, body.release, -body.speed, row, 0)
     rest = (time[keep], separation[keep], speed[keep], values[keep], phase.ravel()[keep])
     return Series(
@@ -78,11 +74,13 @@ def until(series: Series, limit: float) -> Series:
     return Series(*(column[kept] for column in series))
 
 
-@eqx.filter_jit
-def _draw(
+def _draw_all(
     body: Body, table: Table, phases: Phase, parting: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
     return jax.vmap(lambda phase: _draw_one(body, table, phase, parting, places))(phases)
+
+
+_draw = Program(_draw_all)
 
 
 def _draw_one(
@@ -101,13 +99,13 @@ def _draw_one(
     here = Work(
         Pieces(*(leaf[index] for leaf in pieces)),
         work.integral[:, index],
-        work.kinetic[index],
+        jnp.append(work.kinetic[index], 0.0),
         work.weight,
     )
-    energy = kinetic_along(here, ends[:-1, None] + spans[:, None] * _RISE)
+    energy = kinetic_along(here, ends[:-1, None] + spans[:, None] * RISE)
     moving = jnp.logical_and(energy > 0.0, (spans != 0.0)[:, None])
     speed = jnp.sqrt(jnp.where(moving, 2.0 * energy / body.mass, 1.0))
-    taken = jnp.sum(jnp.where(moving, _RATE / speed, 0.0), axis=1) * jnp.abs(spans)
+    taken = jnp.sum(jnp.where(moving, RATE / speed, 0.0), axis=1) * jnp.abs(spans)
     kinetic = jnp.maximum(kinetic_along(here, ends[1:, None])[:, 0], 0.0)
     x = local(here.pieces.low, here.pieces.high, ends[1:])
     rows = chebyshev_sum(jnp.moveaxis(here.pieces.values, 1, 0), x[:, None])

@@ -15,16 +15,28 @@ from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..contact.base import Contact, Memory, State
+from ..program import kept
 
-NODES = 12
+NODES = 16
+LOOKS = 32
+"""Places of a panel at which the kinetic energy is looked at, its ends among them."""
+
+_LEAST = 1e-6  # of the largest work: errors are not asked to be small against less
 _ANTIDERIVATIVE = np.array([chebyshev.chebint(row) for row in np.eye(NODES)])
+_LOOKS = np.linspace(-1.0, 1.0, LOOKS)
+_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(24)
+_Y = 0.5 * (_GAUSS + 1.0)
+RISE = np.sin(0.5 * np.pi * _Y) ** 2
+"""Places of a quadrature over a piece, as fractions of it: square-root ends become smooth."""
+RATE = 0.25 * np.pi * np.sin(np.pi * _Y) * _WEIGHT
+"""Its weights, as fractions of the piece."""
 
 
 class Quantities(NamedTuple):
     """How the numbers of a :class:`State` lie in one row.
 
     Force, its attractive parts, stored, central, touching, size, then the bonds, then the
-    parts.
+    parts; after these, in a table alone, the field.
     """
 
     laws: int
@@ -40,12 +52,38 @@ class Quantities(NamedTuple):
         """Columns of the forces by mechanism."""
         return slice(6 + self.laws, 6 + self.laws + self.parts)
 
+    @property
+    def field(self) -> slice:
+        """Columns of what the memory is renewed by."""
+        return slice(6 + self.laws + self.parts, None)
+
 
 FORCE, PULL, STORED, CENTRAL, TOUCHING, SIZE = range(6)
 DRIVE = slice(FORCE, PULL + 1)
 """The columns that a motion integrates."""
 
 
+@kept
+class Works(NamedTuple):
+    """Work of the force, and of its attractive part, from the top of a table down.
+
+    Attributes
+    ----------
+    integral
+        Chebyshev coefficients on each panel, shape (branches, panels, NODES + 1, 2): the
+        work from the top to a place is their sum there.
+    looks
+        Work of the force [J] at LOOKS places of each panel, (branches, panels, LOOKS).
+    nodes
+        Likewise at the places RISE of each panel.
+    """
+
+    integral: jax.Array
+    looks: jax.Array
+    nodes: jax.Array
+
+
+@kept
 class Table(NamedTuple):
     """Outermost branches of a contact.
 
@@ -56,6 +94,8 @@ class Table(NamedTuple):
     values
         Rows of quantities as Chebyshev coefficients, shape (branches, panels, NODES, rows).
         The first branch has no bonds kept, the last has all.
+    works
+        Their integrals.
     error
         Work of the last Chebyshev coefficients of the force on a panel, relative to the work
         from outside to there: an estimate of the interpolation error.
@@ -65,10 +105,28 @@ class Table(NamedTuple):
 
     ends: jax.Array
     values: jax.Array
+    works: Works
     error: jax.Array
     residual: jax.Array
 
+    @property
+    def looks(self) -> jax.Array:
+        """The places [m] of :attr:`Works.looks`, shape (panels, LOOKS)."""
+        low, high = self.ends[:-1, None], self.ends[1:, None]
+        return 0.5 * (low + high) + 0.5 * (high - low) * _LOOKS
 
+    @property
+    def nodes(self) -> jax.Array:
+        """The places [m] of :attr:`Works.nodes`."""
+        low, high = self.ends[:-1, None], self.ends[1:, None]
+        return low + (high - low) * RISE
+
+    def panel_at(self, place: jax.Array) -> jax.Array:
+        """Index of the panel of a place [m]; of two that meet there, the lower one."""
+        return jnp.sum(self.ends[1:-1] < place)
+
+
+@kept
 class Pieces(NamedTuple):
     """Polynomials along one monotone phase, in the order in which they are passed.
 
@@ -90,10 +148,10 @@ class Pieces(NamedTuple):
 
 
 def rows_of(state: State) -> jax.Array:
-    """The numbers of a state in one row."""
+    """The numbers of a state in one row, its field last."""
     pull = state.force - state.elastic
     head = jnp.stack([state.force, pull, state.stored, state.central, state.touching, state.size])
-    return jnp.concatenate([head, state.bonds, state.parts])
+    return jnp.concatenate([head, state.bonds, state.parts, state.field])
 
 
 def quantities(contact: Contact) -> Quantities:
@@ -114,67 +172,66 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     ends = jax.lax.stop_gradient(contact.panels(low, high))
     memories = [contact.extreme(branch) for branch in branches(contact)]
     stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
+    points = chebyshev.chebpts1(NODES)
+    places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
+
+    def one(memory: Memory) -> tuple[jax.Array, jax.Array]:
+        states = contact.branch(ends, places, memory)
+        return _fit(states), jnp.max(states.error)
+
     if jax.tree_util.tree_leaves(stacked):
-        values, errors = jax.lax.map(
-            lambda memory: _fit(contact, memory, ends[:-1], ends[1:]), stacked
-        )
+        values, errors = jax.lax.map(one, stacked)
     else:
-        values, errors = (x[None] for x in _fit(contact, memories[0], ends[:-1], ends[1:]))
+        values, errors = (x[None] for x in one(memories[0]))
     force = values[..., FORCE]
     width = jnp.diff(ends)
     tail = jnp.max(jnp.abs(force[..., -2:]), axis=-1) * width
     done = jnp.max(jnp.abs(force), axis=-1) * width
     # Against the work from outside down to each panel: what a body that turns there has done.
     work = jnp.cumsum(done[:, ::-1], axis=1)[:, ::-1]
-    matters = work > 1e-9 * jnp.max(work)
-    error = jnp.where(matters, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
-    return Table(ends, values, jnp.max(error), jnp.max(errors))
+    work = work + _LEAST * jnp.max(work)
+    error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
+    return Table(ends, values, _works(ends, values), jnp.max(error), jnp.max(errors))
 
 
-def blank_table(contact: Contact) -> Table:
-    """A table of zeros, of the shapes that :func:`tabulate` gives."""
-    ends = jax.eval_shape(contact.panels, jnp.zeros(()), jnp.ones(())).shape[0]
-    layout = quantities(contact)
-    shape = (len(branches(contact)), ends - 1, NODES, layout.components.stop)
-    zero = jnp.zeros(())
-    return Table(jnp.linspace(0.0, 1.0, ends), jnp.zeros(shape), zero, zero)
+def _works(ends: jax.Array, values: jax.Array) -> Works:
+    """Integrate the branches from the top down, once for all phases."""
+    half = 0.5 * jnp.diff(ends)
+    integral = jnp.einsum("kn,bpnc,p->bpkc", _ANTIDERIVATIVE.T, values[..., DRIVE], half)
+    signs = (-1.0) ** np.arange(NODES + 1)
+    whole = jnp.einsum("bpkc,k->bpc", integral, 1.0 - signs)
+    above = jnp.cumsum(whole[:, ::-1], axis=1)[:, ::-1]  # from each panel's low end to the top
+    at_low = jnp.einsum("bpkc,k->bpc", integral, signs)
+    integral = integral.at[..., 0, :].add(-above - at_low)
+    look, node = (chebyshev.chebvander(x, NODES) for x in (_LOOKS, 2.0 * RISE - 1.0))
+    force = integral[..., 0]
+    return Works(integral, force @ look.T, force @ node.T)
 
 
-def _fit(
-    contact: Contact,
-    memory: Memory,
-    low: jax.Array,
-    high: jax.Array,
-    nodes: int = NODES,
-    near: bool = False,
-) -> tuple[jax.Array, jax.Array]:
-    """Coefficients [piece, NODES, rows] of a contact reached from ``memory``."""
-    x = chebyshev.chebpts1(nodes)
+def _fit(states: State) -> jax.Array:
+    """Coefficients [piece, NODES, rows] of states at the Chebyshev points of pieces."""
+    nodes = states.force.shape[1]
     to_coefficients = np.zeros((NODES, nodes))
-    to_coefficients[:nodes] = np.linalg.inv(chebyshev.chebvander(x, nodes - 1))
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    places = (middle[:, None] + half[:, None] * x).ravel()
-    states = contact.states_near(places, memory) if near else contact.states(places, memory)
-    rows = jax.vmap(rows_of)(states).reshape(low.shape[0], nodes, -1)
-    return jnp.einsum("kn,pnq->pkq", jnp.asarray(to_coefficients), rows), states.error
+    to_coefficients[:nodes] = np.linalg.inv(
+        chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1)
+    )
+    rows = jax.vmap(jax.vmap(rows_of))(states)
+    return jnp.einsum("kn,pnq->pkq", to_coefficients, rows)
 
 
 def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
 ) -> Pieces:
-    """The pieces between a reversal at ``start`` and the outermost branch: one a law."""
-    ahead = jnp.where(parting, 1.0, -1.0)
-    marks = jnp.clip(contact.switches(memory, start, parting), table.ends[0], table.ends[-1])
-    if not marks.shape[0]:
-        return Pieces(marks, marks, marks, marks, jnp.zeros((0, *table.values.shape[2:])))
-    marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
-    first = jnp.concatenate([start[None], marks[:-1]])
-    share = np.linspace(0.0, 1.0, contact.reversal_panels + 1)
-    steps = first[:, None] + (marks - first)[:, None] * share
-    first, marks = steps[:, :-1].ravel(), steps[:, 1:].ravel()
-    low, high = jnp.minimum(first, marks), jnp.maximum(first, marks)
-    values, _ = _fit(contact, memory, low, high, contact.reversal_nodes, near=True)
-    return Pieces(low, high, first, marks, values)
+    """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
+    if not contact.mechanisms or contact.discrete:
+        none = jnp.zeros(0)
+        return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
+    way = contact.way(memory, start, parting, (table.ends[0], table.ends[-1]))
+    odd = (-1.0) ** np.arange(NODES)[:, None]
+    values = _fit(way.states)
+    values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
+    low, high = jnp.minimum(way.enter, way.leave), jnp.maximum(way.enter, way.leave)
+    return Pieces(low, high, way.enter, way.leave, values)
 
 
 def branch_of(contact: Contact, memory: Memory, parting: jax.Array) -> jax.Array:
@@ -186,53 +243,33 @@ def branch_of(contact: Contact, memory: Memory, parting: jax.Array) -> jax.Array
 
 
 def join(
-    table: Table,
-    branch: jax.Array,
-    inner: Pieces,
-    start: jax.Array,
-    parting: jax.Array,
-    columns: slice = slice(None),
+    table: Table, branch: jax.Array, inner: Pieces, start: jax.Array, parting: jax.Array
 ) -> Pieces:
-    """All polynomials ahead of a body that leaves ``start``: the inner pieces, then a branch.
-
-    Of the ``columns`` alone: a motion needs the force, not the rest of each row.
-    """
+    """All polynomials ahead of a body that leaves ``start``: the inner pieces, then a branch."""
     begin = inner.leave[-1] if inner.leave.shape[0] else start
-    inner = inner._replace(values=inner.values[..., columns])
-    low, high, outer = table.ends[:-1], table.ends[1:], table.values[branch][..., columns]
+    low, high = table.ends[:-1], table.ends[1:]
+    outer = table.values[branch][..., : inner.values.shape[-1]]
     up = (low, high, jnp.maximum(low, begin), jnp.maximum(high, begin), outer)
     down = (low, high, jnp.minimum(high, begin), jnp.minimum(low, begin), outer)
     rest = [jnp.where(parting, a, b[::-1]) for a, b in zip(up, down, strict=True)]
     return Pieces(*(jnp.concatenate(pair) for pair in zip(inner, rest, strict=True)))
 
 
-def row_at(
-    table: Table,
-    branch: jax.Array,
-    inner: Pieces,
-    piece: jax.Array,
-    place: jax.Array,
-    parting: jax.Array,
-) -> jax.Array:
-    """All quantities at a place of a piece as :func:`join` counts them."""
-    count, ahead = table.ends.shape[0] - 1, inner.low.shape[0]
-    step = jnp.clip(piece - ahead, 0, count - 1)
-    panel = jnp.where(parting, step, count - 1 - step)
-    x = local(table.ends[panel], table.ends[panel + 1], place)
-    row = chebyshev_sum(table.values[branch, panel], x)
-    if not ahead:
-        return row
-    at = jnp.minimum(piece, ahead - 1)
-    near = chebyshev_sum(inner.values[at], local(inner.low[at], inner.high[at], place))
-    return jnp.where(piece < ahead, near, row)
-
-
-def outer_row(table: Table, branch: int, place: jax.Array) -> jax.Array:
+def outer_row(table: Table, branch: jax.Array | int, place: jax.Array) -> jax.Array:
     """All quantities of an outermost branch at one separation [m]."""
-    count = table.ends.shape[0] - 2
-    panel = jnp.clip(jnp.searchsorted(table.ends, place, side="right") - 1, 0, count)
+    panel = table.panel_at(place)
     x = local(table.ends[panel], table.ends[panel + 1], place)
     return chebyshev_sum(table.values[branch, panel], x)
+
+
+def read_row(table: Table, branch: int, place: float) -> np.ndarray:
+    """The same for numbers, without compiling anything."""
+    ends = np.asarray(table.ends)
+    panel = int(np.sum(ends[1:-1] < place))
+    low, high = ends[panel], ends[panel + 1]
+    x = (2.0 * place - low - high) / (high - low) if high > low else 0.0
+    row: np.ndarray = chebyshev.chebval(x, np.asarray(table.values)[branch, panel])
+    return row
 
 
 def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
@@ -243,12 +280,24 @@ def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
 
 
 def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
-    """Sum of Chebyshev polynomials; the coefficients' first axis is the degree."""
-    upper = jnp.zeros_like(coefficients[0] * x)
-    lower = upper
-    for k in range(coefficients.shape[0] - 1, 0, -1):
-        upper, lower = coefficients[k] + 2.0 * x * upper - lower, upper
-    return coefficients[0] + x * upper - lower
+    """Sum of Chebyshev polynomials; the coefficients' first axis is the degree.
+
+    The other axes and those of ``x`` broadcast.
+    """
+    count = coefficients.shape[0]
+    rest = max(coefficients.ndim - 1, x.ndim)
+    wide = coefficients.reshape(count, *(1,) * (rest - coefficients.ndim + 1), *coefficients.shape[1:])
+    basis = _basis(count, x.reshape(*(1,) * (rest - x.ndim), *x.shape))
+    return jnp.sum(wide * basis, axis=0)
+
+
+def _basis(count: int, x: jax.Array) -> jax.Array:
+    """T_0 to T_(count - 1) at ``x``, first axis the degree: T_(m+j) = 2 T_m T_j - T_(m-j)."""
+    basis = jnp.stack([jnp.ones_like(x), x])
+    while basis.shape[0] < count:
+        top = basis[-1]
+        basis = jnp.concatenate([basis, 2.0 * top * basis[1:] - basis[-2::-1]])
+    return basis[:count]
 
 
 def antiderivative(coefficients: jax.Array) -> jax.Array:

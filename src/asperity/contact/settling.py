@@ -1,0 +1,245 @@
+"""Equilibrium of rings: separation h = d + rise + u(p(h)) on a half-space.
+
+Newton's method that keeps its matrix as long as it gains a digit with it: a solution next to
+a known one then costs one factorization. Derivatives pass by the implicit function theorem.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..halfspace import ring_mesh
+from ..interface import Interface
+from ..interface import Memory as Thresholds
+from ..shapes import Sphere
+
+_ENOUGH = 1e-12  # relative change left in the separation
+_STALE = 0.1  # a matrix that gains less than this factor a step is made anew
+_RESTART = 20  # steps after which a bad first guess is given up
+_STEPS = 120
+
+
+class Rough(Protocol):
+    """What rings are pressed by."""
+
+    interface: Interface
+    shape: Sphere
+    modulus: Any
+
+
+class Rest(NamedTuple):
+    """Rings at rest.
+
+    Attributes
+    ----------
+    lift
+        Displacement u of the rings and of the mesh's end [m], shape (rings + 1,).
+    rates
+        Rate of their separation per rigid separation, approximately.
+    pressure
+        Pressure on the rings [Pa], approximately.
+    error
+        Estimated relative error of the force.
+    """
+
+    lift: jax.Array
+    rates: jax.Array
+    pressure: jax.Array
+    error: jax.Array
+
+
+class _Step(NamedTuple):
+    h: jax.Array
+    pressure: jax.Array
+    change: jax.Array
+    rate: jax.Array
+    off: jax.Array
+    count: jax.Array
+
+    @property
+    def enough(self) -> jax.Array:
+        """Whether what the next step would change is small enough."""
+        return self.change * jnp.minimum(self.rate, 1.0) < _ENOUGH
+
+
+def rise_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
+    """Rise of the body's surface at the rings and at the mesh's end [m]."""
+    mesh = ring_mesh(rings)
+    return contact.shape.rise(size * np.append(mesh.radius, mesh.end))
+
+
+def _rows(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
+    """Displacement at the rings and at the end per pressure at each ring."""
+    mesh = ring_mesh(rings)
+    rows = np.concatenate([mesh.compliance, mesh.end_compliance[None]])
+    return rows * (size / contact.modulus)
+
+
+def _pressed(
+    contact: Rough, thresholds: Thresholds, h: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    """Pressure and its slope at separations h [m]."""
+
+    def pressure(h: jax.Array) -> jax.Array:
+        return contact.interface.pressure(h, thresholds)
+
+    return jax.jvp(pressure, (h,), (jnp.ones_like(h),))
+
+
+def settle(
+    contact: Rough,
+    separation: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    lift: jax.Array,
+    rings: int,
+) -> Rest:
+    """Rings in equilibrium at a rigid separation, from a first guess of their ``lift``.
+
+    Without derivatives; :func:`resting` gives them.
+
+    Too small a separation is the safe side to start from: pressure falls and is convex in
+    h, so that a step never leaves that side far behind. A guess that does not converge is
+    given up for that side.
+    """
+    mesh = ring_mesh(rings)
+    count = len(mesh.radius)
+    rows = _rows(contact, size, rings)
+    safe = separation + rise_of(contact, size, rings)
+    sigma = contact.interface.heights.rms
+
+    def moved(now: _Step, pressure: jax.Array, matrix: _Matrix) -> _Step:
+        move = matrix.back(now.h - safe - rows @ pressure[:-1])
+        change = jnp.max(jnp.abs(move) / (sigma + jnp.abs(now.h)))
+        rate = change / now.change
+        load = jnp.sum(mesh.area * jnp.abs(pressure[:-1]))
+        off = jnp.sum(mesh.area * jnp.abs(matrix.slope * move[:-1]))
+        off = jnp.minimum(rate, 1.0) * off / jnp.where(load > 0.0, load, 1.0)
+        return _Step(now.h - move, pressure[:-1], change, rate, off, now.count + 1)
+
+    def anew(carry: tuple[_Step, _Matrix]) -> tuple[_Step, _Matrix]:
+        """One step with a new matrix, and more with the same while it serves."""
+        now, _ = carry
+        pressure, slope = _pressed(contact, thresholds, now.h)
+        matrix = _Matrix.of(rows, slope[:-1])
+
+        def serves(now: _Step) -> jax.Array:
+            return jnp.logical_not(now.enough) & (now.rate < _STALE)
+
+        def again(now: _Step) -> _Step:
+            return moved(now, contact.interface.pressure(now.h, thresholds), matrix)
+
+        now = jax.lax.while_loop(serves, again, moved(now, pressure, matrix))
+        restart = (now.count > _RESTART) & (now.count < 2 * _RESTART) & ~now.enough
+        begun = _Step(safe, now.pressure, 1.0, 1.0, now.off, 2 * _RESTART)
+        return jax.tree_util.tree_map(lambda a, b: jnp.where(restart, a, b), begun, now), matrix
+
+    def go_on(carry: tuple[_Step, _Matrix]) -> jax.Array:
+        now, _ = carry
+        return jnp.logical_not(now.enough) & (now.count < _STEPS)
+
+    one = jnp.ones(())
+    first = _Step(safe + lift, jnp.zeros(count), one, one, jnp.zeros(()), jnp.asarray(0))
+    blank = _Matrix(jnp.eye(count), jnp.arange(count, dtype=jnp.int32), *(jnp.zeros(count),) * 2)
+    end, matrix = jax.lax.while_loop(go_on, anew, (first, blank))
+    return Rest(end.h - safe, matrix.back(jnp.ones(count + 1)), end.pressure, end.off)
+
+
+@eqx.filter_custom_jvp
+def resting(
+    contact: Rough,
+    separation: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    lift: jax.Array,
+    *,
+    rings: int,
+) -> jax.Array:
+    """The displacement ``lift`` of rings that have settled, with its derivatives.
+
+    With respect to contact, separation and thresholds, on a mesh that is held.
+    """
+    return lift
+
+
+@resting.def_jvp  # type: ignore[untyped-decorator]
+def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array, jax.Array]:
+    contact, separation, thresholds, size, lift = primals
+    h = separation + rise_of(contact, size, rings) + lift
+    _, slope = _pressed(contact, thresholds, h)
+    rows = _rows(contact, size, rings)
+    matrix = jnp.eye(len(slope) - 1) - rows[:-1] * slope[:-1]
+
+    def pushed(contact: Rough, separation: jax.Array, thresholds: Thresholds) -> jax.Array:
+        held = separation + rise_of(contact, size, rings) + lift
+        pressure = contact.interface.pressure(held, thresholds)
+        return _rows(contact, size, rings) @ pressure[:-1]
+
+    _, push = eqx.filter_jvp(pushed, primals[:3], tangents[:3])
+    inner = jax.lax.custom_linear_solve(
+        lambda x: matrix @ x,
+        push[:-1],
+        lambda _, right: _dense_solve(matrix, right),
+        lambda _, right: _dense_solve(matrix.T, right),
+    )
+    return lift, jnp.append(inner, push[-1] + (rows[-1] * slope[:-1]) @ inner)
+
+
+class _Matrix(NamedTuple):
+    """I - C diag(slope), factorized; the mesh's end carries no pressure itself."""
+
+    factors: jax.Array
+    order: jax.Array
+    last: jax.Array
+    slope: jax.Array
+
+    @classmethod
+    def of(cls, rows: jax.Array, slope: jax.Array) -> _Matrix:
+        """The matrix of a displacement per pressure and the slope of the pressure."""
+        scaled = rows * slope
+        return cls(*_factors(jnp.eye(len(slope)) - scaled[:-1]), scaled[-1], slope)
+
+    def back(self, right: jax.Array) -> jax.Array:
+        """Its inverse times ``right``."""
+        inner = _substitute(self.factors, self.order, right[:-1])
+        return jnp.append(inner, right[-1] + self.last @ inner)
+
+
+# A batch of systems one after the other: XLA's batched calls are slower within a loop.
+
+
+@jax.custom_batching.sequential_vmap
+def _factors(matrix: jax.Array) -> tuple[jax.Array, jax.Array]:
+    factors, _, order = jax.lax.linalg.lu(matrix)
+    return factors, order
+
+
+@jax.custom_batching.sequential_vmap
+def _substitute(factors: jax.Array, order: jax.Array, right: jax.Array) -> jax.Array:
+    solve = jax.lax.linalg.triangular_solve
+    column = right[order][:, None]
+    below = solve(factors, column, left_side=True, lower=True, unit_diagonal=True)
+    return solve(factors, below, left_side=True, lower=False)[:, 0]
+
+
+@jax.custom_batching.sequential_vmap
+def _dense_solve(matrix: jax.Array, right: jax.Array) -> jax.Array:
+    return jnp.linalg.solve(matrix, right[:, None])[:, 0]
+
+
+def asked_size(rest: Rest, rings: int) -> jax.Array:
+    """Size of the mesh that a pressure asks for, sqrt(2.5 <r^2>), over the present one.
+
+    The mean is weighted with the pressure's magnitude: the radius of a Hertz contact, and
+    1.6 standard deviations of a contact of Gaussian tails.
+    """
+    mesh = ring_mesh(rings)
+    weight = mesh.area * jnp.abs(rest.pressure)
+    total = jnp.sum(weight)
+    some = total > 0.0
+    ratio = jnp.sqrt(2.5 * (weight @ mesh.radius**2) / jnp.where(some, total, 1.0))
+    return jnp.where(some, jnp.clip(ratio, 0.2, 3.0), 1.0)

@@ -1,0 +1,188 @@
+"""Functions compiled as a whole, ahead of their first call, and kept on disk.
+
+XLA's code is kept by JAX itself. Here the traced program is kept too, in JAX's own portable
+form, so that a later process need not trace it again: for a large program that takes as long
+as all the rest. The name of a kept program holds what it depends on: the sources of this
+package, the versions of JAX, and the structure and shapes of the arguments.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import cache
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+
+import equinox as eqx
+import jaxlib.version
+
+from ._jax import jax
+
+P = ParamSpec("P")
+Answer = TypeVar("Answer")
+Record = TypeVar("Record")
+
+_OPTIONS = {"xla_cpu_use_fusion_emitters": False}
+"""The newer emitters take twice as long to compile our programs, which then run no faster."""
+
+
+def kept(record: type[Record]) -> type[Record]:
+    """Register a named tuple that the answers of kept programs are made of."""
+    name = f"{record.__module__}.{record.__qualname__}"
+    jax.export.register_namedtuple_serialization(record, serialized_name=name)
+    return record
+
+
+class Program(Generic[P, Answer]):
+    """A function of pytrees, compiled once for each structure and shape of its arguments.
+
+    Arrays are traced; all else in the arguments is static and hashable, as the fields of an
+    :class:`equinox.Module`. Not to be called within another compiled function.
+
+    Parameters
+    ----------
+    function
+        A function that JAX can trace. Its answer is made of arrays, tuples and records that
+        :func:`kept` knows.
+    """
+
+    def __init__(self, function: Callable[P, Answer]) -> None:
+        self._function = function
+        self._held: dict[Any, _Held] = {}
+        self._lock = threading.Lock()
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Answer:
+        fixed, arrays = _split(args)
+        held = self._of(fixed, arrays, aside=False)
+        answer: Answer = held.compiled.result()(arrays)
+        return answer
+
+    def ahead(self, *args: Any) -> Any:
+        """Trace for such arguments and compile in a thread; the shapes of the answer.
+
+        Shapes (:class:`jax.ShapeDtypeStruct`) serve as arguments.
+        """
+        return self._of(*_split(args), aside=True).shapes
+
+    def _of(self, fixed: Any, arrays: list[Any], *, aside: bool) -> _Held:
+        shapes = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in arrays]
+        key = fixed, tuple((x.shape, str(x.dtype)) for x in arrays)
+        with self._lock:
+            held = self._held.get(key)
+            if held is None:
+                held = self._held[key] = _Held(self._lowered(fixed, shapes, str(key)))
+        if held.lowered is not None:
+            lowered, held.lowered = held.lowered, None
+            if aside:
+                threading.Thread(target=held.make, args=(lowered,), daemon=True).start()
+            else:
+                held.make(lowered)
+        return held
+
+    def _lowered(self, fixed: Any, shapes: list[Any], key: str) -> Any:
+        """The program for XLA: read from disk, or traced and written there."""
+
+        def function(arrays: list[Any]) -> Answer:
+            return self._function(*_join(fixed, arrays))
+
+        traced = jax.jit(function, compiler_options=_OPTIONS)
+        if not _all_ours(fixed[0]):
+            return traced.lower(shapes)
+        name = f"{self._function.__module__}.{self._function.__qualname__} {key}"
+        file = _folder() / f"{hashlib.sha256((_ground() + name).encode()).hexdigest()}.jax"
+        exported = _read(file)
+        if exported is None:
+            exported = jax.export.export(traced)(shapes)
+            _write(file, exported.serialize())
+        return jax.jit(exported.call, compiler_options=_OPTIONS).lower(shapes)
+
+
+class _Held:
+    """One compiled form of a program."""
+
+    def __init__(self, lowered: Any) -> None:
+        self.lowered = lowered
+        self.shapes = jax.tree_util.tree_map(
+            lambda leaf: jax.ShapeDtypeStruct(leaf.shape, leaf.dtype), lowered.out_info
+        )
+        self.compiled: Future[Any] = Future()
+
+    def make(self, lowered: Any) -> None:
+        """Compile, and hand the outcome to whoever waits for it."""
+        try:
+            self.compiled.set_result(lowered.compile())
+        except Exception as error:  # noqa: BLE001 - raised where the program is called
+            self.compiled.set_exception(error)
+
+
+def _is_traced(leaf: Any) -> bool:
+    return eqx.is_array(leaf) or isinstance(leaf, jax.ShapeDtypeStruct)
+
+
+def _split(args: Any) -> tuple[Any, list[Any]]:
+    """What is static of the arguments, hashable, and their arrays."""
+    leaves, structure = jax.tree_util.tree_flatten(args)
+    fixed = tuple(None if _is_traced(leaf) else (leaf,) for leaf in leaves)
+    return (structure, fixed), [leaf for leaf in leaves if _is_traced(leaf)]
+
+
+def _join(fixed: Any, arrays: list[Any]) -> Any:
+    structure, kept = fixed
+    rest = iter(arrays)
+    leaves = [next(rest) if leaf is None else leaf[0] for leaf in kept]
+    return jax.tree_util.tree_unflatten(structure, leaves)
+
+
+def _all_ours(structure: Any) -> bool:
+    """Whether the arguments are of this package alone: a user's own law changes unseen."""
+    data = structure.node_data()
+    if data is not None:
+        kind = data[0]
+        if kind not in (tuple, list, dict, type(None)) and not kind.__module__.startswith(
+            f"{__package__}."
+        ):
+            return False
+    return all(_all_ours(child) for child in structure.children())
+
+
+@cache
+def _ground() -> str:
+    """What every program depends on: these sources, and the versions of JAX."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parent
+    for file in sorted(root.rglob("*.py")):
+        digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes() + b"\0")
+    versions = jax.__version__, jaxlib.version.__version__, eqx.__version__
+    return f"{digest.hexdigest()} {versions} {jax.default_backend()} "
+
+
+def _folder() -> Path:
+    """Beside JAX's own cache."""
+    return Path(jax.config.jax_compilation_cache_dir or os.devnull) / "programs"
+
+
+def _read(file: Path) -> Any:
+    """A kept program; None where there is none that can be read."""
+    try:
+        return jax.export.deserialize(bytearray(file.read_bytes()))
+    except FileNotFoundError:
+        return None
+    except Exception:  # noqa: BLE001 - a damaged file is made anew, whatever is wrong with it
+        return None
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Written aside and renamed; a cache that cannot be written only costs time."""
+    aside = file.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        aside.write_bytes(content)
+        aside.replace(file)
+    except OSError:
+        with contextlib.suppress(OSError):
+            aside.unlink()
