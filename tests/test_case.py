@@ -222,7 +222,7 @@ def test_a_case_reads_back_exactly_from_its_own_text(name, radius, angle, gap, h
 def test_the_text_of_a_case_states_its_defaults(text):
     tables = tomllib.loads(load(text).toml())
     assert tables["schema"] == 1
-    assert tables["numerics"]["rings"] == 96
+    assert tables["numerics"]["rings"] == 80
     assert tables["impact"]["gravity"] == "9.81 m/s^2"
     assert tables["adhesion"]["model"]
 

@@ -137,7 +137,7 @@ def test_energies_add_up_to_the_first_one(name):
 
 def test_energy_closes_on_a_half_space_with_menisci():
     layer = Interface(HERTZ + BY_CONTACT, Gaussian(SIGMA), N)
-    contact = ElasticContact(layer, Sphere(RADIUS), E, 48, inner_nodes=6)
+    contact = ElasticContact(layer, Sphere(RADIUS), E, 48)
     motion, found = fly(contact, Body(MASS, 9.81, 100e-9), Tolerance(max_impacts=2))
     rows = motion.impacts
     assert float(jnp.max(rows.closure)) < 1e-6 * float(rows.fastest[0])

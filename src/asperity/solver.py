@@ -18,7 +18,7 @@ from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
 from .impact.motion import ENDS, FLYING
-from .impact.sampling import Series, sample, until
+from .impact.sampling import Series, compile_ahead, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, quantities, read_row
 from .measures import Measures, measure
 from .program import Program
@@ -144,10 +144,11 @@ def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Conta
 
 
 def _compile(contact: Contact, body: Body, limits: Limits) -> None:
-    """Compile the curves and the motion side by side."""
+    """Compile the curves, the motion and its drawing side by side."""
     table, datum = _prepare.ahead(contact, body)
     progress, origin = _start.ahead(contact, body, table)
-    _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
+    _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
+    compile_ahead(body, table, impacts)
 
 
 _prepare = Program(prepare)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
+from numpy.polynomial import chebyshev
 
-from ._jax import jax, jnp
-from .contact.base import Contact, State
+from .contact.base import Contact
 from .impact.motion import Impacts
-from .impact.table import Table
+from .impact.table import CENTRAL, FORCE, Table, quantities
 
 _POINTS = 240
+
+
+class _Piece(NamedTuple):
+    low: float
+    high: float
+    values: np.ndarray
 
 
 def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
@@ -24,7 +29,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
     contact
         The contact.
     table
-        Its curves; their panels say where the force changes fast.
+        Its curves.
     impacts
         A motion's impacts, of which the first is taken.
 
@@ -35,42 +40,65 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
     deepest = float(impacts.deepest[0])
     reach = float(contact.reach)
     top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
-    places = _places(np.asarray(table.ends), deepest, top)
-    approach = _states(contact, contact.fresh(), jnp.asarray(places))
-    memory = _remember(contact, jnp.asarray(deepest))
-    parting = _states(contact, memory, jnp.asarray(places))
-    out = np.asarray(parting.force)
+    inward, outward = _branch(table, 0), _way_out(table, impacts)
+    places = _places([*inward, *outward], deepest, top)
+    approach, parting = _read(inward, places), _read(outward, places)
+    out = parting[:, FORCE]
+    layout = quantities(contact)
     names = contact.components
     return {
         "rigid_separation": places,
-        "central_separation": np.asarray(approach.central),
-        "force_approach": np.asarray(approach.force),
+        "central_separation": approach[:, CENTRAL],
+        "force_approach": approach[:, FORCE],
         "force_parting": out,
-        "components_approach": _named(names, approach),
-        "components_parting": _named(names, parting),
+        "components_approach": dict(zip(names, approach[:, layout.components].T, strict=True)),
+        "components_parting": dict(zip(names, parting[:, layout.components].T, strict=True)),
         "deepest": deepest,
         "pull_off": float(max(-out.min(), 0.0)),
         "work_of_separation": _tension_work(places, out),
-        "loss": _loss(contact, approach, parting),
+        "loss": _loss(contact, approach[:, layout.bonds], parting[:, layout.bonds]),
     }
 
 
-@eqx.filter_jit
-def _states(contact: Contact, memory: Any, places: jax.Array) -> State:
-    return jax.lax.map(lambda d: contact.state(d, memory), places, batch_size=32)
+def _branch(table: Table, branch: int) -> list[_Piece]:
+    """The panels of an outermost branch that are not empty, ascending."""
+    values = np.asarray(table.values)[branch]
+    ends = np.asarray(table.ends)
+    pairs = zip(ends[:-1], ends[1:], values, strict=True)
+    return [_Piece(low, high, rows) for low, high, rows in pairs if high > low]
 
 
-@eqx.filter_jit
-def _remember(contact: Contact, deepest: jax.Array) -> Any:
-    return contact.remember(contact.fresh(), deepest)
+def _way_out(table: Table, impacts: Impacts) -> list[_Piece]:
+    """The pieces from the first deepest point to the branch, and then the branch."""
+    rise = impacts.rise
+    inner = [
+        _Piece(float(low), float(high), rows)
+        for low, high, rows in zip(
+            *(np.asarray(leaf[0]) for leaf in (rise.inner.low, rise.inner.high, rise.inner.values)),
+            strict=True,
+        )
+        if high > low
+    ]
+    begin = inner[-1].high if inner else float(rise.start[0])
+    rest = [p for p in _branch(table, int(rise.branch[0])) if p.high > begin]
+    return [*inner, *rest]
 
 
-def _named(names: tuple[str, ...], states: State) -> dict[str, np.ndarray]:
-    return {name: np.asarray(states.parts[:, k]) for k, name in enumerate(names)}
+def _read(pieces: list[_Piece], places: np.ndarray) -> np.ndarray:
+    """Rows of quantities at ascending places."""
+    ends = np.array([p.high for p in pieces])
+    index = np.minimum(np.searchsorted(ends, places), len(pieces) - 1)
+    width = min(p.values.shape[1] for p in pieces)
+    rows = []
+    for k, place in zip(index, places, strict=True):
+        low, high, values = pieces[k]
+        rows.append(chebyshev.chebval((2.0 * place - low - high) / (high - low), values[:, :width]))
+    return np.array(rows)
 
 
-def _places(ends: np.ndarray, deepest: float, top: float) -> np.ndarray:
-    """Separations from the deepest point up: even on each panel of the curves."""
+def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
+    """Separations from the deepest point up: even on each piece of the curves."""
+    ends = np.array([end for p in pieces for end in (p.low, p.high)])
     inside = ends[(ends > deepest) & (ends < top)]
     ends = np.unique(np.concatenate([[deepest], inside, [top]]))
     share = max(3, _POINTS // (len(ends) - 1))
@@ -85,9 +113,7 @@ def _tension_work(places: np.ndarray, force: np.ndarray) -> float:
     return float(-simpson(np.minimum(force, 0.0), x=places))
 
 
-def _loss(contact: Contact, approach: State, parting: State) -> float:
+def _loss(contact: Contact, approach: np.ndarray, parting: np.ndarray) -> float:
     """Energy lost in and out: bonds made on the way in, and broken on the way out."""
     formation, rupture = (np.asarray(x) for x in contact.losses())
-    made = np.asarray(approach.bonds[0] - approach.bonds[-1])
-    broken = np.asarray(parting.bonds[0] - parting.bonds[-1])
-    return float(made @ formation + broken @ rupture)
+    return float((approach[0] - approach[-1]) @ formation + (parting[0] - parting[-1]) @ rupture)

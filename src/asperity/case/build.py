@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, pi
+from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..contact import Contact, ElasticContact, RigidContact, SmoothContact
@@ -60,11 +60,9 @@ def build(case: Case) -> Problem:
         interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
         shape = Sphere(case.body.radius)
         if case.counterface.deformation == "rigid":
-            contact = RigidContact(interface, shape, **_pieces(interface, False))
+            contact = RigidContact(interface, shape)
         else:
-            contact = ElasticContact(
-                interface, shape, modulus, case.numerics.rings, **_pieces(interface, True)
-            )
+            contact = ElasticContact(interface, shape, modulus, case.numerics.rings)
     impact = case.impact
     release = impact.release_gap
     if release is None:
@@ -72,25 +70,6 @@ def build(case: Case) -> Problem:
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, impact.gravity, release, impact.speed or 0.0)
     return Problem(contact, body, modulus, tip)
-
-
-def _pieces(interface: Interface, deforms: bool) -> dict[str, int]:
-    """Panels and pieces that resolve the curves, by the reach of the forces over the rms.
-
-    More than the ledger needs to close to 1e-6 of the impact energy; the solver refines the
-    panels where they do not meet the tolerance.
-    """
-    rms = float(interface.heights.rms)
-    widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
-    share = max(widths, default=0.0) / rms
-    reach = 9.0 + max(float(interface.reach), 0.0) / rms
-    nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
-    pieces = ceil(share / 4.5) or 1
-    return {
-        "panel_count": ceil(reach / (1.7 if deforms else 2.2)),
-        "inner_nodes": nodes,
-        "inner_panels": pieces + 1 if deforms and share > 0.1 else pieces,
-    }
 
 
 def _law(case: Case, tip: float, modulus: float) -> Law:

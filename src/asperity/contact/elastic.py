@@ -7,7 +7,6 @@ from math import pi
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import numpy as np
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
@@ -16,13 +15,11 @@ from ..interface import Memory as Thresholds
 from ..laws.base import Real, quantity
 from ..program import kept
 from ..shapes import Sphere
-from .base import Contact, Held, State, Way, pieces_to, way_points
+from .base import Contact, Held, State, Way
+from .following import descend, first_size, fitted, marks_of, retrace
+from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
-from .settling import Rest, asked_size, resting, rise_of, settle
-
-_FIT = 0.02  # how closely the mesh fits the pressure
-_PASSES = 12  # of that fit, at most
-_MORE = 1.02  # than the way at the first rate
+from .settling import Rest, resting, rise_of
 
 
 @kept
@@ -44,40 +41,6 @@ class RingMemory(NamedTuple):
     lift: jax.Array
 
 
-class _Trail(NamedTuple):
-    """The last three places and displacements of the rings there, newest first."""
-
-    places: jax.Array
-    lifts: jax.Array
-
-    @classmethod
-    def straight(cls, place: jax.Array, lift: jax.Array, rate: jax.Array, step: jax.Array):  # type: ignore[no-untyped-def]
-        """Rings that came by ``rate`` in steps of ``step`` [m]."""
-        back = -step * np.arange(3.0)
-        return cls(place + back, lift + back[:, None] * rate)
-
-    def guess(self, place: jax.Array) -> jax.Array:
-        """The parabola through them, at a place further on."""
-        (a, b, c), x = self.places, place
-        apart = (a - b) * (b - c) * (c - a)
-        safe = jnp.where(apart == 0.0, 1.0, apart)
-        weights = jnp.stack(
-            [
-                (x - b) * (x - c) * (c - b) / safe,
-                (x - a) * (x - c) * (a - c) / safe,
-                (x - a) * (x - b) * (b - a) / safe,
-            ]
-        )
-        return jnp.where(apart == 0.0, self.lifts[0], weights @ self.lifts)
-
-    def append(self, place: jax.Array, lift: jax.Array) -> _Trail:
-        """With one more, the oldest dropped."""
-        return _Trail(
-            jnp.concatenate([place[None], self.places[:-1]]),
-            jnp.concatenate([lift[None], self.lifts[:-1]]),
-        )
-
-
 class ElasticContact(Contact):
     """A rough sphere on a plane, both elastic half-spaces in bulk.
 
@@ -91,7 +54,7 @@ class ElasticContact(Contact):
         Contact modulus E* [Pa] of the bulk.
     rings
         Number of rings (static). The force converges with a high order in it.
-    panel_count, inner_nodes, inner_panels
+    resolved
         As for :class:`RigidContact`; of several pieces the last one is where the rings that
         lag behind reach the branch.
 
@@ -104,11 +67,23 @@ class ElasticContact(Contact):
 
     interface: Interface
     shape: Sphere
+    rings: int = eqx.field(static=True)
+    resolved: Resolution = eqx.field(static=True)
     modulus: Real = quantity()
-    rings: int = eqx.field(static=True, default=80)
-    panel_count: int = eqx.field(static=True, default=8)
-    inner_nodes: int = eqx.field(static=True, default=16)
-    inner_panels: int = eqx.field(static=True, default=2)
+
+    def __init__(
+        self,
+        interface: Interface,
+        shape: Sphere,
+        modulus: Real,
+        rings: int = 80,
+        resolved: Resolution | None = None,
+    ) -> None:
+        self.interface = interface
+        self.shape = shape
+        self.modulus = modulus
+        self.rings = rings
+        self.resolved = resolved or resolution(interface, deforms=True)
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -120,19 +95,20 @@ class ElasticContact(Contact):
 
     @property
     def reversal_panels(self) -> int:
-        return self.inner_panels
+        return self.resolved.pieces
 
     @property
     def reversal_nodes(self) -> int:
-        return self.inner_nodes
+        return self.resolved.nodes
 
     @property
     def rigid(self) -> RigidContact:
         """The same contact without bulk deformation."""
-        return RigidContact(self.interface, self.shape)
+        return RigidContact(self.interface, self.shape, self.resolved)
 
     def refined(self, factor: int) -> ElasticContact:
-        return dataclasses.replace(self, panel_count=factor * self.panel_count)
+        finer = self.resolved._replace(panels=factor * self.resolved.panels)
+        return dataclasses.replace(self, resolved=finer)
 
     def fresh(self) -> RingMemory:
         return self.extreme((False,) * len(self.mechanisms))
@@ -166,7 +142,7 @@ class ElasticContact(Contact):
         return State(
             force=jnp.sum(parts),
             stored=whole(inside.energy, outside.energy) + bulk,
-            central=mesh.axis @ h[:-1],
+            central=jnp.asarray(mesh.axis) @ h[:-1],
             bonds=whole(inside.bonds, outside.bonds),
             parts=parts,
             touching=whole(inside.touching, outside.touching),
@@ -181,9 +157,7 @@ class ElasticContact(Contact):
     ) -> Rest:
         """Rings that settled, with the derivatives of where they lie."""
         held = jax.lax.stop_gradient((size, rest.lift))
-        return rest._replace(
-            lift=resting(self, separation, thresholds, *held, rings=self.rings)
-        )
+        return rest._replace(lift=resting(self, separation, thresholds, *held, rings=self.rings))
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
         """From outside in, each solution the first guess of the next.
@@ -194,7 +168,7 @@ class ElasticContact(Contact):
         near = places.shape[0] - FAR
         down = places[:near].ravel()[::-1]
         frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
-        sizes, rests = _descend(*frozen)
+        sizes, rests = descend(*frozen)
 
         def one(place: jax.Array, size: jax.Array, rest: Rest) -> State:
             rest = self._rest(place, memory.thresholds, size, rest)
@@ -226,7 +200,7 @@ class ElasticContact(Contact):
         @jax.jit  # traced once, for its shapes and for itself
         def back() -> Way:
             frozen = jax.lax.stop_gradient((self, memory, start))
-            enter, leave, places, rests = _retrace(*frozen, size, parting, within)
+            enter, leave, places, rests = retrace(*frozen, size, parting, within)
             return Way(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)
@@ -243,10 +217,8 @@ class ElasticContact(Contact):
         """Size of the mesh and the rings at one separation, from nothing."""
         frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
         bound = old.size > 0.0
-        first = jnp.where(bound, old.size, _first_size(frozen, place))
-        size, rest = _fitted(
-            frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound)
-        )
+        first = jnp.where(bound, old.size, first_size(frozen, place))
+        size, rest = fitted(frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound))
         return size, self._rest(separation, memory.thresholds, size, rest)
 
     def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
@@ -269,8 +241,8 @@ class ElasticContact(Contact):
     def switches(self, memory: RingMemory, separation: jax.Array, parting: jax.Array) -> jax.Array:
         """Where the slowest ring has passed from one outermost branch to the other."""
         _, rest = self._alone(separation, memory)
-        marks = _marks(self, memory, separation, parting, rest)
-        return marks[self.reversal_panels - 1 :: self.reversal_panels]
+        ends = marks_of(self, memory, separation, parting, rest)
+        return ends[self.reversal_panels - 1 :: self.reversal_panels]
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
@@ -286,7 +258,7 @@ class ElasticContact(Contact):
         return lowest - 1.1 * depth
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return rough_panels(self.rigid, low, high, self.panel_count)
+        return rough_panels(self.rigid, low, high, self.resolved.panels)
 
     @property
     def reach(self) -> jax.Array:
@@ -295,136 +267,3 @@ class ElasticContact(Contact):
 
 def _last(thresholds: Thresholds) -> Thresholds:
     return tuple(b[-1:] for b in thresholds)
-
-
-def _first_size(contact: ElasticContact, separation: jax.Array) -> jax.Array:
-    """Size of the mesh before anything is solved: light contact, and Hertz's radius."""
-    sigma, radius = contact.interface.heights.rms, contact.shape.radius
-    light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
-    return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
-
-
-def _marks(
-    contact: ElasticContact,
-    memory: RingMemory,
-    start: jax.Array,
-    parting: jax.Array,
-    rest: Rest,
-) -> jax.Array:
-    """Ends of the pieces of the way back: even ones until the fastest ring has passed from
-    one branch to the other, and one more until the slowest has, for each law.
-
-    There are no such ways for a body that is on a branch already.
-    """
-    slowest = jnp.clip(jnp.min(rest.rates), 1e-3, 1.0)
-    fastest = jnp.maximum(jnp.max(rest.rates), slowest)
-    even = np.arange(1.0, contact.reversal_panels) / max(contact.reversal_panels - 1, 1)
-    shares = jnp.append(even / fastest, _MORE / slowest)
-    ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
-    rows = [
-        start + ahead * (law.breaking_gap - law.forming_gap) * shares
-        for law in contact.interface.hysteretic
-    ]
-    return jnp.concatenate(rows)
-
-
-def _fitted(
-    contact: ElasticContact,
-    place: jax.Array,
-    thresholds: Thresholds,
-    size: jax.Array,
-    lift: jax.Array,
-    free: jax.Array,
-) -> tuple[jax.Array, Rest]:
-    """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
-    rings = contact.rings
-    flat = jnp.zeros_like(lift)
-
-    def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
-        size, ratio, rest, passes = now
-        size = size * ratio
-        rest = settle(contact, place, thresholds, size, rest.lift, rings)
-        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
-
-    def unfit(now: tuple[Any, ...]) -> jax.Array:
-        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[3] < _PASSES)
-        return jnp.logical_or(now[3] == 0, off)
-
-    blank = Rest(lift, flat, flat[:-1], jnp.zeros(()))
-    size, _, rest, _ = jax.lax.while_loop(unfit, again, (size, jnp.ones(()), blank, 0))
-    return size, rest
-
-
-def _descend(
-    contact: ElasticContact, corners: jax.Array, places: jax.Array, thresholds: Thresholds
-) -> tuple[jax.Array, Rest]:
-    """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
-    count = corners.shape[0]
-    sigma = contact.interface.heights.rms
-    flat = jnp.zeros(contact.rings + 1)
-    above = _Trail.straight(corners[0] + sigma, flat, flat, -sigma)
-
-    def step(carry: tuple[_Trail, jax.Array, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
-        trail, factor, sizes = carry
-        k, place = job
-        corner = k < count
-        trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
-        light = _first_size(contact, place)
-        between = jnp.interp(place, corners[::-1], sizes[::-1])
-        size, rest = _fitted(
-            contact,
-            place,
-            thresholds,
-            jnp.where(corner, light * factor, between),
-            jnp.where(corner, trail.lifts[0], trail.guess(place)),
-            corner,
-        )
-        sizes = jnp.where(jnp.arange(count) == k, size, sizes)
-        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
-
-    begin = (above, jnp.ones(()), jnp.ones(count))
-    jobs = jnp.concatenate([corners, places])
-    _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
-    sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
-    return sizes, rests
-
-
-def _retrace(
-    contact: ElasticContact,
-    memory: RingMemory,
-    start: jax.Array,
-    size: jax.Array,
-    parting: jax.Array,
-    within: tuple[Any, Any],
-) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
-    """Pieces of the way back, places on them and the rings there; first of all at the start."""
-    nodes = contact.reversal_nodes
-    steps = way_points(nodes)
-    sigma = contact.interface.heights.rms
-    pieces = len(contact.mechanisms) * contact.reversal_panels
-    whole = jnp.broadcast_to(start, (pieces,))
-    flat = jnp.zeros_like(memory.lift)
-
-    def step(carry: tuple[_Trail, jax.Array, jax.Array], k: jax.Array) -> Any:
-        trail, enter, leave = carry
-        piece = jnp.maximum(k - 1, 0) // nodes
-        share = jnp.asarray(steps)[jnp.maximum(k - 1, 0) % nodes]
-        place = enter[piece] + (leave - enter)[piece] * share
-        lift = jnp.where(k == 0, memory.lift, trail.guess(place))
-        rest = settle(contact, place, memory.thresholds, size, lift, contact.rings)
-        marks = _marks(contact, memory, start, parting, rest)
-        pair = pieces_to(marks, start, parting, within)
-        enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
-        back = jnp.where(parting, sigma, -sigma) * 1e-2
-        straight = _Trail.straight(place, rest.lift, rest.rates - 1.0, back)
-        trail = jax.tree_util.tree_map(
-            lambda a, b: jnp.where(k == 0, a, b), straight, trail.append(place, rest.lift)
-        )
-        return (trail, enter, leave), (place, rest)
-
-    begin = (_Trail.straight(start, memory.lift, flat, sigma), whole, whole)
-    (_, enter, leave), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
-    places, rests = jax.tree_util.tree_map(
-        lambda leaf: leaf[1:].reshape(pieces, nodes, *leaf.shape[1:]), found
-    )
-    return enter, leave, places, rests

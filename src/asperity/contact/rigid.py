@@ -13,6 +13,7 @@ from ..interface import Interface
 from ..interface import Memory as Thresholds
 from ..shapes import Sphere
 from .base import Contact, State, first_out_of_reach
+from .resolution import Resolution, resolution
 
 _LINEAR = 8.0  # panels are even in asinh(separation / (_LINEAR rms))
 FAR = 3
@@ -28,13 +29,8 @@ class RigidContact(Contact):
         What happens between the two mean planes.
     shape
         The body.
-    panel_count
-        Number of panels of its curves within the reach of the forces (static).
-    inner_nodes
-        Solutions on a piece of the way from a reversal to the outermost branch, at most 16
-        (static).
-    inner_panels
-        Number of these pieces, for each law (static).
+    resolved
+        How finely its curves are cut (static); by default as its forces ask for.
 
     Notes
     -----
@@ -45,17 +41,22 @@ class RigidContact(Contact):
 
     interface: Interface
     shape: Sphere
-    panel_count: int = eqx.field(static=True, default=8)
-    inner_nodes: int = eqx.field(static=True, default=16)
-    inner_panels: int = eqx.field(static=True, default=1)
+    resolved: Resolution = eqx.field(static=True)
+
+    def __init__(
+        self, interface: Interface, shape: Sphere, resolved: Resolution | None = None
+    ) -> None:
+        self.interface = interface
+        self.shape = shape
+        self.resolved = resolved or resolution(interface, deforms=False)
 
     @property
     def reversal_panels(self) -> int:
-        return self.inner_panels
+        return self.resolved.pieces
 
     @property
     def reversal_nodes(self) -> int:
-        return self.inner_nodes
+        return self.resolved.nodes
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -70,7 +71,8 @@ class RigidContact(Contact):
         return jnp.asarray(2.0 * pi * self.shape.radius)
 
     def refined(self, factor: int) -> RigidContact:
-        return dataclasses.replace(self, panel_count=factor * self.panel_count)
+        finer = self.resolved._replace(panels=factor * self.resolved.panels)
+        return dataclasses.replace(self, resolved=finer)
 
     def fresh(self) -> Thresholds:
         return self.interface.fresh()
@@ -118,7 +120,7 @@ class RigidContact(Contact):
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return rough_panels(self, low, high, self.panel_count)
+        return rough_panels(self, low, high, self.resolved.panels)
 
     @property
     def reach(self) -> jax.Array:
@@ -128,9 +130,7 @@ class RigidContact(Contact):
 _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 50.0)])
 
 
-def rough_panels(
-    contact: RigidContact, low: jax.Array, high: jax.Array, count: int
-) -> jax.Array:
+def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: int) -> jax.Array:
     """Ends of ``count`` panels over the reach of a rough contact, and of FAR beyond it.
 
     Even over a few rms around 0 and in proportion to |d| far from it.

@@ -58,7 +58,7 @@ class _Step(NamedTuple):
     change: jax.Array
     rate: jax.Array
     off: jax.Array
-    count: jax.Array
+    steps: jax.Array
 
     @property
     def enough(self) -> jax.Array:
@@ -79,9 +79,7 @@ def _rows(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
     return rows * (size / contact.modulus)
 
 
-def _pressed(
-    contact: Rough, thresholds: Thresholds, h: jax.Array
-) -> tuple[jax.Array, jax.Array]:
+def _pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Pressure and its slope at separations h [m]."""
 
     def pressure(h: jax.Array) -> jax.Array:
@@ -112,6 +110,8 @@ def settle(
     safe = separation + rise_of(contact, size, rings)
     sigma = contact.interface.heights.rms
 
+    one = jnp.ones(())
+
     def moved(now: _Step, pressure: jax.Array, matrix: _Matrix) -> _Step:
         move = matrix.back(now.h - safe - rows @ pressure[:-1])
         change = jnp.max(jnp.abs(move) / (sigma + jnp.abs(now.h)))
@@ -119,7 +119,7 @@ def settle(
         load = jnp.sum(mesh.area * jnp.abs(pressure[:-1]))
         off = jnp.sum(mesh.area * jnp.abs(matrix.slope * move[:-1]))
         off = jnp.minimum(rate, 1.0) * off / jnp.where(load > 0.0, load, 1.0)
-        return _Step(now.h - move, pressure[:-1], change, rate, off, now.count + 1)
+        return _Step(now.h - move, pressure[:-1], change, rate, off, now.steps + 1)
 
     def anew(carry: tuple[_Step, _Matrix]) -> tuple[_Step, _Matrix]:
         """One step with a new matrix, and more with the same while it serves."""
@@ -134,15 +134,14 @@ def settle(
             return moved(now, contact.interface.pressure(now.h, thresholds), matrix)
 
         now = jax.lax.while_loop(serves, again, moved(now, pressure, matrix))
-        restart = (now.count > _RESTART) & (now.count < 2 * _RESTART) & ~now.enough
-        begun = _Step(safe, now.pressure, 1.0, 1.0, now.off, 2 * _RESTART)
+        restart = (now.steps > _RESTART) & (now.steps < 2 * _RESTART) & ~now.enough
+        begun = _Step(safe, now.pressure, one, one, now.off, jnp.asarray(2 * _RESTART))
         return jax.tree_util.tree_map(lambda a, b: jnp.where(restart, a, b), begun, now), matrix
 
     def go_on(carry: tuple[_Step, _Matrix]) -> jax.Array:
         now, _ = carry
-        return jnp.logical_not(now.enough) & (now.count < _STEPS)
+        return jnp.logical_not(now.enough) & (now.steps < _STEPS)
 
-    one = jnp.ones(())
     first = _Step(safe + lift, jnp.zeros(count), one, one, jnp.zeros(()), jnp.asarray(0))
     blank = _Matrix(jnp.eye(count), jnp.arange(count, dtype=jnp.int32), *(jnp.zeros(count),) * 2)
     end, matrix = jax.lax.while_loop(go_on, anew, (first, blank))
@@ -166,7 +165,7 @@ def resting(
     return lift
 
 
-@resting.def_jvp  # type: ignore[untyped-decorator]
+@resting.def_jvp
 def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array, jax.Array]:
     contact, separation, thresholds, size, lift = primals
     h = separation + rise_of(contact, size, rings) + lift
@@ -201,7 +200,8 @@ class _Matrix(NamedTuple):
     def of(cls, rows: jax.Array, slope: jax.Array) -> _Matrix:
         """The matrix of a displacement per pressure and the slope of the pressure."""
         scaled = rows * slope
-        return cls(*_factors(jnp.eye(len(slope)) - scaled[:-1]), scaled[-1], slope)
+        factors, order = _factors(jnp.eye(len(slope)) - scaled[:-1])
+        return cls(factors, order, scaled[-1], slope)
 
     def back(self, right: jax.Array) -> jax.Array:
         """Its inverse times ``right``."""

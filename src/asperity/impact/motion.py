@@ -299,9 +299,7 @@ def _leg(
     """One phase down or up, and the bonds that it makes or breaks."""
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = branch_of(contact, progress.memory, parting)
-    ahead = look_ahead(
-        table, branch, inner, progress.kinetic, body.weight, progress.place, parting
-    )
+    ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
     turn = find_turn(ahead)
     time = progress.time + travel_time(ahead, turn, body.mass)
     row = row_at(ahead, turn)

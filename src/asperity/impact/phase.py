@@ -203,41 +203,69 @@ def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
     )
 
 
-def find_turn(ahead: Ahead) -> Turn:
-    """The first place where the kinetic energy is spent."""
-    table, sign = ahead.table, ahead.sign
-    places = table.looks.ravel()
-    energies = ahead.outer(table.works.looks[ahead.branch].ravel(), places)
-    beyond = sign * (places - ahead.begin) > 0.0
+class _Looks(NamedTuple):
+    """Places where the kinetic energy was looked at, and where it was found spent first."""
+
+    places: jax.Array
+    energies: jax.Array
+    passed: jax.Array
+    found: jax.Array
+    piece: jax.Array
+    inner: jax.Array
+    outer: jax.Array
+
+
+def _look_on_branch(ahead: Ahead) -> _Looks:
+    """On the panels of the branch, whose work at these places is known."""
+    places = ahead.table.looks.ravel()
+    energies = ahead.outer(ahead.table.works.looks[ahead.branch].ravel(), places)
+    beyond = ahead.sign * (places - ahead.begin) > 0.0
     spent = jnp.logical_and(beyond, energies < 0.0)
     count = places.shape[0]
     first = jnp.where(ahead.parting, jnp.argmax(spent), count - 1 - jnp.argmax(spent[::-1]))
     before = jnp.clip(first - jnp.where(ahead.parting, 1, -1), 0, count - 1)
-    inner_end = jnp.where(beyond[before], places[before], ahead.begin)
-    outer_end, piece, found = places[first], ahead.pieces + first // LOOKS, jnp.any(spent)
+    inner = jnp.where(beyond[before], places[before], ahead.begin)
+    piece = ahead.pieces + first // LOOKS
+    return _Looks(places, energies, beyond, jnp.any(spent), piece, inner, places[first])
+
+
+def _look_on_way(ahead: Ahead) -> _Looks:
+    """On the pieces before the branch."""
+    p = ahead.inner.pieces
+    places = p.enter[:, None] + (p.leave - p.enter)[:, None] * _SHARES
+    energies = kinetic_along(ahead.inner, places).ravel()
+    count = _SHARES.size
+    spent = jnp.logical_and(energies < 0.0, jnp.repeat(p.leave != p.enter, count))
+    first = jnp.argmax(spent)
+    piece = first // count
+    outer = places.ravel()[first]
+    inner = outer - (p.leave - p.enter)[piece] / count
+    passed = jnp.ones(places.size, bool)
+    return _Looks(places.ravel(), energies, passed, jnp.any(spent), piece, inner, outer)
+
+
+def find_turn(ahead: Ahead) -> Turn:
+    """The first place where the kinetic energy is spent."""
+    table, looks = ahead.table, _look_on_branch(ahead)
+    piece, found, inner, outer = looks.piece, looks.found, looks.inner, looks.outer
+    places, energies, passed = looks.places, looks.energies, looks.passed
     if ahead.pieces:
-        p = ahead.inner.pieces
-        near = p.enter[:, None] + (p.leave - p.enter)[:, None] * _SHARES
-        near_energies = kinetic_along(ahead.inner, near).ravel()
-        gone = jnp.logical_and(near_energies < 0.0, jnp.repeat(p.leave != p.enter, LOOKS - 1))
-        soon, k = jnp.any(gone), jnp.argmax(gone)
-        outer_end = jnp.where(soon, near.ravel()[k], outer_end)
-        step = (p.leave - p.enter)[k // (LOOKS - 1)] / (LOOKS - 1)
-        inner_end = jnp.where(soon, outer_end - step, inner_end)
-        piece = jnp.where(soon, k // (LOOKS - 1), piece)
+        near = _look_on_way(ahead)
+        soon = near.found
+        piece = jnp.where(soon, near.piece, piece)
+        inner, outer = jnp.where(soon, near.inner, inner), jnp.where(soon, near.outer, outer)
         found = jnp.logical_or(soon, found)
-        places = jnp.concatenate([near.ravel(), places])
-        energies = jnp.concatenate([near_energies, energies])
-        beyond = jnp.concatenate([jnp.ones(near.size, bool), beyond])
+        places = jnp.concatenate([near.places, places])
+        energies = jnp.concatenate([near.energies, energies])
+        passed = jnp.concatenate([near.passed, passed])
     end = jnp.where(ahead.parting, table.ends[-1], table.ends[0])
     last = jnp.where(ahead.parting, table.panel_at(table.ends[-1]), 0)
     piece = jnp.where(found, piece, ahead.pieces + last)
     here = _piece(ahead, piece)
-    place = jnp.where(found, _polish(here, inner_end, outer_end), end)
-    passed = jnp.logical_and(beyond, sign * (place - places) >= 0.0)
+    place = jnp.where(found, _polish(here, inner, outer), end)
+    passed = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
     fastest = jnp.max(jnp.where(passed, energies, 0.0))
-    left = jnp.where(found, 0.0, here.energy(place))
-    return Turn(piece, place, found, fastest, left)
+    return Turn(piece, place, found, fastest, jnp.where(found, 0.0, here.energy(place)))
 
 
 def _polish(piece: _Piece, inner: jax.Array, outer: jax.Array) -> jax.Array:

@@ -39,7 +39,7 @@ class Series(NamedTuple):
 
 def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     """Draw a motion: its release, then every phase, some samples on each piece of its curves."""
-    places = 1 + 2 * _SAMPLES // table.ends.shape[0]
+    places = _places(table)
     made = int(np.sum(np.asarray(impacts.made)))
     parts = []
     for first in range(0, made, _BATCH):
@@ -62,6 +62,19 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     return Series(
         *(np.concatenate([np.asarray(a)[None], b]) for a, b in zip(release, rest, strict=True))
     )
+
+
+def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
+    """Compile what :func:`sample` needs, for arguments or their shapes, in a thread."""
+    phase = jax.tree_util.tree_map(
+        lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype), impacts.fall
+    )
+    _draw.ahead(body, table, phase, jnp.asarray(False), _places(table))
+
+
+def _places(table: Table) -> int:
+    """Samples on each piece of the curves, besides those close to the turning points."""
+    return 1 + 2 * _SAMPLES // table.ends.shape[0]
 
 
 def _rows(chosen: np.ndarray, leaf: jax.Array) -> np.ndarray:

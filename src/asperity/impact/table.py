@@ -286,7 +286,9 @@ def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
     """
     count = coefficients.shape[0]
     rest = max(coefficients.ndim - 1, x.ndim)
-    wide = coefficients.reshape(count, *(1,) * (rest - coefficients.ndim + 1), *coefficients.shape[1:])
+    wide = coefficients.reshape(
+        count, *(1,) * (rest - coefficients.ndim + 1), *coefficients.shape[1:]
+    )
     basis = _basis(count, x.reshape(*(1,) * (rest - x.ndim), *x.shape))
     return jnp.sum(wide * basis, axis=0)
 

@@ -1,0 +1,215 @@
+"""Rings of a deforming contact along a path: each solution the first guess of the next."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..interface import Memory as Thresholds
+from .base import pieces_to, way_points
+from .settling import Rest, Rough, asked_size, settle
+
+_FIT = 0.02  # how closely the mesh fits the pressure
+_PASSES = 12  # of that fit, at most
+_MORE = 1.02  # than the way at the first rate
+
+
+class Deforming(Rough, Protocol):
+    """A contact whose rings are followed."""
+
+    rings: int
+
+    @property
+    def reversal_panels(self) -> int:
+        """As in :class:`~asperity.contact.base.Contact`."""
+
+    @property
+    def reversal_nodes(self) -> int:
+        """As in :class:`~asperity.contact.base.Contact`."""
+
+
+class Bound(Protocol):
+    """Rings that hold bonds on a mesh of their own."""
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """One array a hysteretic law [m]."""
+
+    @property
+    def size(self) -> jax.Array:
+        """Length of the mesh [m]."""
+
+    @property
+    def lift(self) -> jax.Array:
+        """Displacement of the rings at the reversal [m]."""
+
+
+class Trail(NamedTuple):
+    """The last three places and displacements of the rings there, newest first."""
+
+    places: jax.Array
+    lifts: jax.Array
+
+    @classmethod
+    def straight(
+        cls, place: jax.Array, lift: jax.Array, rate: jax.Array, step: jax.Array | float
+    ) -> Trail:
+        """Rings that came by ``rate`` in steps of ``step`` [m]."""
+        back = -step * np.arange(3.0)
+        return cls(place + back, lift + back[:, None] * rate)
+
+    def guess(self, place: jax.Array) -> jax.Array:
+        """The parabola through them, at a place further on."""
+        (a, b, c), x = self.places, place
+        apart = (a - b) * (b - c) * (c - a)
+        safe = jnp.where(apart == 0.0, 1.0, apart)
+        weights = jnp.stack(
+            [
+                (x - b) * (x - c) * (c - b) / safe,
+                (x - a) * (x - c) * (a - c) / safe,
+                (x - a) * (x - b) * (b - a) / safe,
+            ]
+        )
+        return jnp.where(apart == 0.0, self.lifts[0], weights @ self.lifts)
+
+    def append(self, place: jax.Array, lift: jax.Array) -> Trail:
+        """With one more, the oldest dropped."""
+        return Trail(
+            jnp.concatenate([place[None], self.places[:-1]]),
+            jnp.concatenate([lift[None], self.lifts[:-1]]),
+        )
+
+
+def first_size(contact: Deforming, separation: jax.Array) -> jax.Array:
+    """Size of the mesh before anything is solved: light contact, and Hertz's radius."""
+    sigma, radius = contact.interface.heights.rms, contact.shape.radius
+    light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
+    return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
+
+
+def marks_of(
+    contact: Deforming,
+    memory: Bound,
+    start: jax.Array,
+    parting: jax.Array,
+    rest: Rest,
+) -> jax.Array:
+    """Ends of the pieces of the way back, for each law.
+
+    Even ones until the fastest ring has passed from one branch to the other, and one more
+    until the slowest has.
+    """
+    slowest = jnp.clip(jnp.min(rest.rates), 1e-3, 1.0)
+    fastest = jnp.maximum(jnp.max(rest.rates), slowest)
+    even = np.arange(1.0, contact.reversal_panels) / max(contact.reversal_panels - 1, 1)
+    shares = jnp.append(even / fastest, _MORE / slowest)
+    ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
+    rows = [
+        start + ahead * (law.breaking_gap - law.forming_gap) * shares
+        for law in contact.interface.hysteretic
+    ]
+    return jnp.concatenate(rows)
+
+
+def fitted(
+    contact: Deforming,
+    place: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    lift: jax.Array,
+    free: jax.Array,
+) -> tuple[jax.Array, Rest]:
+    """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
+    rings = contact.rings
+    flat = jnp.zeros_like(lift)
+
+    def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
+        size, ratio, rest, passes = now
+        size = size * ratio
+        rest = settle(contact, place, thresholds, size, rest.lift, rings)
+        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
+
+    def unfit(now: tuple[Any, ...]) -> jax.Array:
+        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[3] < _PASSES)
+        return jnp.logical_or(now[3] == 0, off)
+
+    blank = Rest(lift, flat, flat[:-1], jnp.zeros(()))
+    size, _, rest, _ = jax.lax.while_loop(unfit, again, (size, jnp.ones(()), blank, 0))
+    return size, rest
+
+
+def descend(
+    contact: Deforming, corners: jax.Array, places: jax.Array, thresholds: Thresholds
+) -> tuple[jax.Array, Rest]:
+    """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
+    count = corners.shape[0]
+    sigma = contact.interface.heights.rms
+    flat = jnp.zeros(contact.rings + 1)
+    above = Trail.straight(corners[0] + sigma, flat, flat, -sigma)
+
+    def step(carry: tuple[Trail, jax.Array, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
+        trail, factor, sizes = carry
+        k, place = job
+        corner = k < count
+        trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
+        light = first_size(contact, place)
+        between = jnp.interp(place, corners[::-1], sizes[::-1])
+        size, rest = fitted(
+            contact,
+            place,
+            thresholds,
+            jnp.where(corner, light * factor, between),
+            jnp.where(corner, trail.lifts[0], trail.guess(place)),
+            corner,
+        )
+        sizes = jnp.where(jnp.arange(count) == k, size, sizes)
+        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
+
+    begin = (above, jnp.ones(()), jnp.ones(count))
+    jobs = jnp.concatenate([corners, places])
+    _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
+    sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
+    return sizes, rests
+
+
+def retrace(
+    contact: Deforming,
+    memory: Bound,
+    start: jax.Array,
+    size: jax.Array,
+    parting: jax.Array,
+    within: tuple[Any, Any],
+) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
+    """Pieces of the way back, places on them and the rings there; first of all at the start."""
+    nodes = contact.reversal_nodes
+    steps = way_points(nodes)
+    sigma = contact.interface.heights.rms
+    pieces = len(contact.interface.mechanisms) * contact.reversal_panels
+    whole = jnp.broadcast_to(start, (pieces,))
+    flat = jnp.zeros_like(memory.lift)
+
+    def step(carry: tuple[Trail, jax.Array, jax.Array], k: jax.Array) -> Any:
+        trail, enter, leave = carry
+        piece = jnp.maximum(k - 1, 0) // nodes
+        share = jnp.asarray(steps)[jnp.maximum(k - 1, 0) % nodes]
+        place = enter[piece] + (leave - enter)[piece] * share
+        lift = jnp.where(k == 0, memory.lift, trail.guess(place))
+        rest = settle(contact, place, memory.thresholds, size, lift, contact.rings)
+        marks = marks_of(contact, memory, start, parting, rest)
+        pair = pieces_to(marks, start, parting, within)
+        enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
+        back = jnp.where(parting, sigma, -sigma) * 1e-2
+        straight = Trail.straight(place, rest.lift, rest.rates - 1.0, back)
+        trail = jax.tree_util.tree_map(
+            lambda a, b: jnp.where(k == 0, a, b), straight, trail.append(place, rest.lift)
+        )
+        return (trail, enter, leave), (place, rest)
+
+    begin = (Trail.straight(start, memory.lift, flat, sigma), whole, whole)
+    (_, enter, leave), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
+    places, rests = jax.tree_util.tree_map(
+        lambda leaf: leaf[1:].reshape(pieces, nodes, *leaf.shape[1:]), found
+    )
+    return enter, leave, places, rests

@@ -1,0 +1,111 @@
+"""Programs that are traced once and kept on disk: found again, never trusted when damaged."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import pytest
+
+from asperity import program
+from asperity._jax import jnp
+from asperity.laws import Hertz
+from asperity.program import Program, kept
+
+
+@kept
+class Pair(NamedTuple):
+    """What the programs of this file answer."""
+
+    once: jax.Array
+    twice: jax.Array
+
+
+traced = []
+
+
+def double(law: eqx.Module, x: jax.Array, factor: int) -> Pair:
+    traced.append(factor)
+    return Pair(x, factor * x + 0.0 * law.force(x))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder for kept programs, and no trace so far."""
+    monkeypatch.setattr(program, "_folder", lambda: tmp_path / "programs")
+    traced.clear()
+    return tmp_path / "programs"
+
+
+LAW, X = Hertz(1.0, 1.0), jnp.arange(3.0)
+
+
+def answer(factor=2, law=LAW):
+    """By a program that has compiled nothing yet, as in a new process."""
+    return Program(double)(law, X, factor)
+
+
+def test_a_kept_program_is_not_traced_again_and_answers_the_same(folder):
+    first, second = answer(), answer()
+    assert traced == [2]
+    assert isinstance(second, Pair)
+    assert second.twice.tolist() == first.twice.tolist() == [0.0, 2.0, 4.0]
+    assert [file.suffix for file in folder.iterdir()] == [".jax"]
+
+
+def test_static_arguments_and_shapes_have_programs_of_their_own(folder):
+    answer()
+    assert answer(3).twice.tolist() == [0.0, 3.0, 6.0]
+    assert Program(double)(LAW, jnp.ones(2), 2).twice.tolist() == [2.0, 2.0]
+    assert len(list(folder.iterdir())) == 3
+
+
+def test_a_damaged_file_is_made_anew(folder):
+    answer()
+    (file,) = folder.iterdir()
+    good = file.read_bytes()
+    flipped = bytes([*good[:-9], good[-9] ^ 1, *good[-8:]])
+    damaged = (b"", b"\0" * 100, good[: len(good) // 2], flipped)
+    for content in damaged:
+        file.write_bytes(content)
+        assert answer().twice.tolist() == [0.0, 2.0, 4.0]
+    answer()
+    assert len(traced) == 1 + len(damaged)
+
+
+def test_other_sources_have_other_names(folder, monkeypatch):
+    answer()
+    monkeypatch.setattr(program, "_ground", lambda: "other sources")
+    answer()
+    assert traced == [2, 2]
+    assert len(list(folder.iterdir())) == 2
+
+
+class Own(Hertz):
+    """A user's own law: its code may change without this package's."""
+
+
+def test_a_law_from_outside_is_not_kept(folder):
+    assert answer(law=Own(1.0, 1.0)).twice.tolist() == [0.0, 2.0, 4.0]
+    assert not folder.exists()
+
+
+def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):
+    file = tmp_path / "file"
+    file.touch()
+    monkeypatch.setattr(program, "_folder", lambda: file / "programs")
+    assert answer().twice.tolist() == [0.0, 2.0, 4.0]
+
+
+def test_ahead_gives_the_shapes_and_the_call_the_values(folder):
+    ours = Program(double)
+    shapes = ours.ahead(LAW, jax.ShapeDtypeStruct((3,), X.dtype), 2)
+    assert shapes.twice.shape == (3,)
+    assert ours(LAW, X, 2).twice.tolist() == [0.0, 2.0, 4.0]
+    assert traced == [2]
+
+
+def test_an_error_of_the_function_reaches_the_caller(folder):
+    with pytest.raises(TypeError):
+        Program(double)(LAW, X, "two")
