@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import ceil
 from typing import NamedTuple
 
-from .._jax import jax
+from .._jax import jax, jnp
 from ..interface import Interface
+from ..program import Program
 
 
 class Resolution(NamedTuple):
@@ -33,15 +34,23 @@ def resolution(interface: Interface, *, deforms: bool) -> Resolution:
     By the reach of the forces and of the bonds, over the rms height; where these are traced,
     enough for a few rms.
     """
-    try:
-        rms = float(interface.heights.rms)
-        widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
-        reach = 9.0 + max(float(interface.reach), 0.0) / rms
-    except jax.errors.ConcretizationTypeError:
+    if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         return Resolution(10, 16, 2)
-    share = max(widths, default=0.0) / rms
+    share, beyond = (float(length) for length in _lengths(interface))
+    reach = 9.0 + beyond
     nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
     if not deforms:
         return Resolution(ceil(reach / 2.2), max(nodes, 8), ceil(share / 4.5) or 1)
     # Rings that lag behind have a piece of their own.
     return Resolution(ceil(reach / 1.7), nodes, (ceil(share / 4.5) or 1) + (share > 0.1))
+
+
+def _in_rms(interface: Interface) -> tuple[jax.Array, jax.Array]:
+    """How far a bond stretches and a force reaches, over the rms height."""
+    widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
+    width = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
+    rms = interface.heights.rms
+    return width / rms, jnp.maximum(interface.reach, 0.0) / rms
+
+
+_lengths = Program(_in_rms)
