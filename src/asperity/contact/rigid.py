@@ -16,7 +16,7 @@ from .base import Contact, State, first_out_of_reach
 from .resolution import Resolution, resolution
 
 _LINEAR = 8.0  # panels are even in asinh(separation / (_LINEAR rms))
-FAR = 3
+FAR = 2
 """Panels beyond the reach of the forces, in geometric progression."""
 
 

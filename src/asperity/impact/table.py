@@ -18,7 +18,7 @@ from ..contact.base import Contact, Memory, State
 from ..program import kept
 
 NODES = 16
-LOOKS = 32
+LOOKS = 24
 """Places of a panel at which the kinetic energy is looked at, its ends among them."""
 
 _LEAST = 1e-6  # of the largest work: errors are not asked to be small against less
