@@ -135,10 +135,13 @@ def test_energies_add_up_to_the_first_one(name):
     assert np.all(np.diff(np.asarray(rows.lost).sum(axis=1)[:made]) >= 0.0)
 
 
-def test_energy_closes_on_a_half_space_with_menisci():
-    layer = Interface(HERTZ + BY_CONTACT, Gaussian(SIGMA), N)
+@pytest.mark.parametrize("kelvin_radius", [1.05e-9, 40e-9], ids=["narrow", "wide"])
+def test_energy_closes_on_a_half_space_with_menisci(kelvin_radius):
+    """Also where they stretch over two rms heights, and rings lag behind each other."""
+    meniscus = Meniscus(BETA, 0.0728, radians(73.0), kelvin_radius)
+    layer = Interface(HERTZ + meniscus, Gaussian(SIGMA), N)
     contact = ElasticContact(layer, Sphere(RADIUS), E, 48)
-    motion, found = fly(contact, Body(MASS, 9.81, 100e-9), Tolerance(max_impacts=2))
+    motion, found = fly(contact, Body(MASS, 9.81, 200e-9), Tolerance(max_impacts=2))
     rows = motion.impacts
     assert float(jnp.max(rows.closure)) < 1e-6 * float(rows.fastest[0])
     assert 0.0 < float(found.restitution[0]) < 1.0

@@ -13,7 +13,7 @@ from ..errors import Outcome, Tolerance
 from ..laws.base import Real, quantity
 from ..program import kept
 from .datum import Datum, find_datum
-from .phase import Turn, find_turn, look_ahead, pull_work, row_at, travel_time
+from .phase import Turn, look_ahead, pull_work, row_at, travel_time
 from .table import (
     FORCE,
     SIZE,
@@ -27,6 +27,7 @@ from .table import (
     quantities,
     tabulate,
 )
+from .turning import find_turn
 
 FLYING = -1
 ENDS = (

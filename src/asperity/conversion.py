@@ -1,0 +1,184 @@
+"""A motion that was flown, as the result that a user reads: units, names, plain numbers."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import regimes
+from ._jax import jax
+from .case import Case
+from .case.build import Problem
+from .contact import Contact
+from .errors import Outcome
+from .impact import Body, Motion
+from .impact.datum import Datum
+from .impact.sampling import Series, sample, until
+from .impact.table import CENTRAL, FORCE, STORED, quantities
+from .measures import Measures, measure
+from .program import Program
+from .result import Result
+from .validity import AtDepth, warnings_of
+
+_measure = Program(measure)
+
+
+class Flight(NamedTuple):
+    """A motion that was flown, the contact it was flown with, and how it ended."""
+
+    motion: Motion
+    contact: Contact
+    outcome: Outcome
+
+
+def _padded(motion: Motion, body: Body) -> Measures:
+    """Measures over a power of two of rows: few shapes, so few compilations."""
+    rows = motion.impacts.made.shape[0]
+    size = max(16, 1 << (rows - 1).bit_length())
+
+    def pad(leaf: Any) -> Any:
+        return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
+
+    return _measure(motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts)), body)
+
+
+def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result:
+    """The result of a motion that was flown.
+
+    Parameters
+    ----------
+    case, name
+        The case, and what to call it.
+    problem
+        What was built from it.
+    flight
+        The motion.
+    """
+    motion, body = flight.motion, problem.body
+    made = int(np.sum(motion.impacts.made))
+    measures = _padded(motion, body)
+    series = sample(body, motion.table, motion.impacts)
+    if case.numerics.time_limit is not None:
+        series = until(series, case.numerics.time_limit)
+    at_depth = AtDepth.of(flight.contact, motion)
+    regime = _regime(case, problem, at_depth)
+    forces, energies = _histories(flight.contact, motion, body, series)
+    impacts = motion.impacts
+    return Result(
+        case=case,
+        name=name,
+        outcome=flight.outcome,
+        time=series.time,
+        separation=series.separation,
+        central_separation=series.rows[:, CENTRAL],
+        speed=series.speed,
+        forces=forces,
+        energies=energies,
+        regime=regime._asdict(),
+        measures=_plain(measures, made),
+        ledger=_ledger(flight.contact, motion, float(body.weight), made),
+        warnings=warnings_of(case, problem, regime, at_depth, motion),
+        events={
+            name: np.asarray(values)[:made]
+            for name, values in (
+                ("deepest_time", impacts.deepest_time),
+                ("apex_time", impacts.apex_time),
+                ("deepest_separation", impacts.deepest),
+                ("apex_separation", impacts.apex),
+            )
+        },
+    )
+
+
+def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+    adhesion, rough = case.adhesion, case.roughness
+    work, spacing = adhesion.work, adhesion.range
+    tabor = plasticity = load = None
+    if work and spacing:
+        tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
+    solids = (case.body_solid, case.counterface_solid)
+    hardness = [solid.hardness for solid in solids if solid.hardness]
+    if rough is not None and hardness:
+        plasticity = regimes.plasticity_index(
+            problem.modulus, min(hardness), rough.rms_height, rough.asperity_radius
+        )
+    touching = at_depth.touching
+    if work and touching > 0.0:
+        elastic = at_depth.elastic
+        load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)
+    elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
+    return regimes.Regime(tabor, elasticity, plasticity, load, adhesion.model)
+
+
+def _histories(
+    contact: Contact, motion: Motion, body: Body, series: Series
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Forces and energies along the motion."""
+    layout = quantities(contact)
+    weight = float(body.weight)
+    rows: np.ndarray = series.rows
+    parts = rows[:, layout.components]
+    forces: dict[str, np.ndarray] = {name: parts[:, k] for k, name in enumerate(contact.components)}
+    forces["contact"] = rows[:, FORCE]
+    forces["weight"] = np.full(len(rows), -weight)
+    forces["total"] = rows[:, FORCE] - weight
+    energies = {
+        "kinetic": 0.5 * float(body.mass) * series.speed**2,
+        "potential": weight * (series.separation - _zero_height(motion.datum)),
+        "stored": rows[:, STORED],
+    }
+    for name, lost in _losses_along(contact, motion, series).items():
+        energies[f"lost_{name}"] = lost
+    return forces, energies
+
+
+def _losses_along(contact: Contact, motion: Motion, series: Series) -> dict[str, np.ndarray]:
+    """Energy lost by mechanism at every sample, from the bonds made and broken until then."""
+    formation, rupture = (np.asarray(x) for x in contact.losses())
+    bonds = series.rows[:, quantities(contact).bonds]
+    impact, rising = series.phase // 2, series.phase % 2 == 1
+    fall, rise = motion.impacts.fall, motion.impacts.rise
+    begun = np.where(rising[:, None], rise.bonds[impact], fall.bonds[impact])
+    lost = np.where(rising[:, None], rise.lost[impact], fall.lost[impact])
+    change = bonds - begun
+    lost = lost + np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
+    out: dict[str, np.ndarray] = {}
+    for k, name in enumerate(contact.mechanisms):
+        out[name] = out.get(name, 0.0) + lost[:, k]
+    return out
+
+
+def _zero_height(datum: Datum) -> float:
+    """Separation at which the potential energy is 0: the static equilibrium, if any."""
+    at_rest = float(datum.equilibrium)
+    return at_rest if np.isfinite(at_rest) else 0.0
+
+
+def _ledger(contact: Contact, motion: Motion, weight: float, made: int) -> dict[str, Any]:
+    """Energy at the release, lost by mechanism, and how well all of it adds up."""
+    lost: dict[str, float] = {}
+    for name, value in zip(contact.mechanisms, motion.impacts.lost[made - 1], strict=True):
+        lost[name] = lost.get(name, 0.0) + float(value)
+    impact_energy = float(motion.impacts.fastest[0])
+    closure = float(np.max(motion.impacts.closure[:made])) / impact_energy
+    initial = float(motion.release) - weight * _zero_height(motion.datum)
+    return {"initial": initial, "lost": lost, "closure": closure}
+
+
+def _plain(measures: Measures, made: int) -> dict[str, Any]:
+    """Measures as plain numbers and lists, None where one does not apply."""
+    out: dict[str, Any] = {}
+    for name, value in measures._asdict().items():
+        if name == "reference":
+            continue
+        array = np.asarray(value)
+        if array.ndim == 0:
+            out[name] = bool(array) if array.dtype == bool else _number(array)
+        else:
+            out[name] = [_number(x) for x in array[:made]]
+    return out
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

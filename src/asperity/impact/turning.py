@@ -1,0 +1,156 @@
+"""Where a phase ends: the first place at which the kinetic energy is spent."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from .phase import Ahead, Turn, kinetic_along
+from .table import LOOKS, chebyshev_sum, local
+
+_SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]
+_POLISH = 60  # halvings and Newton steps of a turning point, at most
+_CLOSE = 4e-15  # relative
+
+
+class _Piece(NamedTuple):
+    """Kinetic energy along one piece: offset + sum(integral) - weight (place - origin)."""
+
+    low: jax.Array
+    high: jax.Array
+    integral: jax.Array
+    force: jax.Array
+    offset: jax.Array
+    origin: jax.Array
+    weight: jax.Array
+
+    def energy(self, place: jax.Array) -> jax.Array:
+        """Kinetic energy [J], any shape."""
+        work = chebyshev_sum(self.integral, local(self.low, self.high, place))
+        return self.offset + work - self.weight * (place - self.origin)
+
+    def slope(self, place: jax.Array) -> jax.Array:
+        """Force less weight [N]."""
+        return chebyshev_sum(self.force, local(self.low, self.high, place)) - self.weight
+
+
+def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
+    """One piece of the way, or one panel of the branch."""
+    table, work = ahead.table, ahead.inner
+    panel = jnp.clip(piece - ahead.pieces, 0, table.ends.shape[0] - 2)
+    outer = _Piece(
+        table.ends[panel], table.ends[panel + 1],
+        table.works.integral[ahead.branch, panel, :, 0],
+        table.values[ahead.branch, panel, :, 0],
+        work.kinetic[-1] - ahead.before[0], ahead.begin, work.weight,
+    )  # fmt: skip
+    if not ahead.pieces:
+        return outer
+    k = jnp.minimum(piece, ahead.pieces - 1)
+    p = work.pieces
+    first = local(p.low[k], p.high[k], p.enter[k])
+    integral = work.integral[:, k, 0]
+    inner = _Piece(
+        p.low[k], p.high[k], integral, p.values[k, :, 0],
+        work.kinetic[k] - chebyshev_sum(integral, first), p.enter[k], work.weight,
+    )  # fmt: skip
+    return jax.tree_util.tree_map(
+        lambda near, far: jnp.where(piece < ahead.pieces, near, far), inner, outer
+    )
+
+
+class _Looks(NamedTuple):
+    """Places where the kinetic energy was looked at, and where it was found spent first."""
+
+    places: jax.Array
+    energies: jax.Array
+    passed: jax.Array
+    found: jax.Array
+    piece: jax.Array
+    inner: jax.Array
+    outer: jax.Array
+
+
+def _look_on_branch(ahead: Ahead) -> _Looks:
+    """On the panels of the branch, whose work at these places is known."""
+    places = ahead.table.looks.ravel()
+    energies = ahead.outer(ahead.table.works.looks[ahead.branch].ravel(), places)
+    beyond = ahead.sign * (places - ahead.begin) > 0.0
+    spent = jnp.logical_and(beyond, energies < 0.0)
+    count = places.shape[0]
+    first = jnp.where(ahead.parting, jnp.argmax(spent), count - 1 - jnp.argmax(spent[::-1]))
+    before = jnp.clip(first - jnp.where(ahead.parting, 1, -1), 0, count - 1)
+    inner = jnp.where(beyond[before], places[before], ahead.begin)
+    piece = ahead.pieces + first // LOOKS
+    return _Looks(places, energies, beyond, jnp.any(spent), piece, inner, places[first])
+
+
+def _look_on_way(ahead: Ahead) -> _Looks:
+    """On the pieces before the branch."""
+    p = ahead.inner.pieces
+    places = p.enter[:, None] + (p.leave - p.enter)[:, None] * _SHARES
+    energies = kinetic_along(ahead.inner, places).ravel()
+    count = _SHARES.size
+    spent = jnp.logical_and(energies < 0.0, jnp.repeat(p.leave != p.enter, count))
+    first = jnp.argmax(spent)
+    piece = first // count
+    outer = places.ravel()[first]
+    inner = outer - (p.leave - p.enter)[piece] / count
+    passed = jnp.ones(places.size, bool)
+    return _Looks(places.ravel(), energies, passed, jnp.any(spent), piece, inner, outer)
+
+
+def find_turn(ahead: Ahead) -> Turn:
+    """The first place where the kinetic energy is spent."""
+    table, looks = ahead.table, _look_on_branch(ahead)
+    piece, found, inner, outer = looks.piece, looks.found, looks.inner, looks.outer
+    places, energies, passed = looks.places, looks.energies, looks.passed
+    if ahead.pieces:
+        near = _look_on_way(ahead)
+        soon = near.found
+        piece = jnp.where(soon, near.piece, piece)
+        inner, outer = jnp.where(soon, near.inner, inner), jnp.where(soon, near.outer, outer)
+        found = jnp.logical_or(soon, found)
+        places = jnp.concatenate([near.places, places])
+        energies = jnp.concatenate([near.energies, energies])
+        passed = jnp.concatenate([near.passed, passed])
+    end = jnp.where(ahead.parting, table.ends[-1], table.ends[0])
+    last = jnp.where(ahead.parting, table.panel_at(table.ends[-1]), 0)
+    piece = jnp.where(found, piece, ahead.pieces + last)
+    here = _piece(ahead, piece)
+    place = jnp.where(found, _polish(here, inner, outer), end)
+    passed = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
+    fastest = jnp.max(jnp.where(passed, energies, 0.0))
+    return Turn(piece, place, found, fastest, jnp.where(found, 0.0, here.energy(place)))
+
+
+def _polish(piece: _Piece, inner: jax.Array, outer: jax.Array) -> jax.Array:
+    """Root of the kinetic energy between two places: Newton kept inside its bracket."""
+    frozen, inner, outer = jax.lax.stop_gradient((piece, inner, outer))
+    close = _CLOSE * jnp.maximum(jnp.abs(inner), jnp.abs(outer))
+
+    def go_on(carry):  # type: ignore[no-untyped-def]
+        _, _, _, moved, count = carry
+        return jnp.logical_and(moved > close, count < _POLISH)
+
+    def step(carry):  # type: ignore[no-untyped-def]
+        inside, outside, place, _, count = carry
+        energy, slope = frozen.energy(place), frozen.slope(place)
+        alive = energy >= 0.0
+        inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
+        target = place - energy / jnp.where(slope == 0.0, 1.0, slope)
+        moved = jnp.minimum(jnp.abs(target - place), jnp.abs(outside - inside))
+        between = (target - inside) * (target - outside) <= 0.0
+        middle = 0.5 * (inside + outside)
+        following = jnp.where(jnp.logical_or(between, moved <= close), target, middle)
+        low, high = jnp.minimum(inside, outside), jnp.maximum(inside, outside)
+        return inside, outside, jnp.clip(following, low, high), moved, count + 1
+
+    start = (inner, outer, 0.5 * (inner + outer), jnp.asarray(jnp.inf), 0)
+    place = jax.lax.while_loop(go_on, step, start)[2]
+    slope = jax.lax.stop_gradient(piece.slope(place))
+    correction = piece.energy(place) / jnp.where(slope == 0.0, 1.0, slope)
+    # The value is polished already; the last Newton step carries the derivative.
+    return place - (correction - jax.lax.stop_gradient(correction))
