@@ -30,6 +30,9 @@ def double(law: eqx.Module, x: jax.Array, factor: int) -> Pair:
     return Pair(x, factor * x + 0.0 * law.force(x))
 
 
+double.__module__ = "asperity.tests"  # only programs of the package are kept
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """An empty folder for kept programs, and no trace so far."""
@@ -89,6 +92,18 @@ class Own(Hertz):
 def test_a_law_from_outside_is_not_kept(folder):
     assert answer(law=Own(1.0, 1.0)).twice.tolist() == [0.0, 2.0, 4.0]
     assert not folder.exists()
+
+
+def test_a_function_from_outside_is_not_kept(folder):
+    def triple(x):
+        return Pair(x, 3.0 * x)
+
+    assert Program(triple)(X).twice.tolist() == [0.0, 3.0, 6.0]
+    assert not folder.exists()
+
+
+def test_arguments_may_be_named(folder):
+    assert Program(double)(LAW, X, factor=5).twice.tolist() == [0.0, 5.0, 10.0]
 
 
 def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):

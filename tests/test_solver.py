@@ -1,5 +1,6 @@
 """From a case to a result: regimes, rest, ledger, refusals and early ends."""
 
+import dataclasses
 import json
 import threading
 
@@ -147,3 +148,20 @@ def test_curve_loses_what_the_first_impact_loses(case, result):
     gap = drawn.force_approach - drawn.force_parting
     area = np.sum(0.5 * (gap[1:] + gap[:-1]) * np.diff(drawn.rigid_separation))
     assert area == pytest.approx(drawn.loss, rel=0.02)
+
+
+def test_a_ledger_that_does_not_close_is_said(case, monkeypatch):
+    """Menisci that stretch over many rms heights, with too few solutions on the way."""
+    wide = case.replace({"capillary.humidity": 0.97, "counterface.deformation": "rigid"})
+    wide = wide.replace({"impact.release_gap": "400 nm", "numerics.max_impacts": 3})
+    closed = solver.solve(wide)
+    assert closed.ledger["closure"] < 1e-6
+    assert not any("ledger" in line for line in closed.warnings)
+    problem = solver.build(wide)
+    coarse = dataclasses.replace(
+        problem.contact, resolved=problem.contact.resolved._replace(nodes=3, pieces=1)
+    )
+    monkeypatch.setattr(solver, "build", lambda case: problem._replace(contact=coarse))
+    open_ = solver.solve(wide)
+    assert open_.ledger["closure"] > 1e-6
+    assert any("ledger" in line for line in open_.warnings)

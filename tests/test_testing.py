@@ -1,5 +1,8 @@
 """The proof of a law: it passes the package's own and says what is wrong with others."""
 
+import runpy
+from pathlib import Path
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -29,31 +32,9 @@ def test_laws_of_the_package_keep_the_rules(law):
     check_law(law)
 
 
-class Tether(Law):
-    """A spring made on touch, with faults that each test puts in."""
-
-    stiffness: Real = quantity()
-    extent: Real = quantity()
-
-    mechanism = "tether"
-    counts = frozenset({"tether"})
-    hysteretic = True
-    forming_gap = property(lambda self: 0.0)
-    breaking_gap = property(lambda self: self.extent)
-    kinks = property(lambda self: (0.0, self.extent))
-
-    def force(self, gap):
-        return jnp.zeros_like(gap)
-
-    def energy(self, gap):
-        return jnp.zeros_like(gap)
-
-    def bonded_force(self, gap):
-        return -self.stiffness * jnp.maximum(gap, 0.0)
-
-    def bonded_energy(self, gap):
-        return 0.5 * self.stiffness * jnp.maximum(gap, 0.0) ** 2
-
+OWN_LAW = Path(__file__).parents[1] / "examples" / "own_law.py"
+Tether = runpy.run_path(str(OWN_LAW))["Tether"]
+"""The page's own law, into which each test puts a fault."""
 
 TETHER_DIMENSIONS = {"stiffness": (-1, 1), "extent": (1, 0)}
 

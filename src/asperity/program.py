@@ -27,6 +27,8 @@ P = ParamSpec("P")
 Answer = TypeVar("Answer")
 Record = TypeVar("Record")
 
+_OURS = f"{__package__}."
+
 _OPTIONS = {"xla_cpu_use_fusion_emitters": False, "xla_backend_optimization_level": 1}
 """Half the time to compile; the programs run as fast."""
 
@@ -57,7 +59,7 @@ class Program(Generic[P, Answer]):
         self._lock = threading.Lock()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Answer:
-        fixed, arrays = _split(args)
+        fixed, arrays = _split((args, kwargs))
         held = self._of(fixed, arrays, aside=False)
         answer: Answer = held.compiled.result()(arrays)
         return answer
@@ -67,7 +69,7 @@ class Program(Generic[P, Answer]):
 
         Shapes (:class:`jax.ShapeDtypeStruct`) serve as arguments.
         """
-        return self._of(*_split(args), aside=True).shapes
+        return self._of(*_split((args, {})), aside=True).shapes
 
     def _of(self, fixed: Any, arrays: list[Any], *, aside: bool) -> _Held:
         shapes = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in arrays]
@@ -76,8 +78,8 @@ class Program(Generic[P, Answer]):
             held = self._held.get(key)
             if held is None:
                 held = self._held[key] = _Held(self._lowered(fixed, shapes, str(key)))
-        if held.lowered is not None:
             lowered, held.lowered = held.lowered, None
+        if lowered is not None:
             if aside:
                 threading.Thread(target=held.make, args=(lowered,), daemon=True).start()
             else:
@@ -88,13 +90,16 @@ class Program(Generic[P, Answer]):
         """The program for XLA: read from disk, or traced and written there."""
 
         def function(arrays: list[Any]) -> Answer:
-            return self._function(*_join(fixed, arrays))  # type: ignore[call-arg]
+            args, kwargs = _join(fixed, arrays)
+            return self._function(*args, **kwargs)
 
         traced = jax.jit(function, compiler_options=_OPTIONS)
-        if not _all_ours(fixed[0]):
+        folder = _folder()
+        ours = self._function.__module__.startswith(_OURS) and _all_ours(fixed[0])
+        if folder is None or not ours:
             return traced.lower(shapes)
         name = f"{self._function.__module__}.{self._function.__qualname__} {key}"
-        file = _folder() / f"{hashlib.sha256((_ground() + name).encode()).hexdigest()}.jax"
+        file = folder / f"{hashlib.sha256((_ground() + name).encode()).hexdigest()}.jax"
         exported = _read(file)
         if exported is None:
             exported = jax.export.export(traced)(shapes)
@@ -143,9 +148,7 @@ def _all_ours(structure: Any) -> bool:
     data = structure.node_data()
     if data is not None:
         kind = data[0]
-        if kind not in (tuple, list, dict, type(None)) and not kind.__module__.startswith(
-            f"{__package__}."
-        ):
+        if kind not in (tuple, list, dict, type(None)) and not kind.__module__.startswith(_OURS):
             return False
     return all(_all_ours(child) for child in structure.children())
 
@@ -161,10 +164,10 @@ def _ground() -> str:
     return f"{digest.hexdigest()} {versions} {jax.default_backend()} "
 
 
-def _folder() -> Path:
-    """Beside JAX's own cache."""
+def _folder() -> Path | None:
+    """Beside JAX's own cache; None where that is off."""
     folder = jax.config.jax_compilation_cache_dir  # type: ignore[attr-defined]
-    return Path(folder or os.devnull) / "programs"
+    return Path(folder) / "programs" if folder else None
 
 
 def _read(file: Path) -> Any:

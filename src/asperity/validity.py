@@ -15,6 +15,9 @@ from .impact import Motion
 from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, read_row
 from .regimes import Regime
 
+CLOSED = 1e-6
+"""Share of the impact energy to which a ledger that can be trusted closes."""
+
 FEW = 10.0
 """Touching asperities below which a mean over asperities says little of one impact."""
 
@@ -65,6 +68,7 @@ def warnings_of(
         *_adhesion(regime),
         *_menisci(case),
         *_shape(case, motion),
+        *_ledger(motion),
     ]
 
 
@@ -144,4 +148,15 @@ def _shape(case: Case, motion: Motion) -> list[str]:
     return [
         f"the body sinks in by {100 * depth / case.body.radius:.0f} % of its radius: paraboloid "
         "and half-space are approximations for small indentations"
+    ]
+
+
+def _ledger(motion: Motion) -> list[str]:
+    rows = motion.impacts
+    off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
+    if off <= CLOSED:
+        return []
+    return [
+        f"the energy ledger closes to {off:.1g} of the impact energy only, not to {CLOSED:.0e}: "
+        "the way between the branches is not resolved"
     ]

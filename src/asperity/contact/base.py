@@ -117,16 +117,6 @@ class Contact(eqx.Module):
             return jnp.zeros_like(parts[0])
         return parts[self.components.index("elastic")]
 
-    @property
-    def reversal_panels(self) -> int:
-        """Into how many pieces the way from a reversal to a branch is cut, for each law."""
-        return 1
-
-    @property
-    def reversal_nodes(self) -> int:
-        """How many solutions resolve each of these pieces."""
-        return 12
-
     @abc.abstractmethod
     def refined(self, factor: int) -> Contact:
         """The same contact with ``factor`` times as many panels on its curves."""
@@ -153,14 +143,11 @@ class Contact(eqx.Module):
     def way(
         self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
     ) -> Way:
-        """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m]."""
-        steps = np.arange(1.0, self.reversal_panels + 1.0) / self.reversal_panels
-        last = self.switches(memory, start, parting)
-        marks = start + (last - start)[:, None] * steps
-        enter, leave = pieces_to(marks.ravel(), start, parting, within)
-        points = way_points(self.reversal_nodes)
-        places = enter[:, None] + (leave - enter)[:, None] * points
-        return Way(enter, leave, jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places))
+        """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m].
+
+        Only where bonds are many: a contact with one bond is always on a branch.
+        """
+        raise NotImplementedError(f"{type(self).__name__} is always on a branch")
 
     @abc.abstractmethod
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
@@ -173,10 +160,6 @@ class Contact(eqx.Module):
     @abc.abstractmethod
     def bonded(self, memory: Memory) -> jax.Array:
         """For a discrete contact: which laws are bonded, shape (laws,)."""
-
-    @abc.abstractmethod
-    def switches(self, memory: Memory, separation: jax.Array, parting: jax.Array) -> jax.Array:
-        """Separations from which on each law is on its outermost branch, shape (laws,)."""
 
     @abc.abstractmethod
     def losses(self) -> tuple[jax.Array, jax.Array]:

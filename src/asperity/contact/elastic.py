@@ -16,7 +16,7 @@ from ..laws.base import Real, quantity
 from ..program import kept
 from ..shapes import Sphere
 from .base import Contact, Held, State, Way
-from .following import descend, first_size, fitted, marks_of, retrace
+from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
 from .settling import Rest, resting, rise_of
@@ -92,14 +92,6 @@ class ElasticContact(Contact):
     @property
     def components(self) -> tuple[str, ...]:
         return self.interface.components
-
-    @property
-    def reversal_panels(self) -> int:
-        return self.resolved.pieces
-
-    @property
-    def reversal_nodes(self) -> int:
-        return self.resolved.nodes
 
     @property
     def rigid(self) -> RigidContact:
@@ -237,12 +229,6 @@ class ElasticContact(Contact):
 
     def bonded(self, memory: RingMemory) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
-
-    def switches(self, memory: RingMemory, separation: jax.Array, parting: jax.Array) -> jax.Array:
-        """Where the slowest ring has passed from one outermost branch to the other."""
-        _, rest = self._alone(separation, memory)
-        ends = marks_of(self, memory, separation, parting, rest)
-        return ends[self.reversal_panels - 1 :: self.reversal_panels]
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()

@@ -9,6 +9,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
 from .base import pieces_to, way_points
+from .resolution import Resolution
 from .settling import Rest, Rough, asked_size, settle
 
 _FIT = 0.02  # how closely the mesh fits the pressure
@@ -20,14 +21,7 @@ class Deforming(Rough, Protocol):
     """A contact whose rings are followed."""
 
     rings: int
-
-    @property
-    def reversal_panels(self) -> int:
-        """As in :class:`~asperity.contact.base.Contact`."""
-
-    @property
-    def reversal_nodes(self) -> int:
-        """As in :class:`~asperity.contact.base.Contact`."""
+    resolved: Resolution
 
 
 class Bound(Protocol):
@@ -89,7 +83,7 @@ def first_size(contact: Deforming, separation: jax.Array) -> jax.Array:
     return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
 
 
-def marks_of(
+def _marks(
     contact: Deforming,
     memory: Bound,
     start: jax.Array,
@@ -103,7 +97,8 @@ def marks_of(
     """
     slowest = jnp.clip(jnp.min(rest.rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rest.rates), slowest)
-    even = np.arange(1.0, contact.reversal_panels) / max(contact.reversal_panels - 1, 1)
+    pieces = contact.resolved.pieces
+    even = np.arange(1.0, pieces) / max(pieces - 1, 1)
     shares = jnp.append(even / fastest, _MORE / slowest)
     ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
@@ -183,10 +178,10 @@ def retrace(
     within: tuple[Any, Any],
 ) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
     """Pieces of the way back, places on them and the rings there; first of all at the start."""
-    nodes = contact.reversal_nodes
+    nodes = contact.resolved.nodes
     steps = way_points(nodes)
     sigma = contact.interface.heights.rms
-    pieces = len(contact.interface.mechanisms) * contact.reversal_panels
+    pieces = len(contact.interface.mechanisms) * contact.resolved.pieces
     whole = jnp.broadcast_to(start, (pieces,))
     flat = jnp.zeros_like(memory.lift)
 
@@ -197,7 +192,7 @@ def retrace(
         place = enter[piece] + (leave - enter)[piece] * share
         lift = jnp.where(k == 0, memory.lift, trail.guess(place))
         rest = settle(contact, place, memory.thresholds, size, lift, contact.rings)
-        marks = marks_of(contact, memory, start, parting, rest)
+        marks = _marks(contact, memory, start, parting, rest)
         pair = pieces_to(marks, start, parting, within)
         enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
         back = jnp.where(parting, sigma, -sigma) * 1e-2

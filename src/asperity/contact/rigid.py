@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from math import pi
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -12,7 +13,7 @@ from .._jax import jax, jnp
 from ..interface import Interface
 from ..interface import Memory as Thresholds
 from ..shapes import Sphere
-from .base import Contact, State, first_out_of_reach
+from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
 from .resolution import Resolution, resolution
 
 _LINEAR = 8.0  # panels are even in asinh(separation / (_LINEAR rms))
@@ -49,14 +50,6 @@ class RigidContact(Contact):
         self.interface = interface
         self.shape = shape
         self.resolved = resolved or resolution(interface, deforms=False)
-
-    @property
-    def reversal_panels(self) -> int:
-        return self.resolved.pieces
-
-    @property
-    def reversal_nodes(self) -> int:
-        return self.resolved.nodes
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -102,12 +95,18 @@ class RigidContact(Contact):
     def bonded(self, memory: Thresholds) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
 
-    def switches(self, memory: Thresholds, separation: jax.Array, parting: jax.Array) -> jax.Array:
-        rows = [
-            b + jnp.where(parting, law.breaking_gap, law.forming_gap)
+    def way(
+        self, memory: Thresholds, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+    ) -> Way:
+        """Every bond of a law that is held reaches the branch at the same separation."""
+        steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
+        marks = [
+            start + (b + jnp.where(parting, law.breaking_gap, law.forming_gap) - start) * steps
             for law, b in zip(self.interface.hysteretic, memory, strict=True)
         ]
-        return jnp.stack(rows) if rows else jnp.zeros((0,))
+        enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
+        places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
+        return Way(enter, leave, jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()

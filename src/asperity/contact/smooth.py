@@ -96,9 +96,6 @@ class SmoothContact(Contact):
     def bonded(self, memory: Flags) -> jax.Array:
         return memory > 0.5
 
-    def switches(self, memory: Flags, separation: jax.Array, parting: jax.Array) -> jax.Array:
-        return jnp.zeros((0,))
-
     def losses(self) -> tuple[jax.Array, jax.Array]:
         rows = [(law.formation_loss, law.rupture_loss) for law in self._hysteretic]
         if not rows:

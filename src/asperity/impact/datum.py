@@ -9,7 +9,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..program import kept
-from .table import FORCE, STORED, Table, chebyshev_sum, local
+from .polynomials import chebyshev_sum, local
+from .table import FORCE, STORED, Table
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
 _PLACES = 32

@@ -13,16 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from .table import (
-    DRIVE,
-    RATE,
-    RISE,
-    Pieces,
-    Table,
-    antiderivative,
-    chebyshev_sum,
-    local,
-)
+from .polynomials import antiderivative, chebyshev_sum, local
+from .table import DRIVE, RATE, RISE, Pieces, Table
 
 
 class Work(NamedTuple):

@@ -11,7 +11,8 @@ from .._jax import jax, jnp
 from ..program import Program
 from .motion import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
-from .table import RATE, RISE, Pieces, Table, chebyshev_sum, join, local, read_row
+from .polynomials import chebyshev_sum, local
+from .table import RATE, RISE, Pieces, Table, join, read_row
 
 _BATCH = 16  # phases a compiled call
 _SAMPLES = 40  # on a phase, and again on its part in contact

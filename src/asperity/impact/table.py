@@ -16,13 +16,12 @@ from numpy.polynomial import chebyshev
 from .._jax import jax, jnp
 from ..contact.base import Contact, Memory, State
 from ..program import kept
+from .polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, local
 
-NODES = 16
 LOOKS = 24
 """Places of a panel at which the kinetic energy is looked at, its ends among them."""
 
 _LEAST = 1e-6  # of the largest work: errors are not asked to be small against less
-_ANTIDERIVATIVE = np.array([chebyshev.chebint(row) for row in np.eye(NODES)])
 _LOOKS = np.linspace(-1.0, 1.0, LOOKS)
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(24)
 _Y = 0.5 * (_GAUSS + 1.0)
@@ -197,7 +196,7 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
 def _works(ends: jax.Array, values: jax.Array) -> Works:
     """Integrate the branches from the top down, once for all phases."""
     half = 0.5 * jnp.diff(ends)
-    integral = jnp.einsum("kn,bpnc,p->bpkc", _ANTIDERIVATIVE.T, values[..., DRIVE], half)
+    integral = jnp.einsum("kn,bpnc,p->bpkc", ANTIDERIVATIVE, values[..., DRIVE], half)
     signs = (-1.0) ** np.arange(NODES + 1)
     whole = jnp.einsum("bpkc,k->bpc", integral, 1.0 - signs)
     above = jnp.cumsum(whole[:, ::-1], axis=1)[:, ::-1]  # from each panel's low end to the top
@@ -270,38 +269,3 @@ def read_row(table: Table, branch: int, place: float) -> np.ndarray:
     x = (2.0 * place - low - high) / (high - low) if high > low else 0.0
     row: np.ndarray = chebyshev.chebval(x, np.asarray(table.values)[branch, panel])
     return row
-
-
-def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
-    """Coordinate in [-1, 1] of a place in an interval; 0 where the interval is empty."""
-    width = high - low
-    safe = jnp.where(width > 0.0, width, 1.0)
-    return jnp.where(width > 0.0, (2.0 * place - low - high) / safe, 0.0)
-
-
-def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
-    """Sum of Chebyshev polynomials; the coefficients' first axis is the degree.
-
-    The other axes and those of ``x`` broadcast.
-    """
-    count = coefficients.shape[0]
-    rest = max(coefficients.ndim - 1, x.ndim)
-    wide = coefficients.reshape(
-        count, *(1,) * (rest - coefficients.ndim + 1), *coefficients.shape[1:]
-    )
-    basis = _basis(count, x.reshape(*(1,) * (rest - x.ndim), *x.shape))
-    return jnp.sum(wide * basis, axis=0)
-
-
-def _basis(count: int, x: jax.Array) -> jax.Array:
-    """T_0 to T_(count - 1) at ``x``, first axis the degree: T_(m+j) = 2 T_m T_j - T_(m-j)."""
-    basis = jnp.stack([jnp.ones_like(x), x])
-    while basis.shape[0] < count:
-        top = basis[-1]
-        basis = jnp.concatenate([basis, 2.0 * top * basis[1:] - basis[-2::-1]])
-    return basis[:count]
-
-
-def antiderivative(coefficients: jax.Array) -> jax.Array:
-    """Chebyshev coefficients of the integral over x; first axis the degree."""
-    return jnp.tensordot(jnp.asarray(_ANTIDERIVATIVE).T, coefficients, axes=1)

@@ -8,7 +8,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from .phase import Ahead, Turn, kinetic_along
-from .table import LOOKS, chebyshev_sum, local
+from .polynomials import chebyshev_sum, local
+from .table import LOOKS
 
 _SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]
 _POLISH = 60  # halvings and Newton steps of a turning point, at most
