@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .records import read
     from .result import Curve, Result
     from .solver import curve, solve
+    from .studies.reproduce import Reproduction, reproduce
 
 __version__ = "0.1.0"
 
@@ -28,12 +29,14 @@ _HOMES = {
     "Curve": "result",
     "InputError": "errors",
     "Outcome": "errors",
+    "Reproduction": "studies.reproduce",
     "Result": "result",
     "SimulationError": "errors",
     "Tolerance": "errors",
     "curve": "solver",
     "measure": "measures",
     "read": "records",
+    "reproduce": "studies.reproduce",
     "simulate": "impact",
     "solve": "solver",
 }
@@ -44,6 +47,7 @@ __all__ = [
     "Curve",
     "InputError",
     "Outcome",
+    "Reproduction",
     "Result",
     "SimulationError",
     "Tolerance",
@@ -51,6 +55,7 @@ __all__ = [
     "load",
     "measure",
     "read",
+    "reproduce",
     "simulate",
     "solve",
 ]

@@ -65,6 +65,7 @@ def warnings_of(
     """
     return [
         *_asperities(case, at_depth),
+        *_publication(case),
         *_adhesion(regime),
         *_menisci(case),
         *_shape(case, motion),
@@ -102,6 +103,20 @@ def _mean_overlap(rough: Roughness, central: float) -> float:
     return float(rough.rms_height * (density - reduced * ndtr(-reduced)))
 
 
+def _publication(case: Case) -> list[str]:
+    assumed = case.publication
+    if assumed is None:
+        return []
+    pulls = "adhesion and menisci pull only while the bodies part, " * (
+        assumed.pull_while_parting_only
+    )
+    return [
+        f"[publication] follows a paper, not physics: {pulls}nothing acts beyond "
+        f"{assumed.conjunction_ends:g} rms heights, and menisci pull "
+        f"{assumed.capillary_factor:g} times as much as their equation says"
+    ]
+
+
 def _adhesion(regime: Regime) -> list[str]:
     out = []
     psi, mu = regime.plasticity_index, regime.tabor_number
@@ -132,7 +147,12 @@ def _menisci(case: Case) -> list[str]:
             f"{liquid.name} ({liquid.molecule_size * 1e9:.2g} nm): no meniscus of continuum liquid"
         )
     rough = case.roughness
-    if rough is not None and kelvin_radius > rough.asperity_density**-0.5:
+    if np.isinf(kelvin_radius):
+        out.append(
+            "the Kelvin radius is infinite: menisci of any height, which would have coalesced long "
+            "before, are kept isolated"
+        )
+    elif rough is not None and kelvin_radius > rough.asperity_density**-0.5:
         out.append(
             f"the Kelvin radius is {kelvin_radius * 1e9:.3g} nm, above the asperity spacing of "
             f"{rough.asperity_density**-0.5 * 1e9:.3g} nm: menisci coalesce, and this model "

@@ -2,6 +2,7 @@
 
 from asperity.case.bodies import Body, Counterface, Material, Roughness
 from asperity.case.forces import Adhesion, Capillary
+from asperity.case.publication import Publication
 from asperity.case.reading import BUILTINS, SIZE_LIMIT, builtin, load, load_file, template
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.schema import Case
@@ -18,6 +19,7 @@ __all__ = [
     "Material",
     "Numerics",
     "Output",
+    "Publication",
     "Roughness",
     "builtin",
     "load",

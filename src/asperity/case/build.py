@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..contact import Contact, ElasticContact, RigidContact, SmoothContact
+from ..contact import (
+    Contact,
+    ElasticContact,
+    PublishedContact,
+    RigidContact,
+    SmoothContact,
+)
 from ..impact import Body
 from ..interface import Interface
-from ..laws import Bradley, ByContact, ByKelvinGap, Dmt, Hertz, Jkr, Law, Meniscus
+from ..laws import (
+    Bradley,
+    ByContact,
+    ByKelvinGap,
+    Dmt,
+    ExactFunctions,
+    Hertz,
+    Jkr,
+    Law,
+    Meniscus,
+    PrintedFunctions,
+    PublishedPressure,
+)
 from ..laws.base import Sum
 from ..materials import contact_modulus
 from ..roughness import Gaussian
 from ..shapes import Sphere
 
 if TYPE_CHECKING:
+    from .bodies import Roughness
+    from .publication import Publication
     from .schema import Case
 
 CLEARANCE = 1e-9
@@ -53,10 +74,13 @@ def build(case: Case) -> Problem:
     modulus = contact_modulus(case.body_solid, case.counterface_solid)
     rough = case.roughness
     tip = case.body.radius if rough is None else rough.asperity_radius
-    law = _law(case, tip, modulus)
+    contact: Contact
     if rough is None:
-        contact: Contact = SmoothContact(law)
+        contact = SmoothContact(_law(case, tip, modulus))
+    elif case.publication is not None:
+        contact = _published(case, rough, case.publication, modulus)
     else:
+        law = _law(case, tip, modulus)
         interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
         shape = Sphere(case.body.radius)
         if case.counterface.deformation == "rigid":
@@ -70,6 +94,34 @@ def build(case: Case) -> Problem:
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, impact.gravity, release, impact.speed or 0.0)
     return Problem(contact, body, modulus, tip)
+
+
+def _published(
+    case: Case, rough: Roughness, assumed: Publication, modulus: float
+) -> PublishedContact:
+    """The contact that the publication assumes."""
+    liquid, kelvin_radius = case.liquid, case.kelvin_radius
+    tension, reach = 0.0, None
+    if liquid is not None and kelvin_radius > 0.0:
+        cosine = math.cos(_given(case.capillary.contact_angle))
+        tension = assumed.capillary_factor * liquid.tension * cosine
+        reach = None if math.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
+    work = _given(case.adhesion.work) if case.adhesion.model != "none" else 0.0
+    pressure = PublishedPressure(
+        density=rough.asperity_density,
+        radius=rough.asperity_radius,
+        rms_height=rough.rms_height,
+        modulus=modulus,
+        work_of_adhesion=work,
+        tension=tension,
+        edge=assumed.conjunction_ends,
+        reach=reach,
+        functions=ExactFunctions() if assumed.polynomials == "exact" else PrintedFunctions(),
+        bands=assumed.bands,
+    )
+    return PublishedContact(
+        pressure, Sphere(case.body.radius), float(assumed.pull_while_parting_only)
+    )
 
 
 def _law(case: Case, tip: float, modulus: float) -> Law:

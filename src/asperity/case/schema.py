@@ -12,6 +12,7 @@ from asperity import materials as catalogue
 from asperity.case import problems, writing
 from asperity.case.bodies import Body, Counterface, Material, Roughness
 from asperity.case.forces import Adhesion, Capillary
+from asperity.case.publication import Publication
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
 from asperity.errors import InputError, Tolerance
@@ -42,6 +43,7 @@ class Case(Table):
     adhesion: Adhesion = Field(default_factory=lambda: Adhesion(model="none"))
     capillary: Capillary = Field(default_factory=lambda: Capillary(model="none"))
     impact: Impact
+    publication: Publication | None = Field(None, json_schema_extra={"template": False})
     numerics: Numerics = Field(default_factory=Numerics)
     output: Output = Field(default_factory=Output)
     materials: dict[str, Material] = Field(
@@ -65,7 +67,35 @@ class Case(Table):
                 "body has no elasticity at all; got 'rigid'",
                 key="counterface.deformation",
             )
+        if self.publication is not None:
+            self._only_what_the_publication_has()
+        elif self.capillary.humidity == 1.0 and self.capillary.model != "none":
+            raise InputError(
+                "`humidity` must lie in [0, 1) (at 1 the Kelvin radius is infinite: menisci would "
+                "reach to any gap); got 1",
+                key="capillary.humidity",
+            )
         return self
+
+    def _only_what_the_publication_has(self) -> None:
+        """Refuse models that a [publication] table leaves no room for."""
+        if self.roughness is None:
+            raise InputError(
+                "a [roughness] table must be given with [publication]; got none", key="publication"
+            )
+        wanted = (
+            ("counterface.deformation", self.counterface.deformation, ("rigid",)),
+            ("adhesion.model", self.adhesion.model, ("dmt", "none")),
+            ("capillary.formation", self.capillary.formation, ("contact",)),
+        )
+        for key, value, allowed in wanted:
+            if value not in allowed:
+                name = key.split(".")[1]
+                raise InputError(
+                    f"`{name}` must be {' or '.join(map(repr, allowed))} with a [publication] "
+                    f"table, which replaces the other models; got {value!r}",
+                    key=key,
+                )
 
     @property
     def body_solid(self) -> catalogue.Solid:
@@ -91,10 +121,12 @@ class Case(Table):
 
     @property
     def kelvin_radius(self) -> float:
-        """Kelvin radius [m]; 0 without menisci or in dry air."""
+        """Kelvin radius [m]; 0 without menisci or in dry air, infinite at a humidity of 1."""
         liquid, air = self.liquid, self.capillary
         if liquid is None or air.humidity is None or air.temperature is None:
             return 0.0
+        if air.humidity == 1.0:
+            return math.inf
         return catalogue.kelvin_radius(liquid, air.humidity, air.temperature)
 
     @property

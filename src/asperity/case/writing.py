@@ -106,6 +106,9 @@ def commented(model: type[BaseModel], heading: str) -> str:
     plain = {n: f for n, f in ordered(model).items() if not tables_of(f.annotation)}
     lines += _commented_keys(plain)
     for name, field in ordered(model).items():
+        extra = field.json_schema_extra
+        if isinstance(extra, dict) and not extra.get("template", True):
+            continue
         for table in tables_of(field.annotation):
             lines += ["", *_commented_table(name, field, table)]
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""The command line: ``asperity run``, ``curve``, ``plot``, ``init``, ``materials``.
+"""The command line: ``asperity run``, ``curve``, ``reproduce``, ``plot``, ``init``, ``materials``.
 
 This module imports nothing but typer, so that ``--help`` answers at once; every command imports
 what it needs when it is called.
@@ -100,6 +100,35 @@ def _compute(what: str, case: str, **options: Any) -> None:
     from asperity.cli.computing import compute
 
     compute(what, case, **options)
+
+
+@app.command()
+def reproduce(
+    output: Folder = None,
+    force: Force = False,
+    refit: Annotated[
+        bool, typer.Option("--refit", help="Find the unknown inputs again from the tables.")
+    ] = False,
+    tables: Annotated[
+        str | None,
+        typer.Option(
+            "--tables",
+            metavar="FILE.csv",
+            help="Tables to compare with, in place of the publication's.",
+            show_default=False,
+        ),
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute the seed publication's tables and figures, and audit it.
+
+    Writes its figures with their data, both tables side by side and the audit to DIR,
+    ./reproduce-out unless given.
+    """
+    from asperity.cli.reproducing import compute
+
+    compute(output=output, force=force, refit=refit, tables=tables, as_json=as_json, quiet=quiet)
 
 
 @app.command()

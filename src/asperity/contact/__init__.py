@@ -2,7 +2,16 @@
 
 from .base import Contact, State
 from .elastic import ElasticContact, RingMemory
+from .published import PublishedContact
 from .rigid import RigidContact
 from .smooth import SmoothContact
 
-__all__ = ["Contact", "ElasticContact", "RigidContact", "RingMemory", "SmoothContact", "State"]
+__all__ = [
+    "Contact",
+    "ElasticContact",
+    "PublishedContact",
+    "RigidContact",
+    "RingMemory",
+    "SmoothContact",
+    "State",
+]

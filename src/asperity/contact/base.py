@@ -111,6 +111,16 @@ class Contact(eqx.Module):
         """Whether a bond is one yes or no, as on a smooth body."""
         return False
 
+    @property
+    def lags(self) -> bool:
+        """Whether a way leads from a reversal to the outermost branch: bonds are many."""
+        return bool(self.mechanisms) and not self.discrete
+
+    @property
+    def datum(self) -> jax.Array | None:
+        """Separation [m] from which rebounds count; None for the static equilibrium."""
+        return None
+
     def elastic_part(self, parts: jax.Array) -> jax.Array:
         """The elastic force among the parts [N]."""
         if "elastic" not in self.components:
@@ -145,7 +155,7 @@ class Contact(eqx.Module):
     ) -> Way:
         """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m].
 
-        Only where bonds are many: a contact with one bond is always on a branch.
+        Only where the contact :attr:`lags`; else it is always on a branch.
         """
         raise NotImplementedError(f"{type(self).__name__} is always on a branch")
 

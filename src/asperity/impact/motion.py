@@ -203,7 +203,9 @@ def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
     table = tabulate(contact, low, high)
-    return table, find_datum(table, body.weight, body.release)
+    if contact.datum is None:
+        return table, find_datum(table, body.weight, body.release)
+    return table, Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
 
 
 def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:

@@ -137,7 +137,9 @@ def _path(pieces: Pieces, phase: Phase, places: int) -> jax.Array:
     low, high = jnp.minimum(phase.start, phase.stop), jnp.maximum(phase.start, phase.stop)
     near = jnp.minimum(high, low + 2.0 * jnp.abs(low))
     steps = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, _SAMPLES)) ** 2
-    inner = np.arange(places) / places
-    even = pieces.enter[:, None] + (pieces.leave - pieces.enter)[:, None] * inner
-    both = [low + (high - low) * steps, low + (near - low) * steps, even.ravel()]
+    # On the part of each piece that is passed, denser at its ends.
+    enter, leave = jnp.clip(pieces.enter, low, high), jnp.clip(pieces.leave, low, high)
+    inner = np.sin(0.5 * np.pi * np.arange(places) / places) ** 2
+    passed = enter[:, None] + (leave - enter)[:, None] * inner
+    both = [low + (high - low) * steps, low + (near - low) * steps, passed.ravel()]
     return jnp.clip(jnp.concatenate(both), low, high)

@@ -222,7 +222,7 @@ def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
 ) -> Pieces:
     """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
-    if not contact.mechanisms or contact.discrete:
+    if not contact.lags:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
     way = contact.way(memory, start, parting, (table.ends[0], table.ends[-1]))

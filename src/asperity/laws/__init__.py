@@ -6,17 +6,22 @@ from .dmt import Dmt
 from .hertz import Hertz
 from .jkr import Jkr
 from .meniscus import ByContact, ByKelvinGap, Meniscus
+from .published import ExactFunctions, HeightFunctions, PrintedFunctions, PublishedPressure
 
 __all__ = [
     "Bradley",
     "ByContact",
     "ByKelvinGap",
     "Dmt",
+    "ExactFunctions",
+    "HeightFunctions",
     "Hertz",
     "Jkr",
     "Law",
     "Meniscus",
     "Powers",
+    "PrintedFunctions",
+    "PublishedPressure",
     "Sum",
     "TruncatedPower",
 ]

@@ -77,7 +77,7 @@ def largest(result: Result, name: str, sign: float) -> np.ndarray:
 
 
 def datum(result: Result) -> float | None:
-    """Separation of static equilibrium, from which heights of rebound count [m]."""
+    """Separation from which heights of rebound count [m]: at rest, or the conjunction's edge."""
     heights = result.measures.get("rebound_height") or []
     tops = result.events.get("apex_separation", np.empty(0))
     for height, top in zip(heights, tops, strict=False):

@@ -19,7 +19,7 @@ def panels(result: Result) -> Row:
     row = [Panel(2.0, lambda axes: _whole(axes, result))]
     heights = _heights(result)
     if np.count_nonzero(heights > 0.0) >= _MANY:
-        row.append(Panel(1.0, lambda axes: _rebounds(axes, heights)))
+        row.append(Panel(1.0, lambda axes: _rebounds(axes, result, heights)))
     elif impacts.first_contact(result) is not None:
         row.append(Panel(1.0, lambda axes: _first(axes, result)))
     return row
@@ -54,12 +54,19 @@ def _whole(axes: Axes, result: Result) -> None:
     if base is not None:
         axes.axhline(
             base / metres, color=colour("quiet"), lw=0.6, ls=(0, (4, 3)), zorder=0,
-            label="static equilibrium",
+            label=_datum_name(result),
         )  # fmt: skip
     axes.set_xlabel(style.label("time since release", time_unit) + shown)
     axes.set_ylabel(style.label("separation", unit))
     axes.set_xlim(0.0, time[-1] / seconds)
     style.legend_above(axes)
+
+
+def _datum_name(result: Result) -> str:
+    """What rebounds are counted from."""
+    if result.case.publication is None:
+        return "static equilibrium"
+    return "edge of the conjunction"
 
 
 def _central(axes: Axes, result: Result, points: slice, time: np.ndarray, metres: float) -> None:
@@ -69,7 +76,7 @@ def _central(axes: Axes, result: Result, points: slice, time: np.ndarray, metres
         axes.plot(time, central / metres, color=colour("central"), label="with deformation", lw=0.8)
 
 
-def _rebounds(axes: Axes, heights: np.ndarray) -> None:
+def _rebounds(axes: Axes, result: Result, heights: np.ndarray) -> None:
     metres, unit = style.scale_of(heights, unit="m")
     number = np.arange(heights.size)
     size = 2.5 if heights.size <= _MARKED else 1.5
@@ -77,7 +84,8 @@ def _rebounds(axes: Axes, heights: np.ndarray) -> None:
     axes.plot(number, heights / metres, "o", ms=size, mew=0.0, color=colour("apex"))
     style.log_axis(axes, heights)
     style.count_axis(axes, "rebound (0: release)")
-    axes.set_ylabel(style.label("height above rest", unit))
+    above = "rest" if result.case.publication is None else "the edge"
+    axes.set_ylabel(style.label(f"height above {above}", unit))
 
 
 def _first(axes: Axes, result: Result) -> None:

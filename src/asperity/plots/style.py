@@ -113,14 +113,14 @@ def colour(name: str) -> str:
 
 
 def figure_of(rows: Sequence[Row]) -> Figure:
-    """A figure with rows of panels at fixed distances; a panel alone is one column wide.
+    """A figure with rows of panels at fixed distances; single panels are one column wide.
 
     Parameters
     ----------
     rows : sequence of Row
         The panels from top to bottom, each with its relative width and what draws it.
     """
-    width = COLUMN if [len(row) for row in rows] == [1] else PAGE
+    width = COLUMN if all(len(row) == 1 for row in rows) else PAGE
     step = _HEIGHT + _MARGINS["top"] + _MARGINS["bottom"]
     tall = step * len(rows)
     figure = Picture(figsize=(width / _INCH, tall / _INCH), dpi=RESOLUTION)
@@ -176,6 +176,14 @@ def legend_above(axes: Axes, rows: int | None = None) -> None:
         axes.legend(
             loc="lower left", bbox_to_anchor=(0.0, 1.02), ncols=columns, markerscale=_MARKER_SCALE
         )
+
+
+def svg(figure: Figure) -> bytes:
+    """A figure as SVG with its letters as text; the same figure gives the same bytes."""
+    store = io.BytesIO()
+    with look(), mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "asperity"}):
+        figure.savefig(store, format="svg", metadata={"Date": None, "Creator": None})
+    return store.getvalue()
 
 
 def png(figure: Figure) -> bytes:

@@ -1,11 +1,18 @@
 """Results as netCDF, as datasets, as JSON, and as folders of files."""
 
-from asperity.records.folder import CURVE_FILES, RUN_FILES, check_folder, write_folder
+from asperity.records.folder import (
+    CURVE_FILES,
+    REPRODUCTION_FILES,
+    RUN_FILES,
+    check_folder,
+    write_folder,
+)
 from asperity.records.layout import attributes, json_object, plain
 from asperity.records.netcdf import dataset, encode, read
 
 __all__ = [
     "CURVE_FILES",
+    "REPRODUCTION_FILES",
     "RUN_FILES",
     "attributes",
     "check_folder",

@@ -18,6 +18,14 @@ CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
 """Names that a curve may write. They stand beside those of a run without touching them."""
 
 
+REPRODUCTION_FILES = (
+    *(f"figure-{number}.{kind}" for number in ("1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9")
+      for kind in ("png", "svg", "csv")),
+    "tables.csv", "audit.csv", "reproduction.json", "summary.txt",
+)  # fmt: skip
+"""Names that `asperity reproduce` may write."""
+
+
 def check_folder(
     directory: str | os.PathLike[str], own: Collection[str], *, force: bool = False
 ) -> None:

@@ -1,0 +1,100 @@
+"""``asperity reproduce``: the seed publication again, with its figures and the audit."""
+
+from __future__ import annotations
+
+import json
+import threading
+from pathlib import Path
+
+import typer
+
+from asperity.cli.terminal import say, tell
+from asperity.cli.working import Progress, Work, progress_bar
+from asperity.errors import Outcome, SimulationError
+from asperity.records import REPRODUCTION_FILES, check_folder, write_folder
+from asperity.studies import report
+from asperity.studies.reproduce import Reproduction, reproduce
+from asperity.studies.tables import read_tables
+
+FOLDER = "reproduce-out"
+"""Folder of the files unless another is named."""
+
+
+def compute(
+    *, output: str | None, force: bool, refit: bool, tables: str | None, as_json: bool, quiet: bool
+) -> None:
+    """Compute, keep the result, and say what came out.
+
+    Parameters
+    ----------
+    output : str or None
+        Folder for the files.
+    tables : str or None
+        CSV of tables to compare with.
+    refit, force, as_json, quiet : bool
+        The options of these names.
+    """
+    read_tables(tables)  # before anything is computed
+    folder = None
+    if output is not None or not as_json:
+        folder = Path(output or FOLDER)
+        check_folder(folder, REPRODUCTION_FILES, force=force)
+    kept: list[Reproduction] = []
+
+    def task(stop: threading.Event, progress: Progress | None) -> Reproduction:
+        return reproduce(
+            tables=tables, refitted=refit, progress=progress, stop=stop, keep=kept.append
+        )
+
+    with progress_bar(not (quiet or as_json)) as progress:
+        done, code = Work(lambda stop: task(stop, progress)).wait()
+    done = done or (kept[-1] if kept else None)
+    if done is None:
+        say("asperity: interrupted before there was anything to keep")
+        raise typer.Exit(code)
+    written = _write(done, folder, force=force)
+    if code:
+        say(f"asperity: {Outcome.INTERRUPTED.message}")
+    _tell(done, written, as_json=as_json, quiet=quiet)
+    if code:
+        raise typer.Exit(code)
+    if done.problems:
+        raise SimulationError("; ".join(done.problems), done)
+
+
+def _tell(done: Reproduction, written: list[Path], *, as_json: bool, quiet: bool) -> None:
+    """The answer on standard output, and where the files are."""
+    if as_json:
+        tell(json.dumps(done.json_object(), allow_nan=False))
+    elif not quiet:
+        tell(report.brief(done))
+    if written and not quiet:
+        where = _written(written, done)
+        if as_json:
+            say(where)
+        else:
+            tell("\n" + where)
+
+
+def _write(done: Reproduction, folder: Path | None, *, force: bool) -> list[Path]:
+    if folder is None:
+        return []
+    contents = report.files(done)
+    if done.drawings:
+        from asperity.plots import publication
+
+        contents |= publication.files(done.drawings)
+    return write_folder(folder, contents, REPRODUCTION_FILES, force=force)
+
+
+def _written(paths: list[Path], done: Reproduction) -> str:
+    """Where the pictures and the rest are."""
+    folder = paths[0].parent
+    if not done.drawings:
+        return f"tables written to {folder}, no figures"
+    figures = ", ".join(name.removeprefix("figure-") for name in done.drawings)
+    return (
+        f"written to {folder}:\n"
+        f"  Figures {figures} as figure-N.png and figure-N.svg, their data as figure-N.csv\n"
+        "  tables.csv audit.csv reproduction.json summary.txt"
+    )

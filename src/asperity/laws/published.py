@@ -1,0 +1,157 @@
+"""The publication's mean pressures as it prints them, apart from the physics of this package.
+
+Nothing here is a law of one asperity: these are its eqs. 5-17, over a conjunction that ends at
+a separation of a few rms heights. What is wrong with them is in ``docs/audit``.
+"""
+
+from __future__ import annotations
+
+import abc
+from math import pi
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..special import height_integral
+from .base import Real, quantity
+
+EQ_10 = (0.5, -0.3912, -0.03592, 0.1275, -0.048, 0.006278, 0.00003763, -0.00004965)
+"""Coefficients of F_0 as printed in eq. 10, of rising powers."""
+
+EQ_17 = (0.43, -0.6167, 0.3215, -0.04654, -0.02193, 0.01106, -0.001913, 0.0001217)
+"""Coefficients of F_3/2 as printed in eq. 17, of rising powers."""
+
+
+class HeightFunctions(eqx.Module):
+    """The two functions of the Stribeck parameter, lambda' = h/sigma, that everything rests on."""
+
+    @abc.abstractmethod
+    def touching(self, reduced: jax.Array) -> jax.Array:
+        """F_0, the share of asperities that touch."""
+
+    @abc.abstractmethod
+    def contact(self, reduced: jax.Array) -> jax.Array:
+        """F_3/2."""
+
+
+class ExactFunctions(HeightFunctions):
+    """The integrals themselves, eq. 7."""
+
+    def touching(self, reduced: jax.Array) -> jax.Array:
+        return height_integral(0.0, reduced)
+
+    def contact(self, reduced: jax.Array) -> jax.Array:
+        return height_integral(1.5, reduced)
+
+
+class PrintedFunctions(HeightFunctions):
+    """The polynomials as printed, eqs. 10 and 17: fits for lambda' from 0 to about 3."""
+
+    def touching(self, reduced: jax.Array) -> jax.Array:
+        return jnp.polyval(jnp.asarray(EQ_10[::-1]), reduced)
+
+    def contact(self, reduced: jax.Array) -> jax.Array:
+        return jnp.polyval(jnp.asarray(EQ_17[::-1]), reduced)
+
+
+class PublishedPressure(eqx.Module):
+    """Mean pressures of contact, dry adhesion and menisci in a conjunction that ends.
+
+    Parameters
+    ----------
+    functions
+        F_0 and F_3/2: exact, or as printed.
+    bands
+        Number N_s of the bands of eq. 13 (static).
+    reach
+        2 r_k cos(theta) [m], the gap at which a meniscus ends; None where it never does, at a
+        relative humidity of 1.
+    density
+        Asperities per area N [1/m^2].
+    radius
+        Radius beta of a summit [m].
+    rms_height
+        Standard deviation sigma of their heights [m].
+    modulus
+        Contact modulus E* [Pa].
+    work_of_adhesion
+        w_a [J/m^2]; 0 for none.
+    tension
+        gamma cos(theta) times the factor on the menisci [N/m]; 0 for none.
+    edge
+        Stribeck parameter at which the conjunction ends: beyond it nothing acts.
+
+    Notes
+    -----
+    All methods take separations h [m] of any shape and give pressures [Pa].
+    """
+
+    functions: HeightFunctions
+    bands: int = eqx.field(static=True)
+    reach: Real | None
+    density: Real = quantity()
+    radius: Real = quantity()
+    rms_height: Real = quantity()
+    modulus: Real = quantity()
+    work_of_adhesion: Real = quantity()
+    tension: Real = quantity()
+    edge: Real = quantity()
+
+    @property
+    def end(self) -> jax.Array:
+        """Separation [m] at which the conjunction ends."""
+        return self.edge * self.rms_height
+
+    @property
+    def kinks(self) -> tuple[jax.Array, ...]:
+        """Separations [m] within the conjunction at which a pressure changes its form."""
+        mean_plane = jnp.zeros(())
+        return (mean_plane,) if self.reach is None else (mean_plane, jnp.asarray(self.reach))
+
+    def contact(self, separation: jax.Array) -> jax.Array:
+        """Pressure of elastic contact, positive apart: eq. 16 per area."""
+        scale = 4.0 / 3.0 * self.density * jnp.sqrt(self.radius) * self.rms_height**1.5
+        return self._inside(separation, self.modulus * scale * self._contact(separation))
+
+    def adhesion(self, separation: jax.Array) -> jax.Array:
+        """Dry adhesion, a pull being positive: eq. 9 per area."""
+        scale = 2.0 * pi * self.density * self.radius * self.work_of_adhesion
+        return self._inside(separation, scale * self._touching(separation))
+
+    def capillary(self, separation: jax.Array) -> jax.Array:
+        """Menisci of the asperities that do not touch, a pull being positive: eqs. 13-15 per area.
+
+        Without the factor 1/(sqrt(2 pi) sigma) of eq. 14, which F_0 holds already. Eq. 12 as
+        printed pushes beyond its reach; here the bands end there.
+        """
+        scale = 4.0 * pi * self.density * self.radius * self.tension
+        above_mean = jnp.maximum(separation, 0.0)
+        if self.reach is None:
+            # Every meniscus pulls fully: the sum of eq. 15 telescopes, whatever the bands.
+            sum_ = self._touching(jnp.zeros(())) - self._touching(above_mean)
+        else:
+            sum_ = self._banded(above_mean, jnp.asarray(self.reach))
+        return self._inside(separation, scale * sum_)
+
+    def touching(self, separation: jax.Array) -> jax.Array:
+        """Asperities that touch [1/m^2], eq. 8 with the exact F_0."""
+        share = height_integral(0.0, separation / self.rms_height)
+        return self._inside(separation, self.density * share)
+
+    def _contact(self, separation: jax.Array) -> jax.Array:
+        return self.functions.contact(separation / self.rms_height)
+
+    def _touching(self, separation: jax.Array) -> jax.Array:
+        return self.functions.touching(separation / self.rms_height)
+
+    def _inside(self, separation: jax.Array, value: jax.Array) -> jax.Array:
+        return jnp.where(separation < self.end, value, 0.0)
+
+    def _banded(self, separation: jax.Array, reach: jax.Array) -> jax.Array:
+        """Sum over the bands of their share of asperities times the force at their far gap."""
+        span = jnp.minimum(separation, reach)
+        gaps = span[..., None] * (np.arange(self.bands + 1.0) / self.bands)
+        taller = self._touching(separation[..., None] - gaps)
+        force = 1.0 - gaps[..., 1:] / reach
+        return jnp.sum(jnp.diff(taller, axis=-1) * force, axis=-1)

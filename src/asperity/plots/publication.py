@@ -1,0 +1,271 @@
+"""The publication's figures, in this project's style, 85 mm wide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from asperity.plots import style
+from asperity.plots.style import Panel, colour
+from asperity.studies.drawing import Drawing
+
+_ORDER = ("approach", "parting", "capillary", "apex", "central")
+_PULLS = (("capillary", "menisci"), ("adhesion", "adhesion"))
+
+
+def figures(drawings: dict[str, Drawing]) -> dict[str, Figure]:
+    """A figure for each drawing, by its name."""
+    with style.look():
+        return {
+            name: style.figure_of([[Panel(1.0, draw)] for draw in _panels(name, drawing)])
+            for name, drawing in drawings.items()
+        }
+
+
+def files(drawings: dict[str, Drawing]) -> dict[str, bytes]:
+    """Each figure as PNG and as SVG, and its data as CSV, by file name."""
+    out: dict[str, bytes] = {}
+    for name, figure in figures(drawings).items():
+        out[f"{name}.png"] = style.png(figure)
+        out[f"{name}.svg"] = style.svg(figure)
+        out[f"{name}.csv"] = drawings[name].csv()
+    return out
+
+
+Draw = Callable[[Axes], None]
+
+
+def _panels(name: str, drawing: Drawing) -> list[Draw]:
+    """What draws the panels of a figure, from top to bottom."""
+    panels: dict[str, list[Callable[..., None]]] = {
+        "figure-1": [_bodies, _near_the_plane],
+        "figure-2": [_heights],
+        "figure-3": [_distribution],
+        "figure-4": [_map],
+        "figure-5": [_meniscus, _bands],
+        "figure-6": [_gap, _displacement],
+        "figure-7a": [_motions],
+        "figure-7b": [_forces, _first_contact],
+        "figure-8": [_motions],
+        "figure-9": [_motions],
+    }
+    return [partial(draw, drawing=drawing) for draw in panels[name]]
+
+
+def _scaled(
+    axes: Axes, labels: Sequence[str], xs: Sequence[np.ndarray], ys: Sequence[np.ndarray]
+) -> list[float]:
+    """Label both axes, ``name [unit]`` with a prefix that suits; the factors."""
+    factors, texts = [], []
+    for label, values in zip(labels, (xs, ys), strict=True):
+        name, unit = label.rstrip("]").rsplit(" [", 1)
+        factor, prefixed = style.scale_of(*values, unit=unit)
+        factors.append(factor)
+        texts.append(style.label(name, prefixed))
+    axes.set(xlabel=texts[0], ylabel=texts[1])
+    return factors
+
+
+def _bodies(axes: Axes, drawing: Drawing) -> None:
+    x, y = drawing.series["sphere"]
+    _, metres = _scaled(axes, drawing.columns, [x], [y])
+    axes.fill(x / metres, y / metres, color=colour("central"), alpha=0.5, lw=0.0)
+    axes.plot(x / metres, y / metres, color=colour("motion"))
+    axes.axhspan(-0.12 * y.max() / metres, 0.0, color=colour("quiet"), alpha=0.5, lw=0.0)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_ylim(-0.12 * y.max() / metres, 1.05 * y.max() / metres)
+    axes.annotate("silica", (0.0, 0.5 * y.max() / metres), ha="center", va="center")
+    axes.annotate("silicon carbide", (0.0, -0.06 * y.max() / metres), ha="center", va="center")
+
+
+def _near_the_plane(axes: Axes, drawing: Drawing) -> None:
+    x, y = drawing.series["sphere near the plane"]
+    rms = drawing.about["rms height [m]"]
+    wide, tall = _scaled(axes, drawing.columns, [x], [y])
+    axes.plot(x / wide, y / tall, color=colour("motion"), label="sphere")
+    axes.axhspan(-rms / tall, rms / tall, color=colour("quiet"), alpha=0.3, lw=0.0,
+                 label="± rms height")  # fmt: skip
+    axes.axhline(0.0, color=colour("quiet"), lw=0.6)
+    axes.set_ylim(-1.5 * rms / tall, 1.15 * y.max() / tall)
+    axes.margins(x=0.0)
+    style.legend_above(axes)
+
+
+def _heights(axes: Axes, drawing: Drawing) -> None:
+    x, y, z = drawing.series["composite"]
+    shape = int(drawing.about["rows"]), int(drawing.about["columns"])
+    metres, _ = _scaled(axes, drawing.columns[:2], [x], [x])
+    nano, unit = style.scale_of(z, unit="m")
+    image = axes.imshow(
+        z.reshape(shape) / nano, origin="lower", cmap="cividis", interpolation="nearest",
+        extent=(0.0, x.max() / metres, 0.0, y.max() / metres), aspect="equal",
+    )  # fmt: skip
+    figure = axes.figure
+    assert isinstance(figure, Figure)
+    place = axes.get_position()
+    axes.set_position((place.x0, place.y0, 0.8 * place.width, place.height))
+    column = figure.add_axes(
+        (place.x0 + 0.83 * place.width, place.y0, 0.03 * place.width, place.height)
+    )
+    bar = figure.colorbar(image, cax=column)
+    bar.set_label(style.label("height", unit))
+    bar.outline.set_visible(False)
+
+
+def _distribution(axes: Axes, drawing: Drawing) -> None:
+    columns = [list(side) for side in zip(*drawing.series.values(), strict=True)]
+    wide, _ = _scaled(axes, drawing.columns, *columns)
+    # A density over nanometres, whatever the prefix that its own size would suggest.
+    axes.set_ylabel("probability density [1/nm]")
+    for name, mark in (("surface", "o"), ("summits", "^")):
+        x, y = drawing.series[name]
+        tint = colour("approach" if name == "surface" else "parting")
+        axes.plot(x / wide, y * 1e-9, mark, ms=2.5, mew=0.0, color=tint, label=name)
+    x, y = drawing.series["Gaussian"]
+    axes.plot(x / wide, y * 1e-9, color=colour("contact"), lw=0.8, label="Gaussian")
+    axes.set_ylim(bottom=0.0)
+    axes.margins(x=0.0)
+    style.legend_above(axes)
+
+
+_PLACES = {
+    "Bradley": (0.0045, 1.5),
+    "DMT": (0.033, 6.0),
+    "Maugis-\nDugdale": (0.6, 6.0),
+    "JKR": (25.0, 6.0),
+    "Hertz": (0.15, 2e4),
+}
+
+
+def _map(axes: Axes, drawing: Drawing) -> None:
+    for name, (x, y) in drawing.series.items():
+        if "|" in name:
+            if not name.startswith("Hertz"):
+                limit = np.interp(np.log(x), *_limit(drawing))
+                x, y = x[np.log(y) < limit], y[np.log(y) < limit]
+            axes.plot(x, y, color=colour("contact"), lw=0.8)
+    marks = (("closest approach", "o", "motion"), ("at rest, exact model", "^", "parting"))
+    for name, mark, tint in marks:
+        x, y = drawing.series[name]
+        axes.plot(x, y, mark, ms=4.0, mew=0.0, color=colour(tint), label=name)
+    for name, place in _PLACES.items():
+        axes.annotate(name, place, ha="center", va="center", color="#444444", fontsize=7.0)
+    axes.set(xscale="log", yscale="log", xlim=(1e-3, 1e2), ylim=(1e-1, 1e5))
+    axes.set_xlabel("elasticity parameter λ [-]")
+    axes.set_ylabel("load parameter [-]")
+    style.legend_above(axes)
+
+
+def _limit(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
+    """The line above which adhesion is negligible, on logarithmic scales."""
+    x, y = drawing.series["Hertz | adhesive"]
+    return np.log(x), np.log(y)
+
+
+def _meniscus(axes: Axes, drawing: Drawing) -> None:
+    shown = ("asperity", "meniscus, right", "meniscus, left")
+    series = {name: drawing.series[name] for name in shown}
+    wide = 1e-9  # both axes alike, so that the shape is true
+    axes.set(xlabel="place [nm]", ylabel="height [nm]")
+    right, left = series["meniscus, right"], series["meniscus, left"]
+    x, y = series["asperity"]
+    outline_x = np.concatenate([left[0], right[0][::-1]]) / wide
+    outline_y = np.concatenate([left[1], right[1][::-1]]) / wide
+    axes.fill(outline_x, outline_y, color=colour("central"), alpha=0.6, lw=0.0, label="liquid")
+    top = y.max() / wide
+    axes.fill_between(x / wide, y / wide, top, color="#DDDDDD", lw=0.0)
+    axes.plot(x / wide, y / wide, color=colour("contact"), label="asperity")
+    axes.axhline(0.0, color=colour("quiet"), lw=2.0, label="flat")
+    axes.set_ylim(-0.08 * top, top)
+    axes.set_aspect("equal", adjustable="datalim")
+    style.legend_above(axes)
+
+
+def _bands(axes: Axes, drawing: Drawing) -> None:
+    x, z = drawing.series["summits"]
+    flat, bands = drawing.about["separation [m]"], int(drawing.about["bands drawn"])
+    pitch = drawing.about["asperity spacing [m]"]
+    wide, _ = _scaled(axes, drawing.columns, [x], [np.array([flat])])
+    fine = np.linspace(x[0] - pitch / 2.0, x[-1] + pitch / 2.0, 1200)
+    profile = np.max(z[:, None] - 4.0 * (flat / pitch**2) * (fine - x[:, None]) ** 2, axis=0)
+    axes.fill_between(fine / wide, np.maximum(profile, -flat) / wide, -flat / wide,
+                      color="#DDDDDD", lw=0.0)  # fmt: skip
+    axes.plot(fine / wide, profile / wide, color=colour("contact"), lw=0.8)
+    axes.axhline(flat / wide, color=colour("quiet"), lw=2.0, label="flat, λ' = 3")
+    axes.plot(x / wide, z / wide, "o", ms=2.5, mew=0.0, color=colour("parting"), label="summits")
+    for number in range(1, bands + 1):
+        axes.axhline(flat * (1.0 - number / bands) / wide, color=colour("central"), lw=0.5, ls=":",
+                     label="bands Δh" if number == 1 else None)  # fmt: skip
+    axes.set_ylim(-0.9 * flat / wide, 1.1 * flat / wide)
+    axes.margins(x=0.0)
+    style.legend_above(axes)
+
+
+def _gap(axes: Axes, drawing: Drawing) -> None:
+    r, h, _, _ = drawing.series["closest approach"]
+    edge, rms = drawing.about["edge [m]"], drawing.about["rms height [m]"]
+    near = r < 2.0 * r[h < edge].max()
+    wide, tall = _scaled(axes, drawing.columns[:2], [r[near]], [h[near]])
+    axes.plot(r[near] / wide, h[near] / tall, color=colour("motion"), label="d + S(r)")
+    name = f"edge, λ' = {edge / rms:.3g}"
+    axes.axhline(edge / tall, color=colour("parting"), lw=0.8, ls="--", label=name)
+    axes.fill_between(r[near] / wide, h[near] / tall, edge / tall, where=h[near] < edge,
+                      color=colour("lost"), lw=0.0, label="conjunction")  # fmt: skip
+    axes.set_xlim(0.0, r[near].max() / wide)
+    style.legend_above(axes)
+
+
+def _displacement(axes: Axes, drawing: Drawing) -> None:
+    r, h, u, _ = drawing.series["closest approach"]
+    near = r < 2.0 * r[h < drawing.about["edge [m]"]].max()
+    wide, tall = _scaled(axes, drawing.columns[::2], [r[near]], [u[near]])
+    axes.plot(r[near] / wide, u[near] / tall, color=colour("central"))
+    axes.set_xlim(0.0, r[near].max() / wide)
+    axes.set_ylim(bottom=0.0)
+    axes.set_title("what the pressure of contact would displace")
+
+
+def _motions(axes: Axes, drawing: Drawing) -> None:
+    columns = [list(side) for side in zip(*drawing.series.values(), strict=True)]
+    wide, tall = _scaled(axes, drawing.columns, *columns)
+    for number, (name, (x, y)) in enumerate(drawing.series.items()):
+        axes.plot(x / wide, y / tall, color=colour(_ORDER[number % len(_ORDER)]), label=name)
+    if "edge [m]" in drawing.about:
+        axes.axhline(drawing.about["edge [m]"] / tall, color=colour("quiet"), lw=0.6,
+                     ls=(0, (4, 3)), label="edge of the conjunction")  # fmt: skip
+    axes.set_xlim(left=0.0, right=max(x.max() for x in columns[0]) / wide)
+    style.legend_above(axes)
+
+
+def _forces(axes: Axes, drawing: Drawing) -> None:
+    time, *forces = drawing.series["wet"]
+    wide, tall = _scaled(axes, (drawing.columns[0], "force [N]"), [time], forces)
+    names = [column.rsplit(" [", 1)[0] for column in drawing.columns[1:]]
+    for name, force in zip(names, forces, strict=True):
+        axes.plot(time / wide, force / tall, color=colour(name), lw=0.8, label=name)
+    axes.set_xlim(0.0, time.max() / wide)
+    style.legend_above(axes, 2)
+
+
+def _first_contact(axes: Axes, drawing: Drawing) -> None:
+    time, *forces = drawing.series["wet"]
+    middle = drawing.about["first closest approach [s]"]
+    since = time - middle
+    acts = np.abs(forces[0]) > 0.0
+    # The first stretch around the closest approach in which contact acts.
+    index = int(np.argmin(np.abs(since)))
+    before, after = np.flatnonzero(~acts[:index]), np.flatnonzero(~acts[index:])
+    near = slice(int(before[-1]), index + int(after[0]) + 1)
+    shown = [force[near] for force in forces]
+    wide, tall = _scaled(
+        axes, ("time from closest approach [s]", "force [N]"), [since[near]], shown
+    )
+    names = [column.rsplit(" [", 1)[0] for column in drawing.columns[1:]]
+    for name, force in zip(names, shown, strict=True):
+        axes.plot(since[near] / wide, force / tall, color=colour(name), lw=0.8)
+    axes.margins(x=0.0)
+    axes.set_title("first contact")

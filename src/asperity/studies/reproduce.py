@@ -1,0 +1,293 @@
+"""The seed publication again: its tables beside ours, its figures, and what does not add up."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ..case import Case, builtin
+from ..errors import InputError, SimulationError
+from ..result import Result
+from ..solver import solve
+from . import audit, figures
+from .drawing import Drawing
+from .evidence import Evidence
+from .refit import WITHIN, Inputs, Refit, refit
+from .tables import QUANTITIES, Entry, read_tables
+
+Report = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """The tables, the inputs found, the audit and the data of the figures.
+
+    Parameters
+    ----------
+    rows
+        One for each published number: "table", "asperity_radius", "rms_height", "quantity",
+        "published", "computed", "relative_difference"; SI, None where there is none.
+    found
+        The inputs that the publication does not name, and how well they fit.
+    power
+        For each surface the published power loss over three that one can compute.
+    audit
+        "claim", "published", "found", "verdict", each a text.
+    drawings
+        Data of the figures by name; empty where it was interrupted.
+    problems
+        What a refit could not do, a line each.
+    """
+
+    rows: list[dict[str, Any]]
+    found: dict[str, Any]
+    power: list[dict[str, float | None]]
+    audit: list[dict[str, str]]
+    drawings: dict[str, Drawing]
+    problems: list[str] = field(default_factory=list)
+
+    def json_object(self) -> dict[str, Any]:
+        """What ``--json`` prints."""
+        names = ("rows", "found", "power", "audit", "problems")
+        return {name: getattr(self, name) for name in names}
+
+
+def reproduce(
+    *,
+    tables: str | None = None,
+    refitted: bool = False,
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+    keep: Callable[[Reproduction], None] | None = None,
+) -> Reproduction:
+    """Compute the publication's tables and figures from its own assumptions, and audit it.
+
+    Parameters
+    ----------
+    tables
+        Path of a CSV of tables to compare with, see :func:`read_tables`; by default the
+        publication's.
+    refitted
+        Whether to find the unknown inputs again from the tables, instead of taking those of
+        the built-in case ``published``.
+    progress, stop
+        As for :func:`asperity.solve`. What is there when it stops is returned: the tables as
+        far as they were computed, no figures.
+    keep
+        Called with the tables alone as soon as they are there.
+
+    Raises
+    ------
+    InputError
+        If the tables cannot be read, or hold a surface that the case refuses.
+    SimulationError
+        If a motion fails.
+    """
+    tell = progress or (lambda fraction, text: None)
+    stop = stop or threading.Event()
+    entries, case = read_tables(tables), builtin("published")
+    fit: Refit | None = None
+    if refitted:
+        fit = refit(case, entries, tell=lambda f, text: tell(0.5 * f, text), stop=stop)
+    if fit is not None:
+        case = fit.inputs.within(case)
+    tell(0.5 * refitted + 0.02, "tables")
+    results = _tables(case, entries, stop)
+    partial = _compared(case, entries, results, fit)
+    if refitted and not stop.is_set():
+        partial = replace(partial, problems=_problems(fit, entries, partial.rows))
+    if keep is not None:
+        keep(partial)
+    if stop.is_set():
+        return partial
+    tell(0.5 * refitted + 0.2, "what the exact model says")
+    try:
+        evidence = Evidence.gather(case, results, partial.rows, partial.power, stop)
+    except SimulationError:
+        if not stop.is_set():
+            raise
+    if stop.is_set():
+        return partial
+    tell(0.9, "figures")
+    claims = [claim._asdict() for claim in audit.claims(evidence)]
+    drawings = figures.drawings(evidence)
+    tell(1.0, "done")
+    return replace(partial, audit=claims, drawings=drawings)
+
+
+def _compared(
+    case: Case,
+    entries: list[Entry],
+    results: dict[tuple[float, float], Result],
+    fit: Refit | None,
+) -> Reproduction:
+    """The tables beside ours, without audit and figures."""
+    rows = [row for entry in entries for row in _rows(entry, results.get(entry.surface))]
+    power = [
+        _power(entry, results[entry.surface])
+        for entry in _unique(entries)
+        if entry.surface in results
+    ]
+    return Reproduction(rows, _found(Inputs.of(case), rows, fit), power, [], {})
+
+
+def surface_case(case: Case, entry: Entry) -> Case:
+    """A case on another surface.
+
+    Raises
+    ------
+    InputError
+        Where the release lies within the conjunction there.
+    """
+    radius, height = entry.surface
+    case = case.replace(
+        {
+            "roughness.asperity_radius": f"{radius!r} m",
+            "roughness.rms_height": f"{height!r} m",
+        }
+    )
+    edge, gap, _ = Inputs.of(case)
+    if gap <= edge * height:
+        raise InputError(
+            f"`rms_height` must leave the release at {gap * 1e9:.4g} nm outside the conjunction, "
+            f"which ends at {edge:g} of it; got {height * 1e9:.4g} nm"
+        )
+    return case
+
+
+def _tables(
+    case: Case, entries: list[Entry], stop: threading.Event
+) -> dict[tuple[float, float], Result]:
+    """The motion on each surface."""
+    out: dict[tuple[float, float], Result] = {}
+    for entry in _unique(entries):
+        try:
+            motion = solve(surface_case(case, entry), name=entry.name, stop=stop)
+        except SimulationError:
+            if not stop.is_set():
+                raise
+        if stop.is_set():
+            break
+        out[entry.surface] = motion
+    return out
+
+
+def _unique(entries: list[Entry]) -> list[Entry]:
+    """The first entry of each surface."""
+    found: dict[tuple[float, float], Entry] = {}
+    for entry in entries:
+        found.setdefault(entry.surface, entry)
+    return list(found.values())
+
+
+def mean_power_loss(result: Result) -> float | None:
+    """Mean over the impacts of eq. 23, the one-way work over the impact time [W]."""
+    values = [value for value in result.measures["power_loss_published"] if value is not None]
+    return float(np.mean(values)) if values else None
+
+
+def computed(result: Result) -> dict[str, float | None]:
+    """What a motion gives for each quantity of the tables."""
+    decrements = result.measures["log_decrement"]
+    return {
+        "log_decrement": decrements[0] if decrements else None,
+        "stiction_time": result.measures["stiction_time"],
+        "power_loss": mean_power_loss(result),
+    }
+
+
+def _rows(entry: Entry, result: Result | None) -> list[dict[str, Any]]:
+    ours = computed(result) if result is not None else dict.fromkeys(QUANTITIES)
+    rows = []
+    for quantity in QUANTITIES:
+        published, mine = entry.values[quantity], ours[quantity]
+        both = published is not None and mine is not None
+        rows.append(
+            {
+                "table": entry.table,
+                "asperity_radius": entry.asperity_radius,
+                "rms_height": entry.rms_height,
+                "quantity": quantity,
+                "published": published,
+                "computed": mine,
+                "relative_difference": mine / published - 1.0 if both else None,  # type: ignore[operator]
+            }
+        )
+    return rows
+
+
+def _power(entry: Entry, result: Result) -> dict[str, float | None]:
+    """Published power loss over the two energy balances, and over the mean of eq. 23."""
+    published, measures = entry.values["power_loss"], result.measures
+    first, mean = measures["power_loss"][0], mean_power_loss(result)
+    rest, release = measures["stiction_time"], result.ledger["initial"]
+    whole = release / rest if rest else None
+
+    def ratio(balance: float | None) -> float | None:
+        return published / balance if published and balance else None
+
+    return {
+        "asperity_radius": entry.asperity_radius,
+        "rms_height": entry.rms_height,
+        "published": published,
+        "over_first_impact": ratio(first),
+        "over_whole_drop": ratio(whole),
+        "over_mean_of_impacts": ratio(mean),
+    }
+
+
+def _found(inputs: Inputs, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
+    """The inputs and how well they fit, as plain numbers."""
+    off = [
+        row["relative_difference"]
+        for row in rows
+        if row["quantity"] in WITHIN and row["relative_difference"] is not None
+    ]
+    # The row that both tables share counts once.
+    off = list(dict.fromkeys(off))
+    rms = float(np.sqrt(np.mean(np.square(off)))) if off else None
+    out: dict[str, Any] = {**inputs._asdict(), "rms": rms, "refitted": fit is not None}
+    if fit is not None:
+        out["uncertainty"] = {k: _number(v) for k, v in fit.uncertainty._asdict().items()}
+        out["correlation"] = [[_number(v) for v in line] for line in fit.correlation]
+        out["profile"] = [{**held._asdict(), "rms": rms} for held, rms in fit.profile]
+    return out
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _problems(fit: Refit | None, entries: list[Entry], rows: list[dict[str, Any]]) -> list[str]:
+    """Published numbers that are missing or that no inputs meet."""
+    missing = [
+        f"{quantity} at {entry.name} (table {entry.table})"
+        for entry in entries
+        for quantity in WITHIN
+        if entry.values[quantity] is None
+    ]
+    problems = []
+    if missing:
+        problems.append(f"the tables are missing {', '.join(missing)}")
+    if fit is None:
+        problems.append("fewer than three numbers are left for three inputs: nothing was refitted")
+    missed = [
+        f"{row['quantity']} at {row['asperity_radius'] * 1e9:.4g}, "
+        f"{row['rms_height'] * 1e9:.4g} nm (off by {_off(row)})"
+        for row in rows
+        if row["quantity"] in WITHIN
+        and row["published"] is not None
+        and not abs(row["relative_difference"] or np.inf) <= WITHIN[row["quantity"]]
+    ]
+    if missed:
+        problems.append(f"no inputs meet {', '.join(dict.fromkeys(missed))}")
+    return problems
+
+
+def _off(row: dict[str, Any]) -> str:
+    difference = row["relative_difference"]
+    return "no rest" if difference is None else f"{100.0 * difference:+.0f} %"
