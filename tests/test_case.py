@@ -170,7 +170,9 @@ def test_the_example_of_every_key_is_read(place, name, field):
     if name in ("youngs_modulus", "poisson", "density", "hardness"):
         table[place[0]] |= {"youngs_modulus": "1 GPa", "poisson": 0.2, "density": "1 g/cc"}
         table[place[0]].pop("material")
-    if place[0] == "roughness":
+    if place[0] == "publication":
+        table["counterface"]["deformation"] = "rigid"
+    if place[0] in ("roughness", "publication"):
         table["roughness"] = {
             "asperity_density": "1 1/um^2",
             "asperity_radius": "1 nm",

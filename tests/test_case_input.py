@@ -88,6 +88,9 @@ BAD = [
     ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 46): `humidity` must lie in "
      "[0, 1); got 1.2"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
+    ("[adhesion]", "[publication]\n[adhesion]", "counterface.deformation (line 19): `deformation` "
+     "must be 'rigid' with a [publication] table, which replaces the other models; got "
+     "'half-space'"),
     ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1); got -0.1"),
     ("humidity = 0.6", "humidity = nan", "`humidity` must be finite; got nan"),
     ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1); got '60 %'"),

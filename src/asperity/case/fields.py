@@ -70,13 +70,13 @@ class Number:
         The interval in words of mathematics, e.g. ``"(-1, 0.5]"``.
     whole : bool
         Whether it must be a whole number.
-    why : str
-        What to add to the rule where the value is the interval's open upper end.
+    said : str
+        The interval to name in messages, where a rule between keys narrows it.
     """
 
     interval: str
     whole: bool = False
-    why: str = ""
+    said: str = ""
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -96,14 +96,13 @@ class Number:
         name = info.field_name or "value"
         kind = "a whole number" if self.whole else "a number"
         allowed = int if self.whole else (int, float)
+        interval = self.said or self.interval
         if isinstance(value, bool) or not isinstance(value, allowed):
-            raise InputError(f"`{name}` must be {kind} in {self.interval}; got {shown(value)}")
+            raise InputError(f"`{name}` must be {kind} in {interval}; got {shown(value)}")
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"`{name}` must be finite; got {shown(value)}")
         if not self.holds(value):
-            reason = f" ({self.why})" if self.why and value == self.bounds[1] else ""
-            rule = f"must lie in {self.interval}{reason}"
-            raise InputError(f"`{name}` {rule}; got {shown(value)}")
+            raise InputError(f"`{name}` must lie in {interval}; got {shown(value)}")
         return value if self.whole else float(value)
 
     def __get_pydantic_core_schema__(
@@ -159,4 +158,4 @@ Speed = Annotated[float, Quantity("m/s", 1e-9, 1e4)]
 Acceleration = Annotated[float, Quantity("m/s^2", 1e-9, 1e9, zero=True)]
 Time = Annotated[float, Quantity("s", 1e-12, 1e9)]
 Poisson = Annotated[float, Number("(-1, 0.5]")]
-Humidity = Annotated[float, Number("[0, 1]")]
+Humidity = Annotated[float, Number("[0, 1]", said="[0, 1)")]

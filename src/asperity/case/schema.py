@@ -43,7 +43,7 @@ class Case(Table):
     adhesion: Adhesion = Field(default_factory=lambda: Adhesion(model="none"))
     capillary: Capillary = Field(default_factory=lambda: Capillary(model="none"))
     impact: Impact
-    publication: Publication | None = Field(None, json_schema_extra={"template": False})
+    publication: Publication | None = Field(None, json_schema_extra={"rare": True})
     numerics: Numerics = Field(default_factory=Numerics)
     output: Output = Field(default_factory=Output)
     materials: dict[str, Material] = Field(

@@ -106,9 +106,6 @@ def commented(model: type[BaseModel], heading: str) -> str:
     plain = {n: f for n, f in ordered(model).items() if not tables_of(f.annotation)}
     lines += _commented_keys(plain)
     for name, field in ordered(model).items():
-        extra = field.json_schema_extra
-        if isinstance(extra, dict) and not extra.get("template", True):
-            continue
         for table in tables_of(field.annotation):
             lines += ["", *_commented_table(name, field, table)]
     return "\n".join(lines) + "\n"
@@ -118,6 +115,9 @@ def _commented_table(name: str, field: FieldInfo, table: type[BaseModel]) -> lis
     about = [f"# {line}" for line in textwrap.wrap(inspect.getdoc(table) or "", 90)]
     if "dict" in str(field.annotation):
         return [*about, f"# [{name}.NAME]", *_commented_keys(ordered(table), active=False)]
+    extra = field.json_schema_extra
+    if isinstance(extra, dict) and extra.get("rare"):
+        return [*about, f"# [{name}]", *_commented_keys(ordered(table), active=False)]
     return [*about, f"[{name}]", *_commented_keys(ordered(table))]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -35,9 +36,9 @@ class Drawing(NamedTuple):
         store.write(f"# {self.title}\n")
         for name, value in self.about.items():
             store.write(f"# {name}: {value:.9g}\n")
-        store.write(",".join(("series", *self.columns)) + "\n")
+        writer = csv.writer(store, lineterminator="\n")
+        writer.writerow(("series", *self.columns))
         for name, arrays in self.series.items():
             rows = np.column_stack([np.asarray(values, dtype=float) for values in arrays])
-            for row in rows:
-                store.write(f"{name}," + ",".join(f"{value:.9g}" for value in row) + "\n")
+            writer.writerows((name, *(f"{value:.9g}" for value in row)) for row in rows)
         return store.getvalue().encode()

@@ -1,0 +1,296 @@
+"""The publication's assumptions: its pressures, its contact, its case, and what they conserve."""
+
+from dataclasses import replace
+from math import cos, pi, radians
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.special import ndtr
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.case.build import build
+from asperity.contact import PublishedContact
+from asperity.errors import InputError, Outcome, Tolerance
+from asperity.impact import Body, simulate
+from asperity.laws import ExactFunctions, PrintedFunctions, PublishedPressure
+from asperity.measures import measure
+from asperity.shapes import Sphere
+
+RADIUS, BETA, SIGMA, E, N, W = 50e-6, 0.25e-9, 10.5e-9, 56.814e9, 1.69e16, 0.03
+TENSION = 4.05 * 0.075 * cos(radians(73.0))
+EDGE = 3.0
+MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
+GRAVITY = 9.81
+
+
+def pressure(functions=None, reach=None, bands=100, edge=EDGE, **changes):
+    values = {
+        "density": N,
+        "radius": BETA,
+        "rms_height": SIGMA,
+        "modulus": E,
+        "work_of_adhesion": W,
+        "tension": TENSION,
+        **changes,
+    }
+    return PublishedPressure(functions or ExactFunctions(), bands, reach, edge=edge, **values)
+
+
+def contact(parting_only=1.0, **options):
+    return PublishedContact(pressure(**options), Sphere(RADIUS), parting_only)
+
+
+def phi(x):
+    return np.exp(-0.5 * x * x) / np.sqrt(2.0 * pi)
+
+
+@pytest.mark.parametrize("reduced", [-1.0, 0.5, 2.0, 2.9])
+def test_pressures_are_those_of_equations_9_15_and_16(reduced):
+    found = pressure()
+    h = jnp.asarray(reduced * SIGMA)
+    moment = quad(lambda s: (s - reduced) ** 1.5 * phi(s), reduced, reduced + 12.0)[0]
+    hertz = 4.0 / 3.0 * N * np.sqrt(BETA) * SIGMA**1.5 * E * moment
+    assert float(found.contact(h)) == pytest.approx(hertz, rel=1e-8)
+    touching = ndtr(-reduced)
+    assert float(found.adhesion(h)) == pytest.approx(2.0 * pi * BETA * W * N * touching, rel=1e-11)
+    waiting = max(0.5 - touching, 0.0)
+    menisci = 4.0 * pi * BETA * TENSION * N * waiting
+    assert float(found.capillary(h)) == pytest.approx(menisci, rel=1e-11)
+    assert float(found.touching(h)) == pytest.approx(N * touching, rel=1e-11)
+
+
+def test_nothing_acts_beyond_the_end_of_the_conjunction():
+    found, place = pressure(), jnp.asarray([EDGE, 3.5, 10.0]) * SIGMA
+    for law in (found.contact, found.adhesion, found.capillary, found.touching):
+        np.testing.assert_array_equal(law(place), 0.0)
+
+
+def test_printed_polynomials_are_those_of_the_text():
+    """Eq. 10 at 0 and 3, eq. 17 at 0 and at 3, added up by hand."""
+    printed = PrintedFunctions()
+    assert float(printed.touching(jnp.asarray(0.0))) == 0.5
+    assert float(printed.contact(jnp.asarray(0.0))) == 0.43
+    assert float(printed.touching(jnp.asarray(3.0))) == pytest.approx(0.00202172, abs=1e-8)
+    assert float(printed.contact(jnp.asarray(3.0))) == pytest.approx(-3.4910e-4, rel=1e-4)
+
+
+def test_bands_without_end_are_the_integral_over_asperities_that_do_not_touch():
+    """Eq. 15 with a Kelvin radius of 5 nm, as the number of bands grows: first order."""
+    reach, h = 3e-9, 2.5 * SIGMA
+    low = max(h - reach, 0.0) / SIGMA
+    whole = quad(lambda z: phi(z) * (1.0 - (h - z * SIGMA) / reach), low, h / SIGMA)[0]
+    expected = 4.0 * pi * BETA * TENSION * N * whole
+    errors = [
+        abs(float(pressure(reach=reach, bands=bands).capillary(jnp.asarray(h))) / expected - 1.0)
+        for bands in (50, 100, 200)
+    ]
+    assert errors[2] < 0.01
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.02)
+    assert errors[1] / errors[2] == pytest.approx(2.0, rel=0.02)
+
+
+def test_a_kelvin_radius_without_end_needs_no_bands():
+    far = pressure(reach=1e3, bands=7).capillary(jnp.asarray(2.0 * SIGMA))
+    assert float(far) == pytest.approx(float(pressure().capillary(jnp.asarray(2.0 * SIGMA))))
+
+
+@pytest.mark.parametrize("options", [{}, {"functions": PrintedFunctions()}, {"reach": 3e-9}])
+@pytest.mark.parametrize("place", [-5e-9, 1e-9, 20e-9, 31.2e-9])
+def test_force_is_the_slope_of_the_energy_in_both_directions(options, place):
+    """On the way in of the stored energy, on the way out less the work that the pulls take."""
+    made = contact(**options)
+
+    def energy(d, parting):
+        state = made.state(d, jnp.asarray(parting))
+        return state.stored - parting * jnp.sum(state.bonds)
+
+    for parting in (0.0, 1.0):
+        slope = float(jax.grad(energy)(jnp.asarray(place), parting))
+        force = float(made.state(jnp.asarray(place), jnp.asarray(parting)).force)
+        assert force == pytest.approx(-slope, rel=1e-9)
+
+
+def test_force_on_the_sphere_is_the_integral_over_the_conjunction():
+    made, d = contact(), 30e-9
+    state = made.state(jnp.asarray(d), jnp.asarray(1.0))
+    end = np.sqrt(2.0 * RADIUS * (EDGE * SIGMA - d))
+
+    def ring(r, law):
+        return 2.0 * pi * r * float(law(jnp.asarray(d + r * r / (2.0 * RADIUS))))
+
+    laws = (made.pressure.contact, made.pressure.adhesion, made.pressure.capillary)
+    for part, law, sign in zip(state.parts, laws, (1.0, -1.0, -1.0), strict=True):
+        whole = quad(ring, 0.0, end, args=(law,))[0]
+        assert float(part) == pytest.approx(sign * whole, rel=1e-8)
+
+
+def flown(made, gap, impacts=30, **tolerance):
+    body = Body(MASS, GRAVITY, gap)
+    motion = simulate(made, body, tolerance=Tolerance(max_impacts=impacts, **tolerance))
+    return motion, measure(motion, body)
+
+
+def stepped(made, gap, impacts):
+    """Apex separations and times by an integration in time that knows nothing of energy."""
+    nodes, weights = np.polynomial.legendre.leggauss(30)
+    p = made.pressure
+    end, scale = float(p.end), 1e-9
+
+    def force(d, parting):
+        if d >= end:
+            return 0.0
+        places = d + 0.5 * (end - d) * (nodes + 1.0)
+        x = places / SIGMA
+        push = np.array([moment(v) for v in x]) * 4.0 / 3.0 * N * np.sqrt(BETA) * SIGMA**1.5 * E
+        touching = ndtr(-x)
+        pull = 2.0 * pi * BETA * W * N * touching + 4.0 * pi * BETA * TENSION * N * (0.5 - touching)
+        total = push - parting * pull
+        return 2.0 * pi * RADIUS * float(0.5 * (end - d) * weights @ total)
+
+    fine, weight = np.polynomial.legendre.leggauss(40)
+
+    def moment(l):
+        t = 0.5 * (fine + 1.0)  # s = l + 6 t^2
+        return float(np.sum(0.5 * weight * 12.0 * t * (6.0 * t**2) ** 1.5 * phi(l + 6.0 * t**2)))
+
+    def rate(_, y, parting):
+        return [y[1], (force(y[0] * scale, parting) / MASS - GRAVITY) * 1e-12 / scale]
+
+    found, state, time = [], [gap / scale, 0.0], 0.0
+    for _ in range(impacts):
+        for parting in (0.0, 1.0):
+            turns = lambda t, y, _: y[1]  # noqa: E731
+            turns.terminal, turns.direction = True, 1.0 - 2.0 * parting
+            reaches = lambda t, y, _: y[0] - end / scale  # noqa: E731
+            reaches.terminal = True
+            # Free flight and contact apart: the force jumps at neither end of a piece.
+            for event in (reaches, turns):
+                answer = solve_ivp(
+                    rate, (0.0, 1e5), state, "DOP853", events=event, args=(parting,),
+                    rtol=1e-11, atol=1e-12,
+                )  # fmt: skip
+                time += float(answer.t_events[0][0])
+                state = list(answer.y_events[0][0])
+            state[1] = 0.0
+        found.append((state[0] * scale, time * 1e-6))
+    return np.array(found)
+
+
+def test_motion_agrees_with_an_integration_in_time():
+    """Three impacts of the published case: heights to 1e-7, times to 1e-8."""
+    motion, _ = flown(contact(), 41.5e-9, 3)
+    expected = stepped(contact(), 41.5e-9, 3)
+    np.testing.assert_allclose(motion.impacts.apex - EDGE * SIGMA,
+                               expected[:, 0] - EDGE * SIGMA, rtol=1e-7)  # fmt: skip
+    np.testing.assert_allclose(motion.impacts.apex_time, expected[:, 1], rtol=1e-8)
+
+
+def test_pulls_in_both_directions_lose_nothing():
+    _, found = flown(contact(parting_only=0.0), 41.5e-9, 4)
+    assert float(found.restitution[0]) == pytest.approx(1.0, abs=1e-8)
+
+
+def test_the_ledger_closes_where_pulls_act_while_parting():
+    motion, found = flown(contact(), 41.5e-9)
+    made = np.asarray(motion.impacts.made)
+    energy = float(motion.impacts.fastest[0])
+    assert np.max(np.asarray(motion.impacts.closure)[made]) < 1e-10 * energy
+    lost = float(np.sum(np.asarray(motion.impacts.lost)[made][0]))
+    heights = 41.5e-9 - float(motion.impacts.apex[0])
+    assert lost == pytest.approx(MASS * GRAVITY * heights, rel=1e-9)
+    # What is lost is the work of the pulls on the way out, eq. 23.
+    assert float(found.power_loss[0]) == pytest.approx(float(found.power_loss_published[0]))
+
+
+def test_rebounds_count_from_the_edge_of_the_conjunction():
+    motion, found = flown(contact(), 41.5e-9, 2)
+    np.testing.assert_allclose(found.rebound_height, motion.impacts.apex - EDGE * SIGMA)
+
+
+def test_decrement_has_a_gradient_through_the_published_case():
+    def decrement(factor):
+        made = contact()
+        made = replace(made, pressure=replace(made.pressure, tension=TENSION * factor))
+        return flown(made, 41.5e-9, 1)[1].log_decrement[0]
+
+    value = jax.jit(jax.value_and_grad(decrement))
+    slope = float(value(jnp.asarray(1.0))[1])
+    step = 1e-4
+    difference = (
+        (value(jnp.asarray(1.0 + step))[0] - value(jnp.asarray(1.0 - step))[0]) / 2.0 / step
+    )
+    assert slope == pytest.approx(float(difference), rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return asperity.load("published")
+
+
+def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
+    assert case.kelvin_radius == np.inf
+    assert build(case).contact.pressure.reach is None
+    with pytest.raises(InputError, match=r"`humidity` must lie in \[0, 1\) \(at 1 the Kelvin"):
+        case.replace({"publication": None})
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "rule"),
+    [
+        ("counterface.deformation", "half-space", "`deformation` must be 'rigid' with a"),
+        ("adhesion.model", "jkr", "`model` must be 'dmt' or 'none' with a"),
+        ("adhesion.model", "bradley", "`model` must be 'dmt' or 'none' with a"),
+        ("capillary.formation", "kelvin", "`formation` must be 'contact' with a"),
+        ("roughness", None, r"a \[roughness\] table must be given with \[publication\]"),
+        ("publication.polynomials", "print", "did you mean 'printed'"),
+        ("publication.conjunction_ends", 0.0, r"`conjunction_ends` must lie in \[0.1, 8\]; got 0"),
+        ("publication.capillary_factor", -1.0, "`capillary_factor` must lie in"),
+        ("publication.bands", 0, "`bands` must lie in"),
+        ("publication.edge", 3.0, "`edge` is not a key of"),
+    ],
+)
+def test_conflicting_models_are_refused(case, key, value, rule):
+    changes = {key: value}
+    if key == "roughness":
+        changes["counterface.deformation"] = "half-space"
+    with pytest.raises(InputError, match=rule):
+        case.replace(changes)
+
+
+def test_a_published_case_reads_back_from_its_own_text(case):
+    from asperity.case import reading
+
+    assert reading.load(case.toml()) == case
+
+
+def test_the_built_in_case_rests_and_says_what_it_assumes(case):
+    result = asperity.solve(case)
+    assert result.outcome is Outcome.REST
+    assert any("[publication] follows a paper" in line for line in result.warnings)
+    assert any("Kelvin radius is infinite" in line for line in result.warnings)
+    assert sum(result.ledger["lost"].values()) == pytest.approx(result.ledger["initial"], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"capillary.humidity": 0.6},
+        {"capillary.model": "none"},
+        {"publication.polynomials": "printed"},
+        {"impact.speed": "0.1 m/s"},
+    ],
+)
+def test_every_variant_closes_its_ledger(case, changes):
+    result = asperity.solve(case.replace({**changes, "numerics.max_impacts": 5}))
+    assert result.ledger["closure"] < 1e-6
+
+
+def test_the_curve_of_the_published_case_loses_what_the_first_impact_loses(case):
+    curve, result = asperity.curve(case), asperity.solve(case)
+    measures = result.measures
+    lost = measures["power_loss"][0] * measures["impact_time"][0]
+    # From the deepest point to far apart, all that the pulls take.
+    assert curve.loss == pytest.approx(lost, rel=1e-6)
+    assert np.all(curve.force_parting <= curve.force_approach + 1e-18)

@@ -1,0 +1,299 @@
+"""The publication reproduced: rows, inputs, audit, figures, and what a refit cannot do."""
+
+import csv
+import io
+import json
+import re
+import threading
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from asperity.cli import app
+from asperity.errors import InputError
+from asperity.plots import publication
+from asperity.records import REPRODUCTION_FILES
+from asperity.studies import report
+from asperity.studies.reproduce import Reproduction, reproduce
+from asperity.studies.tables import read_tables
+
+HEADER = (
+    "table,asperity_radius_nm,rms_height_nm,stiction_time_us,power_loss_1e-4_nW,log_decrement\n"
+)
+TABLES = "".join(
+    f"{','.join(row)}\n"
+    for row in (
+        ("2", "0.20", "10.5", "392", "2.0201", "0.4504"),
+        ("2", "0.25", "10.5", "337", "2.0554", "0.5194"),
+        ("2", "0.30", "10.5", "300", "2.2787", "0.5856"),
+        ("3", "0.25", "9.0", "307", "3.2994", "0.7033"),
+        ("3", "0.25", "12.0", "321", "1.1648", "0.4159"),
+    )
+)
+
+
+@pytest.fixture(scope="module")
+def done():
+    return reproduce()
+
+
+@pytest.fixture(scope="module")
+def files(done):
+    return {**report.files(done), **publication.files(done.drawings)}
+
+
+def found_in(done, words):
+    (claim,) = [c for c in done.audit if words in c["claim"]]
+    return claim["found"]
+
+
+def number(text, pattern):
+    return float(re.search(pattern, text).group(1))
+
+
+def test_every_published_number_has_a_row(done):
+    assert len(done.rows) == 18
+    assert {row["quantity"] for row in done.rows} == {
+        "log_decrement", "stiction_time", "power_loss",
+    }  # fmt: skip
+    for row in done.rows:
+        off = row["computed"] / row["published"] - 1.0
+        assert row["relative_difference"] == pytest.approx(off, abs=1e-12)
+
+
+def test_ten_numbers_are_met_with_one_set_of_inputs(done):
+    within = {"log_decrement": 0.03, "stiction_time": 0.05, "power_loss": 0.12}
+    for row in done.rows:
+        assert abs(row["relative_difference"]) < within[row["quantity"]]
+    assert done.found["rms"] < 0.018  # a prototype's
+    assert done.found["conjunction_ends"] == 3.0
+    assert done.problems == []
+
+
+def test_power_losses_over_both_balances_are_tabulated(done):
+    assert [(r["asperity_radius"], r["rms_height"]) for r in done.power] == [
+        (0.2e-9, 10.5e-9), (0.25e-9, 10.5e-9), (0.3e-9, 10.5e-9), (0.25e-9, 9e-9), (0.25e-9, 12e-9),
+    ]  # fmt: skip
+    for row in done.power:
+        assert 0.3 < row["over_first_impact"] < 0.45
+        assert 0.55 < row["over_whole_drop"] < 0.75
+        assert 0.9 < row["over_mean_of_impacts"] < 1.12
+
+
+@pytest.mark.parametrize(
+    ("words", "pattern", "expected", "within"),
+    [
+        ("Tabor number", r"([\d.]+)", 0.0206, 5e-5),
+        ("elasticity parameter", r"([\d.]+)", 0.0239, 5e-5),
+        ("load parameter", r"([\d.e+]+)", 7e3, 1e3),
+        ("deform elastically", r"index is ([\d.]+)", 41.0, 0.2),
+        ("eq. 10", r"\+(\d+) %", 50.0, 1.0),
+        ("eq. 17", r"lambda' = ([\d.]+)", 2.814, 1e-3),
+        ("eq. 17", r"to ([\d.]+),", 4.350, 1e-3),
+        ("Kelvin radius (eq. 11)", r"([\d.]+) nm", 0.801, 2e-3),
+        ("eq. 14", r"", 0.0, 0.0),
+        ("isolated", r"99 % it is ([\d.]+) nm", 55.3, 0.2),
+        ("isolated", r"are ([\d.]+) nm apart", 7.7, 0.05),
+        ("Dry adhesion", r"([\d.]+) nN", 1.0, 0.05),
+        ("Dry adhesion", r"against ([\d.]+) uN", 4.9, 0.05),
+        ("mean over asperities", r"([\d.]+) asperities", 2.7, 0.05),
+        ("mean over asperities", r"and ([\d.]+) at rest", 0.07, 0.005),
+        ("Adhesion and menisci damp", r"restitution (\d\.\d+)", 1.0, 1e-8),
+        ("200 times", r"(\d+) times", 2700.0, 30.0),
+        ("Nothing else damps", r"decrement of ([\d.]+)", 0.34, 0.03),
+        ("rests at the edge", r"lambda' = ([\d.]+)", 4.37, 5e-3),
+        ("rests at the edge", r"\(([\d.]+) nm\)", 45.9, 0.05),
+    ],
+)
+def test_each_defect_is_shown_by_its_number(done, words, pattern, expected, within):
+    text = found_in(done, words)
+    if pattern:
+        assert number(text, pattern) == pytest.approx(expected, abs=within)
+    else:
+        assert "right dimension" in text
+
+
+def test_every_claim_has_a_verdict(done):
+    assert len(done.audit) >= 25
+    for claim in done.audit:
+        assert set(claim) == {"claim", "published", "found", "verdict"}
+        assert all(claim.values())
+        assert "nan" not in claim["found"]
+
+
+def test_json_is_strict_and_reads_back(done):
+    text = json.dumps(done.json_object(), allow_nan=False)
+    assert json.loads(text)["rows"] == done.rows
+
+
+def test_all_files_are_made_and_no_others(files):
+    assert set(files) == set(REPRODUCTION_FILES)
+
+
+@pytest.mark.parametrize("name", ["1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9"])
+def test_figures_are_85_mm_wide_and_hold_their_data(files, name):
+    png = files[f"figure-{name}.png"]
+    width = int.from_bytes(png[16:20], "big")
+    assert width / 200 * 25.4 == pytest.approx(85.0, abs=0.2)
+    svg = ElementTree.fromstring(files[f"figure-{name}.svg"])
+    assert float(svg.get("width").removesuffix("pt")) / 72 * 25.4 == pytest.approx(85.0, abs=0.2)
+    lines = [x for x in files[f"figure-{name}.csv"].decode().splitlines() if not x.startswith("#")]
+    header, *rows = csv.reader(lines)
+    assert header[0] == "series"
+    assert all(re.fullmatch(r".+ \[.+\]", column) for column in header[1:])
+    values = np.array([row[1:] for row in rows], float)
+    assert len(rows) > 20
+    assert np.all(np.isfinite(values))
+
+
+@pytest.mark.parametrize("name", ["1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9"])
+def test_letters_lie_within_the_figure_and_apart(done, name):
+    figure = publication.figures({f"figure-{name}": done.drawings[f"figure-{name}"]})
+    (figure,) = figure.values()
+    renderer = figure.canvas.get_renderer()
+    width, height = figure.canvas.get_width_height()
+    for axes in figure.axes:
+        box = axes.get_tightbbox(renderer)
+        assert box.x0 >= -1.0
+        assert box.y0 >= -1.0
+        assert box.x1 <= width + 1.0
+        assert box.y1 <= height + 1.0
+    boxes = [axes.get_tightbbox(renderer) for axes in figure.axes]
+    for k, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[k + 1 :])
+
+
+def test_figure_9_holds_three_motions_from_one_release(done):
+    series = done.drawings["figure-9"].series
+    assert list(series) == ["σ = 9 nm", "σ = 10.5 nm", "σ = 12 nm"]
+    assert {float(d[0]) for _, d in series.values()} == {41.5e-9}
+
+
+def test_summary_holds_every_claim(done, files):
+    text = " ".join(files["summary.txt"].decode().split())
+    for claim in done.audit:
+        assert " ".join(claim["found"].split()) in text
+
+
+def test_tables_csv_holds_every_row(done, files):
+    rows = list(csv.DictReader(io.StringIO(files["tables.csv"].decode())))
+    assert [float(r["computed"]) for r in rows] == [r["computed"] for r in done.rows]
+
+
+@pytest.mark.parametrize(
+    ("content", "rule"),
+    [
+        ("", "tables must have rows; got none"),
+        ("# nothing\n", "tables must have rows; got none"),
+        (HEADER, "tables must have rows; got none"),
+        ("a,b\n1,2\n", "the column `table` is missing"),
+        (HEADER + "2,0.2,10.5,x,2,0.4\n", "(line 2): `stiction_time_us` must be a positive number"),
+        (HEADER + "2,0.2,10.5,-5,2,0.4\n", "`stiction_time_us` must be a positive number; got"),
+        (HEADER + "2,,10.5,392,2,0.4\n", "`asperity_radius_nm` must lie in"),
+        (HEADER + "2,0.2,nan,392,2,0.4\n", "`rms_height_nm` must lie in"),
+        (HEADER + "two,0.2,10.5,392,2,0.4\n", "`table` must be a whole number; got 'two'"),
+    ],
+)
+def test_tables_that_cannot_be_read_are_refused(tmp_path: Path, content, rule):
+    file = tmp_path / "tables.csv"
+    file.write_text(content)
+    with pytest.raises(InputError, match=re.escape(rule)):
+        read_tables(str(file))
+
+
+def test_files_of_the_wrong_kind_are_refused(tmp_path: Path):
+    binary = tmp_path / "x.csv"
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\xff\x00")
+    with pytest.raises(InputError, match="binary file"):
+        read_tables(str(binary))
+    with pytest.raises(InputError, match="cannot be read"):
+        read_tables(str(tmp_path / "none.csv"))
+    with pytest.raises(InputError, match="cannot be read"):
+        read_tables(str(tmp_path))
+
+
+def test_a_missing_value_is_none(tmp_path: Path):
+    file = tmp_path / "tables.csv"
+    file.write_text(HEADER + "2,0.2,10.5,392,,0.4504\n")
+    (entry,) = read_tables(str(file))
+    assert entry.values == {"log_decrement": 0.4504, "stiction_time": 392e-6, "power_loss": None}
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["reproduce", *arguments])
+
+
+def test_a_surface_whose_conjunction_holds_the_release_is_refused(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("t.csv").write_text(HEADER + "3,0.25,14,300,1,0.4\n")
+    ran = run("--tables", "t.csv")
+    assert ran.exit_code == 2
+    assert "must leave the release at 41.5 nm outside the conjunction" in ran.stderr
+    assert not Path("reproduce-out").exists()
+
+
+def test_bad_tables_are_refused_before_anything_is_computed(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("t.csv").write_text("x")
+    ran = run("--tables", "t.csv")
+    assert ran.exit_code == 2
+    assert ran.stderr.count("\n") == 1
+    assert "t.csv (line 1): the column `table` is missing" in ran.stderr
+
+
+def test_refit_without_a_value_says_which_and_keeps_the_rest(tmp_path: Path, monkeypatch):
+    """The stiction time of one row: 3, and inputs as good as with it."""
+    monkeypatch.chdir(tmp_path)
+    Path("t.csv").write_text(HEADER + TABLES.replace("2,0.20,10.5,392,", "2,0.20,10.5,,"))
+    ran = run("--refit", "--tables", "t.csv", "--json", "-o", "out")
+    assert ran.exit_code == 3
+    assert "the tables are missing stiction_time at beta = 0.2 nm, sigma = 10.5 nm" in ran.stderr
+    kept = json.loads(Path("out/reproduction.json").read_text())
+    assert kept == json.loads(ran.stdout.splitlines()[0])
+    found = kept["found"]
+    assert found["refitted"]
+    assert found["rms"] < 0.01
+    assert 2.5 < found["conjunction_ends"] < 3.2
+    assert 0.0 < found["uncertainty"]["release_gap"] < 1e-9
+    # The end of the conjunction and the factor can hardly be told apart.
+    assert found["correlation"][0][2] < -0.9
+    assert len(found["profile"]) >= 5
+    missing = [r for r in kept["rows"] if r["published"] is None]
+    assert [r["relative_difference"] for r in missing] == [None]
+
+
+def test_refit_of_tables_that_cannot_be_met_says_which(tmp_path: Path, monkeypatch):
+    """A decrement that falls with the asperities' radius: 3, and the least bad is kept."""
+    monkeypatch.chdir(tmp_path)
+    Path("t.csv").write_text(HEADER + TABLES.replace("0.5856", "0.30"))
+    ran = run("--refit", "--tables", "t.csv", "--json", "-o", "out")
+    assert ran.exit_code == 3
+    assert "no inputs meet" in ran.stderr
+    assert "log_decrement at 0.3, 10.5 nm" in ran.stderr
+    assert Path("out/figure-8.png").is_file()
+
+
+def test_refit_of_too_few_numbers_changes_nothing(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("t.csv").write_text(HEADER + "2,0.25,10.5,337,2,\n")
+    ran = run("--refit", "--tables", "t.csv", "--json")
+    assert ran.exit_code == 3
+    assert "fewer than three numbers are left" in ran.stderr
+    assert json.loads(ran.stdout)["found"]["refitted"] is False
+
+
+def test_what_stops_early_keeps_its_tables():
+    stop = threading.Event()
+    kept: list[Reproduction] = []
+
+    def keep(done):
+        kept.append(done)
+        stop.set()
+
+    done = reproduce(stop=stop, keep=keep)
+    assert done.drawings == {}
+    assert done.rows == kept[0].rows
+    assert all(row["computed"] is not None for row in done.rows)
