@@ -22,6 +22,7 @@ myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 # Every executed page runs against the code as it is now; a failing cell fails the build.
+nb_render_markdown_format = "myst"
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120

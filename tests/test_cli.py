@@ -80,15 +80,12 @@ def test_help_imports_nothing_heavy():
     assert ran.stdout == "[]\n"
 
 
-def test_help_answers_at_once():
+def test_help_names_every_command():
+    """How soon is a matter of the benchmarks."""
     command = [sys.executable, "-m", "asperity", "--help"]
-    times = []
-    for _ in range(3):
-        start = time.perf_counter()
-        ran = subprocess.run(command, capture_output=True, text=True, check=True)
-        times.append(time.perf_counter() - start)
-    assert "materials" in ran.stdout
-    assert min(times) < 0.3
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    for name in ("run", "curve", "reproduce", "plot", "init", "materials"):
+        assert f"  {name}" in ran.stdout
 
 
 def test_version_is_that_of_the_package():
@@ -451,10 +448,16 @@ def test_the_systems_request_to_end_is_heard_too(place: Path):
 
 
 def test_ctrl_c_while_drawing_keeps_the_record(monkeypatch: pytest.MonkeyPatch, place: Path):
+    """A signal while a picture takes longer than an interrupted program may wait."""
     from asperity import plots
+    from asperity.cli import working
+
+    monkeypatch.setattr(working, "PATIENCE", 0.05)
 
     def stopped(result: Result) -> dict[str, bytes]:
-        raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
+        time.sleep(0.5)
+        return {"motion.png": b""}
 
     monkeypatch.setattr(plots, "pictures", stopped)
     assert call("run", CASE).exit_code == 130

@@ -13,7 +13,7 @@ import typer
 
 from asperity import summary
 from asperity.cli.sources import Source, source
-from asperity.cli.terminal import exit_code_of, say, tell
+from asperity.cli.terminal import say, tell
 from asperity.cli.working import Progress, Work, progress_bar
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.records import CURVE_FILES, RUN_FILES, check_folder, json_object, read, write_folder
@@ -128,12 +128,11 @@ def _keep(result: Result | Curve, request: _Request, code: int) -> tuple[Sequenc
     if request.folder is None:
         return [], code
     own = _FILES[request.what]
+    files = None
     if not code:
-        try:
-            return write_folder(request.folder, result.files(), own, force=request.force), 0
-        except KeyboardInterrupt as stop:
-            code = exit_code_of(stop)
-    files = result.files(pictures=False)
+        # In a thread, where no interruption can be lost in a callback of somebody else's.
+        files, code = Work(lambda stop: result.files()).wait()
+    files = files or result.files(pictures=False)
     return write_folder(request.folder, files, own, force=request.force), code
 
 

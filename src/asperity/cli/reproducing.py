@@ -52,7 +52,7 @@ def compute(
     if done is None:
         say("asperity: interrupted before there was anything to keep")
         raise typer.Exit(code)
-    written = _write(done, folder, force=force)
+    written, code = _keep(done, folder, code, force=force)
     if code:
         say(f"asperity: {Outcome.INTERRUPTED.message}")
     _tell(done, written, as_json=as_json, quiet=quiet)
@@ -76,21 +76,30 @@ def _tell(done: Reproduction, written: list[Path], *, as_json: bool, quiet: bool
             tell("\n" + where)
 
 
-def _write(done: Reproduction, folder: Path | None, *, force: bool) -> list[Path]:
+def _keep(
+    done: Reproduction, folder: Path | None, code: int, *, force: bool
+) -> tuple[list[Path], int]:
+    """Write the files; without figures, which take seconds, where time presses."""
     if folder is None:
-        return []
+        return [], code
     contents = report.files(done)
-    if done.drawings:
-        from asperity.plots import publication
+    if done.drawings and not code:
+        # In a thread, where no interruption can be lost in a callback of somebody else's.
+        drawn, code = Work(lambda stop: _figures(done)).wait()
+        contents |= drawn or {}
+    return write_folder(folder, contents, REPRODUCTION_FILES, force=force), code
 
-        contents |= publication.files(done.drawings)
-    return write_folder(folder, contents, REPRODUCTION_FILES, force=force)
+
+def _figures(done: Reproduction) -> dict[str, bytes]:
+    from asperity.plots import publication
+
+    return publication.files(done.drawings)
 
 
 def _written(paths: list[Path], done: Reproduction) -> str:
     """Where the pictures and the rest are."""
     folder = paths[0].parent
-    if not done.drawings:
+    if not any(path.suffix == ".png" for path in paths):
         return f"tables written to {folder}, no figures"
     figures = ", ".join(name.removeprefix("figure-") for name in done.drawings)
     return (

@@ -115,6 +115,7 @@ def leave(command: Any) -> NoReturn:
         code = exit_code_of(stop)
     if code in (EXIT_INTERRUPTED, EXIT_TERMINATED):
         os._exit(code)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done; only the tidying up is left
     try:
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -20,6 +20,7 @@ from .refit import WITHIN, Inputs, Refit, refit
 from .tables import QUANTITIES, Entry, read_tables
 
 Report = Callable[[float, str], None]
+Motions = dict[tuple[float, float], Result]
 
 
 @dataclass(frozen=True)
@@ -90,21 +91,21 @@ def reproduce(
     tell = progress or (lambda fraction, text: None)
     stop = stop or threading.Event()
     entries, case = read_tables(tables), builtin("published")
-    fit: Refit | None = None
-    if refitted:
-        fit = refit(case, entries, tell=lambda f, text: tell(0.5 * f, text), stop=stop)
-    if fit is not None:
-        case = fit.inputs.within(case)
-    tell(0.5 * refitted + 0.02, "tables")
-    results = _tables(case, entries, stop)
-    partial = _compared(case, entries, results, fit)
+    tell(0.02, "tables")
+    partial, results = _compared(case, entries, None, stop)
     if refitted and not stop.is_set():
-        partial = replace(partial, problems=_problems(fit, entries, partial.rows))
+        if keep is not None:
+            keep(partial)
+        fit = refit(case, entries, tell=lambda f, text: tell(0.2 + 0.4 * f, text), stop=stop)
+        case = case if fit is None else fit.inputs.within(case)
+        if not stop.is_set():
+            partial, results = _compared(case, entries, fit, stop)
+            partial = replace(partial, problems=_problems(fit, entries, partial.rows))
     if keep is not None:
         keep(partial)
     if stop.is_set():
         return partial
-    tell(0.5 * refitted + 0.2, "what the exact model says")
+    tell(0.2 + 0.4 * refitted, "what the exact model says")
     try:
         evidence = Evidence.gather(case, results, partial.rows, partial.power, stop)
     except SimulationError:
@@ -120,19 +121,17 @@ def reproduce(
 
 
 def _compared(
-    case: Case,
-    entries: list[Entry],
-    results: dict[tuple[float, float], Result],
-    fit: Refit | None,
-) -> Reproduction:
-    """The tables beside ours, without audit and figures."""
+    case: Case, entries: list[Entry], fit: Refit | None, stop: threading.Event
+) -> tuple[Reproduction, Motions]:
+    """The tables beside ours, without audit and figures, and the motion on each surface."""
+    results = _tables(case, entries, stop)
     rows = [row for entry in entries for row in _rows(entry, results.get(entry.surface))]
     power = [
         _power(entry, results[entry.surface])
         for entry in _unique(entries)
         if entry.surface in results
     ]
-    return Reproduction(rows, _found(Inputs.of(case), rows, fit), power, [], {})
+    return Reproduction(rows, _found(Inputs.of(case), rows, fit), power, [], {}), results
 
 
 def surface_case(case: Case, entry: Entry) -> Case:
@@ -159,11 +158,9 @@ def surface_case(case: Case, entry: Entry) -> Case:
     return case
 
 
-def _tables(
-    case: Case, entries: list[Entry], stop: threading.Event
-) -> dict[tuple[float, float], Result]:
+def _tables(case: Case, entries: list[Entry], stop: threading.Event) -> Motions:
     """The motion on each surface."""
-    out: dict[tuple[float, float], Result] = {}
+    out: Motions = {}
     for entry in _unique(entries):
         try:
             motion = solve(surface_case(case, entry), name=entry.name, stop=stop)
