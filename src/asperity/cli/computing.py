@@ -88,7 +88,7 @@ def _task(request: _Request, stop: threading.Event, progress: Progress | None) -
 
 def _import_ahead() -> None:
     """Import what writes and draws while the solver compiles: a second less to wait for."""
-    for name in ("asperity.plots", "asperity.records", "matplotlib.backends.backend_agg", "xarray"):
+    for name in ("asperity.plots", "asperity.records", "matplotlib.backends.backend_agg"):
         importlib.import_module(name)
 
 

@@ -103,8 +103,8 @@ def prepare() -> None:
 def leave(command: Any) -> NoReturn:
     """Run the command and end the program with its exit code.
 
-    After an interruption the program ends without waiting: a compilation that runs in another
-    thread would hold it for seconds.
+    The program ends without tearing down what it imported, which takes JAX a second, and after an
+    interruption without waiting for a compilation in another thread.
     """
     try:
         command.main(prog_name="asperity")
@@ -113,16 +113,20 @@ def leave(command: Any) -> NoReturn:
         code = end.code if isinstance(end.code, int) else 1
     except KeyboardInterrupt as stop:
         code = exit_code_of(stop)
+    except OSError as error:  # the command line's own text, such as its help
+        code = _fail(f"standard output: cannot be written: {error.strerror or error}", EXIT_OUTPUT)
+        _abandon_stdout()
     if code in (EXIT_INTERRUPTED, EXIT_TERMINATED):
         os._exit(code)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done; only the tidying up is left
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
     except OSError:
-        _abandon_stdout()
         code = code or EXIT_NO_READER
-    sys.exit(code)
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):
+            sys.stderr.flush()
+    os._exit(code)
 
 
 def raise_stop(number: int, frame: types.FrameType | None = None) -> NoReturn:
