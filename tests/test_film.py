@@ -15,7 +15,10 @@ ROWS = np.genfromtxt(Path(__file__).parent / "data" / "gas_film.csv", delimiter=
 def test_loss_of_a_drop_in_air(row):
     slip, speed, decrement = row
     mass = 2200.0 * 4.0 / 3.0 * pi * (50e-6) ** 3
-    found = gas_decrement((40e-9, 29.4e-9), mass, 9.81, (50e-6, 1.82e-5, slip * 1e-9))
+    found = gas_decrement(
+        release=40e-9, rebound=29.4e-9, mass=mass, gravity=9.81, radius=50e-6, viscosity=1.82e-5,
+        slip_length=slip * 1e-9,
+    )  # fmt: skip
     assert found[0] == pytest.approx(decrement, rel=5e-5)
     assert found[1] == pytest.approx(speed * 1e-3, rel=5e-5)
 

@@ -9,6 +9,9 @@ import numpy as np
 AIR_VISCOSITY = 1.82e-5
 """Of air at 20 degC [Pa s] (CRC Handbook of Chemistry and Physics)."""
 
+AIR_FREE_PATH = 68e-9
+"""Mean free path in air at 20 degC and ambient pressure [m] (Jennings 1988)."""
+
 
 def slip_factor(separation: np.ndarray | float, slip_length: float) -> np.ndarray:
     """Share of the squeeze force that first-order slip on both surfaces leaves, 0 to 1.
@@ -36,7 +39,8 @@ def squeeze_drag(
     """Force over speed [N s/m] of the gas between an approaching sphere and a plane.
 
     6 pi viscosity radius^2 f/separation, against the motion in both directions (Brenner 1961,
-    Taylor; f is :func:`slip_factor`).
+    f is :func:`slip_factor`). A continuum with first-order slip: it holds below a Knudsen number,
+    mean free path over separation, of 0.1; :data:`AIR_FREE_PATH` is that of air.
 
     Parameters
     ----------
@@ -55,21 +59,25 @@ def squeeze_drag(
 
 
 def gas_decrement(
-    drop: tuple[float, float],
+    *,
+    release: float,
+    rebound: float,
     mass: float,
     gravity: float,
-    drag: tuple[float, float, float],
+    radius: float,
+    viscosity: float,
+    slip_length: float,
 ) -> tuple[float, float]:
     """Logarithmic decrement of the first rebound that the gas alone causes, and impact speed.
 
     Parameters
     ----------
-    drop
+    release, rebound
         Separations [m] of the release at rest and of an elastic rebound.
     mass, gravity
         Of the sphere [kg], [m/s^2].
-    drag
-        Radius [m], viscosity [Pa s] and slip length [m], as for :func:`squeeze_drag`.
+    radius, viscosity, slip_length
+        As for :func:`squeeze_drag`.
 
     Returns
     -------
@@ -77,17 +85,15 @@ def gas_decrement(
     """
     from scipy.integrate import solve_ivp
 
-    release, floor = drop
-    radius, viscosity, slip = drag
     # In nanometres and microseconds.
     unit, clock = 1e-9, 1e-6
 
     def rate(_: float, y: np.ndarray) -> list[float]:
-        damping = float(squeeze_drag(y[0] * unit, radius, viscosity, slip)) / mass * clock
+        damping = float(squeeze_drag(y[0] * unit, radius, viscosity, slip_length)) / mass * clock
         return [y[1], -gravity * clock**2 / unit - damping * y[1]]
 
     def lands(_: float, y: np.ndarray) -> float:
-        return float(y[0] - floor / unit)
+        return float(y[0] - rebound / unit)
 
     def turns(_: float, y: np.ndarray) -> float:
         return float(y[1])
@@ -101,5 +107,5 @@ def gas_decrement(
         return state
 
     speed = -until(lands, [release / unit, 0.0])[1]
-    top = until(turns, [floor / unit, speed])[0]
-    return float(np.log((release - floor) / (top * unit - floor))), float(speed * unit / clock)
+    top = until(turns, [rebound / unit, speed])[0]
+    return float(np.log((release - rebound) / (top * unit - rebound))), float(speed * unit / clock)

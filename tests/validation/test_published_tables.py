@@ -39,13 +39,12 @@ def test_decrements_within_3_and_stiction_times_within_5_percent(motions, row):
     assert time * 1e6 == pytest.approx(float(row["stiction_time_us"]), rel=0.05)
 
 
-def test_mean_of_equation_23_over_the_impacts_is_the_published_power_loss(motions):
-    """Within 12 %: the first impact alone is off by a factor of 2.4 to 2.9."""
+def test_power_loss_of_the_first_impact_is_some_two_and_a_half_times_the_published_one(motions):
+    """Published over computed 0.35 to 0.41: not explained."""
     for row in rows():
         found = motions[row["asperity_radius_nm"], row["rms_height_nm"]]
         published = float(row["power_loss_1e-4_nW"]) * 1e-13
-        assert mean_power_loss(found) == pytest.approx(published, rel=0.12)
-        assert 2.3 < found.measures["power_loss"][0] / published < 3.0
+        assert 0.34 < published / found.measures["power_loss"][0] < 0.42
 
 
 def test_power_loss_has_the_published_trend(motions):

@@ -61,15 +61,19 @@ class Case(Table):
                     f"got {shown(name)}{problems.did_you_mean(name, known)}",
                     key=f"{part}.material",
                 )
+        if self.publication is not None:
+            self._only_what_the_publication_has()
         if self.roughness is None and self.counterface.deformation == "rigid":
             raise InputError(
                 "`deformation` must be 'half-space' without a [roughness] table: a smooth rigid "
                 "body has no elasticity at all; got 'rigid'",
                 key="counterface.deformation",
             )
-        if self.publication is not None:
-            self._only_what_the_publication_has()
-        elif self.capillary.humidity == 1.0 and self.capillary.model != "none":
+        if (
+            self.publication is None
+            and self.capillary.humidity == 1.0
+            and self.capillary.model != "none"
+        ):
             raise InputError(
                 "`humidity` must lie in [0, 1) (at 1 the Kelvin radius is infinite: menisci would "
                 "reach to any gap); got 1",

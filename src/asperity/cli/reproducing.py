@@ -105,5 +105,5 @@ def _written(paths: list[Path], done: Reproduction) -> str:
     return (
         f"written to {folder}:\n"
         f"  Figures {figures} as figure-N.png and figure-N.svg, their data as figure-N.csv\n"
-        "  tables.csv audit.csv reproduction.json summary.txt"
+        "  tables.csv table-1.csv audit.csv reproduction.json summary.txt"
     )

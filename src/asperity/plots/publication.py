@@ -186,21 +186,27 @@ def _meniscus(axes: Axes, drawing: Drawing) -> None:
 
 
 def _bands(axes: Axes, drawing: Drawing) -> None:
-    x, z = drawing.series["summits"]
-    flat, bands = drawing.about["separation [m]"], int(drawing.about["bands drawn"])
-    pitch = drawing.about["asperity spacing [m]"]
-    wide, _ = _scaled(axes, drawing.columns, [x], [np.array([flat])])
-    fine = np.linspace(x[0] - pitch / 2.0, x[-1] + pitch / 2.0, 1200)
-    profile = np.max(z[:, None] - 4.0 * (flat / pitch**2) * (fine - x[:, None]) ** 2, axis=0)
-    axes.fill_between(fine / wide, np.maximum(profile, -flat) / wide, -flat / wide,
-                      color="#DDDDDD", lw=0.0)  # fmt: skip
-    axes.plot(fine / wide, profile / wide, color=colour("contact"), lw=0.8)
-    axes.axhline(flat / wide, color=colour("quiet"), lw=2.0, label="flat, λ' = 3")
-    axes.plot(x / wide, z / wide, "o", ms=2.5, mew=0.0, color=colour("parting"), label="summits")
+    x, profile = drawing.series["rough surface"]
+    tops, heights = drawing.series["summits"]
+    wet, below = drawing.series["summits with a meniscus"]
+    flat, bands = drawing.about["edge [m]"], int(drawing.about["bands drawn"])
+    wide = 1e-9
+    axes.set(xlabel="place [nm]", ylabel="height [nm]")
+    for number, (place, height) in enumerate(zip(wet, below, strict=True)):
+        axes.fill_between((place / wide - 0.7, place / wide + 0.7), height / wide, flat / wide,
+                          color=colour("central"), alpha=0.5, lw=0.0,
+                          label="menisci" if number == 0 else None)  # fmt: skip
+    low = -0.9 * flat / wide
+    axes.fill_between(x / wide, np.maximum(profile / wide, low), low, color="#DDDDDD", lw=0.0)
+    axes.plot(x / wide, profile / wide, color=colour("contact"), lw=0.8)
+    axes.plot(tops / wide, heights / wide, "o", ms=2.5, mew=0.0, color=colour("parting"),
+              label="summits")  # fmt: skip
+    reduced = flat / drawing.about["rms height [m]"]
+    axes.axhline(flat / wide, color=colour("quiet"), lw=2.0, label=f"flat, λ' = {reduced:.3g}")
     for number in range(1, bands + 1):
-        axes.axhline(flat * (1.0 - number / bands) / wide, color=colour("central"), lw=0.5, ls=":",
+        axes.axhline(flat * (1.0 - number / bands) / wide, color=colour("quiet"), lw=0.5, ls=":",
                      label="bands Δh" if number == 1 else None)  # fmt: skip
-    axes.set_ylim(-0.9 * flat / wide, 1.1 * flat / wide)
+    axes.set_ylim(low, 1.1 * flat / wide)
     axes.margins(x=0.0)
     style.legend_above(axes)
 
@@ -256,10 +262,11 @@ def _first_contact(axes: Axes, drawing: Drawing) -> None:
     middle = drawing.about["first closest approach [s]"]
     since = time - middle
     acts = np.abs(forces[0]) > 0.0
-    # The first stretch around the closest approach in which contact acts.
+    # The stretch around the closest approach in which contact acts; to the end if it stays.
     index = int(np.argmin(np.abs(since)))
     before, after = np.flatnonzero(~acts[:index]), np.flatnonzero(~acts[index:])
-    near = slice(int(before[-1]), index + int(after[0]) + 1)
+    begin = int(before[-1]) if before.size else 0
+    near = slice(begin, index + int(after[0]) + 1 if after.size else None)
     shown = [force[near] for force in forces]
     wide, tall = _scaled(
         axes, ("time from closest approach [s]", "force [N]"), [since[near]], shown

@@ -21,7 +21,7 @@ CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
 REPRODUCTION_FILES = (
     *(f"figure-{number}.{kind}" for number in ("1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9")
       for kind in ("png", "svg", "csv")),
-    "tables.csv", "audit.csv", "reproduction.json", "summary.txt",
+    "tables.csv", "table-1.csv", "audit.csv", "reproduction.json", "summary.txt",
 )  # fmt: skip
 """Names that `asperity reproduce` may write."""
 

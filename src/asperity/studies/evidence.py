@@ -6,17 +6,27 @@ import threading
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
+from math import exp, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from .. import regimes
 from .._jax import jax, jnp
-from ..case import Case, builtin
+from ..case import Case, Roughness, builtin
 from ..case.build import build
 from ..contact import Contact, PublishedContact, RigidContact
+from ..halfspace import ring_mesh
+from ..materials import contact_modulus, kelvin_radius
 from ..program import Program, kept
 from ..result import Result
 from ..solver import solve
+from .refit import WITHIN, Inputs
+from .tables import Entry, read_tables
+
+PRINTED = Inputs(2.6146, 37.335e-9, 9.380)
+"""What a refit finds with the polynomials as printed: they meet the tables too."""
 
 _FEW = 6
 """Impacts of a variant of which the first ones say all."""
@@ -28,7 +38,6 @@ class FirstTouch(NamedTuple):
 
     force: jax.Array
     elastic: jax.Array
-    pull: jax.Array
     touching: jax.Array
 
 
@@ -40,31 +49,36 @@ class Evidence:
     ----------
     case
         The published case with the inputs in use, on its own surface.
-    wet
-        Its motion.
     surfaces
         The motion on each surface of the tables, by asperity radius and rms height [m].
-    dry, both_ways, printed
-        The case without menisci; with pulls on the way in too; with the polynomials as printed.
-    exact
-        The built-in case ``published-exact`` on a rigid plane: 60 % relative humidity.
-    contact, exact_contact
-        The contacts of ``case`` and of ``exact``.
     rows, power
-        As in :class:`~asperity.studies.Reproduction`.
+        As in :class:`~asperity.studies.reproduce.Reproduction`.
+    published
+        The publication's row for the surface of ``case``.
+    wet
+        The motion of ``case``.
+    dry, both_ways, printed
+        That without menisci; with pulls on the way in too; with the polynomials as printed.
+    printed_off
+        Largest relative difference from the publication's decrements and stiction times with
+        the printed polynomials and the inputs :data:`PRINTED`.
+    exact, exact_damp
+        The built-in case ``published-exact`` on a rigid plane, at 60 % relative humidity, and
+        at that at which the Kelvin radius is the asperities' spacing.
     """
 
     case: Case
-    wet: Result
     surfaces: Mapping[tuple[float, float], Result]
+    rows: list[dict[str, Any]]
+    power: list[dict[str, float | None]]
+    published: Entry
+    wet: Result
     dry: Result
     both_ways: Result
     printed: Result
+    printed_off: dict[str, float]
     exact: Result
-    contact: PublishedContact
-    exact_contact: RigidContact
-    rows: list[dict[str, Any]]
-    power: list[dict[str, float | None]]
+    exact_damp: Result
 
     @classmethod
     def gather(
@@ -76,45 +90,108 @@ class Evidence:
         stop: threading.Event,
     ) -> Evidence:
         """Compute the variants, two at a time: each kind of contact compiles anew."""
-        few = {"numerics.max_impacts": _FEW}
-        exact = builtin("published-exact").replace(
-            {"counterface.deformation": "rigid", "numerics.max_impacts": _FEW}
-        )
-        variants = {
-            "exact": exact,
-            "printed": case.replace({"publication.polynomials": "printed"}),
-            "wet": case,
-            "dry": case.replace({"capillary.model": "none", **few}),
-            "both_ways": case.replace({"publication.pull_while_parting_only": False}),
-        }
         with ThreadPoolExecutor(2) as pool:
             motions = {
                 name: pool.submit(solve, variant, name=name, stop=stop)
-                for name, variant in variants.items()
+                for name, variant in _variants(case).items()
             }
-        contact, exact_contact = build(case).contact, build(exact).contact
-        assert isinstance(contact, PublishedContact)
-        assert isinstance(exact_contact, RigidContact)
+            off = pool.submit(_printed_off, stop)
+        own = {entry.surface: entry for entry in read_tables()}
+        rough = builtin("published").roughness
+        assert rough is not None
         return cls(
             case=case,
             surfaces=surfaces,
-            contact=contact,
-            exact_contact=exact_contact,
             rows=rows,
             power=power,
+            published=own[rough.asperity_radius, rough.rms_height],
+            printed_off=off.result(),
             **{name: motion.result() for name, motion in motions.items()},
         )
 
     @property
-    def rms_height(self) -> float:
-        """Of the case [m]."""
+    def rough(self) -> Roughness:
+        """The case's roughness."""
         assert self.case.roughness is not None
-        return self.case.roughness.rms_height
+        return self.case.roughness
 
     @property
+    def work(self) -> float:
+        """Work of adhesion [J/m^2]."""
+        assert self.case.adhesion.work is not None
+        return self.case.adhesion.work
+
+    @property
+    def wet_inputs(self) -> Inputs:
+        """The inputs in use."""
+        return Inputs.of(self.case)
+
+    @property
+    def printed_inputs(self) -> Inputs:
+        """Those with which the printed polynomials meet the tables."""
+        return PRINTED
+
+    @cached_property
+    def contact(self) -> PublishedContact:
+        """The contact of ``case``."""
+        contact = build(self.case).contact
+        assert isinstance(contact, PublishedContact)
+        return contact
+
+    @cached_property
+    def exact_contact(self) -> RigidContact:
+        """The contact of ``exact``."""
+        contact = build(self.exact.case).contact
+        assert isinstance(contact, RigidContact)
+        return contact
+
+    @cached_property
     def weight(self) -> float:
         """Of the sphere [N]."""
         return float(build(self.case).body.weight)
+
+    @property
+    def closest(self) -> float:
+        """Rigid separation of the first closest approach [m]."""
+        return float(self.wet.events["deepest_separation"][0])
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius of the conjunction there [m]."""
+        depth = float(self.contact.pressure.end) - self.closest
+        return sqrt(2.0 * self.case.body.radius * depth)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the first contact, from and to the edge of the conjunction [s].
+
+        NaN where the body does not leave it again.
+        """
+        motion, gravity = self.wet, self.case.impact.gravity
+        rise = first(motion.measures["rebound_height"])
+        fall = self.wet_inputs.release_gap - float(self.contact.pressure.end)
+        if not rise > 0.0:
+            return float(np.nan)
+        flight = sqrt(2.0 * fall / gravity) + sqrt(2.0 * rise / gravity)
+        return first(motion.measures["impact_time"]) - flight
+
+    @cached_property
+    def conjunction(self) -> tuple[np.ndarray, ...]:
+        """Radius and gap [m], displacement [m] and pressure of contact [Pa] there.
+
+        The displacement is that of the pressure between rigid bodies, a first iterate.
+        """
+        mesh, size = ring_mesh(200), self.contact_radius
+        place = mesh.radius * size
+        gap = self.closest + place**2 / (2.0 * self.case.body.radius)
+        pressure = np.asarray(self.contact.pressure.contact(jnp.asarray(gap)))
+        modulus = contact_modulus(self.case.body_solid, self.case.counterface_solid)
+        return place, gap, mesh.compliance @ pressure * size / modulus, pressure
+
+    @property
+    def wet_touching(self) -> float:
+        """Asperities of the conjunction that touch at the first closest approach."""
+        return float(_first_touch(self.contact, jnp.asarray(self.closest)).touching)
 
     @property
     def exact_rest(self) -> float:
@@ -123,26 +200,73 @@ class Evidence:
         return float(self.exact.events["apex_separation"][0] - heights[0])
 
     @property
-    def wet_touching(self) -> float:
-        """Asperities of the conjunction that touch at the first closest approach."""
-        closest = jnp.asarray(self.wet.events["deepest_separation"][0])
-        return float(_fresh(self.contact, closest).touching)
+    def load_at_rest(self) -> float:
+        """Load parameter there."""
+        rest = self.exact_state(self.exact_rest)
+        elastic, touching = float(rest.elastic), float(rest.touching)
+        return regimes.load_parameter(elastic, touching, self.work, self.rough.asperity_radius)
+
+    def exact_state(self, separation: float) -> FirstTouch:
+        """Contact of bodies that never touched, by the exact model."""
+        return _first_touch(self.exact_contact, jnp.asarray(separation))
 
     def parting_forces(self, separations: np.ndarray) -> np.ndarray:
         """Elastic force, adhesion and menisci [N] of bodies that begin to part at separations."""
         return np.asarray(_parting(self.contact, jnp.asarray(separations)))
 
-    def exact_state(self, separation: float) -> FirstTouch:
-        """Contact of bodies that never touched, by the exact model."""
-        return _fresh(self.exact_contact, jnp.asarray(separation))
+    def kelvin_radius(self, humidity: float) -> float:
+        """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
+        return _kelvin_radius(self.case, humidity)
+
+
+def _kelvin_radius(case: Case, humidity: float) -> float:
+    liquid, temperature = case.liquid, case.capillary.temperature
+    assert liquid is not None
+    assert temperature is not None
+    return kelvin_radius(liquid, humidity, temperature)
+
+
+def _variants(case: Case) -> dict[str, Case]:
+    """The cases to compute, those that compile longest first."""
+    few = {"numerics.max_impacts": _FEW}
+    exact = builtin("published-exact").replace({"counterface.deformation": "rigid", **few})
+    assert exact.roughness is not None
+    spacing = exact.roughness.asperity_density**-0.5
+    # The Kelvin radius goes with 1/ln(1/humidity).
+    damp = exp(-_kelvin_radius(exact, exp(-1.0)) / spacing)
+    return {
+        "exact": exact,
+        "printed": case.replace({"publication.polynomials": "printed"}),
+        "wet": case,
+        "dry": case.replace({"capillary.model": "none", **few}),
+        "both_ways": case.replace({"publication.pull_while_parting_only": False}),
+        "exact_damp": exact.replace({"capillary.humidity": damp}),
+    }
+
+
+def _printed_off(stop: threading.Event) -> dict[str, float]:
+    """How far the printed polynomials are from the publication's numbers, at the worst."""
+    case = PRINTED.within(builtin("published")).replace({"publication.polynomials": "printed"})
+    worst = dict.fromkeys(WITHIN, 0.0)
+    for entry in read_tables():
+        motion = solve(entry.within(case), name=entry.name, stop=stop)
+        found = {
+            "log_decrement": first(motion.measures["log_decrement"]),
+            "stiction_time": motion.measures["stiction_time"] or np.nan,
+        }
+        for name, value in found.items():
+            published = entry.values[name]
+            assert published is not None
+            worst[name] = max(worst[name], abs(value / published - 1.0))
+    return worst
 
 
 def _fresh_state(contact: Contact, separation: jax.Array) -> FirstTouch:
     state = contact.state(separation, contact.fresh())
-    return FirstTouch(state.force, state.elastic, state.force - state.elastic, state.touching)
+    return FirstTouch(state.force, state.elastic, state.touching)
 
 
-_fresh = Program(_fresh_state)
+_first_touch = Program(_fresh_state)
 
 
 def _parting_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:

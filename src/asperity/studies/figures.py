@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, isclose, pi, sin, sqrt
+from math import cos, pi, sin, sqrt
 
 import numpy as np
 
 from .. import regimes
-from .._jax import jnp
-from ..halfspace import ring_mesh
-from ..materials import contact_modulus, kelvin_radius
 from ..result import Result
 from ..roughness.synthetic import gaussian_surface, length_for_density, summits
 from .drawing import Drawing
@@ -20,7 +17,9 @@ Columns = tuple[np.ndarray, ...]
 
 _SEED = 2014
 _SHOWN_HUMIDITY = 0.6
-"""Relative humidity of the menisci that are drawn: at 100 % they would have no end."""
+"""Relative humidity of the meniscus that is drawn: at 100 % it would have no end."""
+
+_SUMMITS = 9
 
 
 def drawings(evidence: Evidence) -> dict[str, Drawing]:
@@ -40,19 +39,12 @@ def drawings(evidence: Evidence) -> dict[str, Drawing]:
     return {name: make(evidence) for name, make in makers.items()}
 
 
-def _rough(evidence: Evidence) -> tuple[float, float, float]:
-    """Density [1/m^2], radius [m] and rms height [m] of the asperities."""
-    rough = evidence.case.roughness
-    assert rough is not None
-    return rough.asperity_density, rough.asperity_radius, rough.rms_height
-
-
 def _bodies(evidence: Evidence) -> Drawing:
     """The two bodies to scale; the publication shows micrographs of them."""
     radius = evidence.case.body.radius
     angle = np.linspace(0.0, 2.0 * pi, 361)
-    deepest = float(evidence.wet.events["deepest_separation"][0])
-    inside = np.linspace(-1.0, 1.0, 201) * 2.5 * _contact_radius(evidence)
+    deepest = evidence.closest
+    inside = np.linspace(-1.0, 1.0, 201) * 2.5 * evidence.contact_radius
     return Drawing(
         "Figure 1: sphere and plane, to scale (the publication shows micrographs)",
         ("place [m]", "height [m]"),
@@ -60,20 +52,14 @@ def _bodies(evidence: Evidence) -> Drawing:
             "sphere": (radius * np.sin(angle), radius * (1.0 - np.cos(angle))),
             "sphere near the plane": (inside, deepest + inside**2 / (2.0 * radius)),
         },
-        {"radius [m]": radius, "rms height [m]": evidence.rms_height},
+        {"radius [m]": radius, "rms height [m]": evidence.rough.rms_height},
     )
-
-
-def _contact_radius(evidence: Evidence) -> float:
-    """Radius of the conjunction at the first closest approach [m]."""
-    low, end = evidence.wet.events["deepest_separation"][0], float(evidence.contact.pressure.end)
-    return sqrt(2.0 * evidence.case.body.radius * (end - low))
 
 
 def _surface(evidence: Evidence) -> tuple[np.ndarray, float]:
     """Composite of two synthetic surfaces of equal roughness, and its spacing [m]."""
-    density, _, rms = _rough(evidence)
-    length = length_for_density(density)
+    rms = evidence.rough.rms_height
+    length = length_for_density(evidence.rough.asperity_density)
     spacing = 0.2 * length
     pair = [
         gaussian_surface((640, 640), spacing, rms / sqrt(2.0), length, _SEED + k) for k in (0, 1)
@@ -96,7 +82,7 @@ def _heights(evidence: Evidence) -> Drawing:
 
 def _distribution(evidence: Evidence) -> Drawing:
     heights, _ = _surface(evidence)
-    rms = evidence.rms_height
+    rms = evidence.rough.rms_height
     edges = np.linspace(-4.0, 4.5, 52) * rms
     middle = 0.5 * (edges[1:] + edges[:-1])
     tops = summits(heights)
@@ -115,21 +101,14 @@ def _distribution(evidence: Evidence) -> Drawing:
 
 
 def _map(evidence: Evidence) -> Drawing:
-    rough, case = evidence.case.roughness, evidence.case
-    assert rough is not None
-    assert case.adhesion.work is not None
     lines = regimes.adhesion_map(np.logspace(-3.0, 2.0, 160), np.logspace(-2.0, 6.0, 160))
     series: dict[str, Columns] = {
         f"{line.between[0]} | {line.between[1]}": _finite(line.elasticity, line.load)
         for line in lines
     }
     lam = np.array([evidence.wet.regime["elasticity_parameter"]])
-    at_rest = evidence.exact_state(evidence.exact_rest)
-    load = regimes.load_parameter(
-        float(at_rest.elastic), float(at_rest.touching), case.adhesion.work, rough.asperity_radius
-    )
     series["closest approach"] = (lam, np.array([evidence.wet.regime["load_parameter"]]))
-    series["at rest, exact model"] = (lam, np.array([load]))
+    series["at rest, exact model"] = (lam, np.array([evidence.load_at_rest]))
     return Drawing(
         "Figure 4: adhesion map with the case on it (Johnson and Greenwood's, 5 % criteria)",
         ("elasticity parameter [1]", "load parameter [1]"),
@@ -144,13 +123,14 @@ def _finite(*arrays: np.ndarray) -> Columns:
 
 
 def _meniscus(evidence: Evidence) -> Drawing:
-    """One asperity with its meniscus, and some asperities of the rough surface in their bands."""
-    case, (density, radius, rms) = evidence.case, _rough(evidence)
-    liquid, angle = case.liquid, case.capillary.contact_angle
-    assert liquid is not None
+    """One asperity with its meniscus, and some asperities of the rough surface in their bands.
+
+    The meniscus is the model's: an arc of the Kelvin radius between faces as good as parallel.
+    """
+    rough, angle = evidence.rough, evidence.case.capillary.contact_angle
     assert angle is not None
-    assert case.capillary.temperature is not None
-    kelvin = kelvin_radius(liquid, _SHOWN_HUMIDITY, case.capillary.temperature)
+    radius, flat = rough.asperity_radius, float(evidence.contact.pressure.end)
+    kelvin = evidence.kelvin_radius(_SHOWN_HUMIDITY)
     reach = 2.0 * kelvin * cos(angle)
     gap = 0.3 * reach
     # The parabola meets the filled height where its own rise has used up the rest of the reach.
@@ -159,40 +139,40 @@ def _meniscus(evidence: Evidence) -> Drawing:
     turn = np.linspace(-1.0, 1.0, 61) * (0.5 * pi - angle)
     arc_y = 0.5 * reach * (1.0 + np.sin(turn) / sin(0.5 * pi - angle))
     arc_x = filled - kelvin * (np.cos(turn) - np.cos(turn[0]))
-    heights = np.random.default_rng(_SEED).standard_normal(9) * rms
-    pitch = density**-0.5
+    pitch = rough.asperity_density**-0.5
+    summits = pitch * (np.arange(_SUMMITS) - _SUMMITS // 2)
+    heights = np.random.default_rng(_SEED).standard_normal(_SUMMITS) * rough.rms_height
+    fine = np.linspace(summits[0] - pitch / 2.0, summits[-1] + pitch / 2.0, 1200)
+    profile = np.max(heights[:, None] - (fine - summits[:, None]) ** 2 / (2.0 * radius), axis=0)
+    waiting = (heights > 0.0) & (heights < flat)
     return Drawing(
         f"Figure 5: a meniscus at {100.0 * _SHOWN_HUMIDITY:g} % relative humidity, and asperities "
-        "of a rough surface",
+        "of a rough surface with those that have one at 100 % by eqs. 13-15",
         ("place [m]", "height [m]"),
         {
             "asperity": (place, gap + place**2 / (2.0 * radius)),
             "meniscus, right": (arc_x, arc_y),
             "meniscus, left": (-arc_x, arc_y),
-            "summits": (pitch * (np.arange(9.0) - 4.0), heights),
+            "rough surface": (fine, profile),
+            "summits": (summits, heights),
+            "summits with a meniscus": (summits[waiting], heights[waiting]),
         },
-        {"gap [m]": gap, "Kelvin radius [m]": kelvin, "separation [m]": 3.0 * rms,
-         "bands drawn": 8.0, "asperity spacing [m]": pitch},
+        {"gap [m]": gap, "Kelvin radius [m]": kelvin, "edge [m]": flat,
+         "rms height [m]": rough.rms_height, "bands drawn": 8.0},
     )  # fmt: skip
 
 
 def _conjunction(evidence: Evidence) -> Drawing:
     """Gap and displacement at the first closest approach, the latter by its own pressure."""
-    case, pressure = evidence.case, evidence.contact.pressure
-    low = float(evidence.wet.events["deepest_separation"][0])
-    radius, edge = case.body.radius, float(pressure.end)
-    mesh = ring_mesh(200)
-    size = _contact_radius(evidence)
-    place = mesh.radius * size
-    gap = low + place**2 / (2.0 * radius)
-    pressures = np.asarray(pressure.contact(jnp.asarray(gap)))
-    modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    lift = mesh.compliance @ pressures * size / modulus
     return Drawing(
         "Figure 6: the conjunction at closest approach, and what its pressure would displace",
         ("radius [m]", "separation [m]", "displacement [m]", "pressure [Pa]"),
-        {"closest approach": (place, gap, lift, pressures)},
-        {"edge [m]": edge, "rigid separation [m]": low, "rms height [m]": evidence.rms_height},
+        {"closest approach": evidence.conjunction},
+        {
+            "edge [m]": float(evidence.contact.pressure.end),
+            "rigid separation [m]": evidence.closest,
+            "rms height [m]": evidence.rough.rms_height,
+        },
     )
 
 
@@ -237,22 +217,26 @@ def _forces(evidence: Evidence) -> Drawing:
 
 
 def _by_radius(evidence: Evidence) -> Drawing:
-    rms = evidence.rms_height
-    found = {s: m for s, m in evidence.surfaces.items() if isclose(s[1], rms)}
-    return Drawing(
-        "Figure 8: asperity radius and the motion",
-        _MOTION,
-        {f"β = {1e9 * s[0]:.4g} nm": _trajectory(found[s]) for s in sorted(found)},
-        {"rms height [m]": rms},
-    )
+    return _by_table(evidence, 2, "Figure 8: asperity radius and the motion")
 
 
 def _by_height(evidence: Evidence) -> Drawing:
-    _, radius, _ = _rough(evidence)
-    found = {s: m for s, m in evidence.surfaces.items() if isclose(s[0], radius)}
-    return Drawing(
-        "Figure 9: rms height and the motion",
-        _MOTION,
-        {f"σ = {1e9 * s[1]:.4g} nm": _trajectory(found[s]) for s in sorted(found)},
-        {"asperity radius [m]": radius},
+    return _by_table(evidence, 3, "Figure 9: rms height and the motion")
+
+
+def _by_table(evidence: Evidence, table: int, title: str) -> Drawing:
+    """The motions of a table, named by what differs; that of the case where it has none."""
+    surfaces = sorted(
+        {(r["asperity_radius"], r["rms_height"]) for r in evidence.rows if r["table"] == table}
     )
+    found = {surface: evidence.surfaces[surface] for surface in surfaces}
+    if not found:
+        found = {(evidence.rough.asperity_radius, evidence.rough.rms_height): evidence.wet}
+    differ = [len({surface[k] for surface in found}) > 1 for k in (0, 1)]
+    shown = [k for k in (0, 1) if differ[k]] or [0, 1]
+
+    def name(surface: tuple[float, float]) -> str:
+        return ", ".join(f"{'βσ'[k]} = {1e9 * surface[k]:.4g} nm" for k in shown)
+
+    series = {name(surface): _trajectory(motion) for surface, motion in found.items()}
+    return Drawing(title, _MOTION, series, {})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -26,9 +27,12 @@ UNKNOWN = ("conjunction_ends", "release_gap", "capillary_factor")
 
 _IMPACTS = 96
 _EDGES = (2.4, 2.6, 2.8, 3.0, 3.2, 3.4)
+"""Ends of the conjunction for which the other two inputs are fitted."""
+
 _CLEARANCES = (2e-9, 5e-9, 12e-9)
-_FACTORS = 10.0 ** np.linspace(-1.5, 2.0, 15)
+_FACTORS = 10.0 ** np.linspace(-1.5, 2.0, 8)
 _LOWEST_EDGE, _HIGHEST_EDGE, _LARGEST_FACTOR = 0.2, 7.9, np.log(999.0)  # those of a case
+_LEAST_CLEARANCE = np.log(1e-11)
 _MISSED = 3.0  # residual of a motion that does not rest
 
 
@@ -124,48 +128,61 @@ def refit(
     -------
     None where fewer than three numbers are there, or where it was stopped.
     """
-    from scipy.optimize import least_squares, minimize
-
     report = tell or (lambda fraction, text: None)
     problem = _Problem(case, entries)
     if len(problem.targets) < len(UNKNOWN):
         return None
-
-    def stopped() -> bool:
-        return stop is not None and stop.is_set()
-
-    def descend(start: np.ndarray, free: slice) -> np.ndarray:
-        """Least squares in some of the variables, then a simplex over the steps in time."""
-
-        def at(values: np.ndarray) -> np.ndarray:
-            whole = start.copy()
-            whole[free] = values
-            return problem.residuals(whole)
-
-        first = least_squares(at, start[free], diff_step=3e-3, max_nfev=40).x
-        options = {"xatol": 1e-5, "fatol": 1e-9, "maxfev": 250}
-        last = minimize(
-            lambda v: float(np.sum(at(v) ** 2)), first, method="Nelder-Mead", options=options
-        )
-        out = start.copy()
-        out[free] = last.x
-        return out
-
-    starts = problem.starts(Inputs.of(case))
-    profile: list[tuple[Inputs, float]] = []
-    best = starts[0]
-    for number, (edge, start) in enumerate(zip(_EDGES, starts[1:], strict=True)):
-        if stopped():
-            return None
-        report(number / (len(_EDGES) + 1), f"conjunction ends at {edge:g}")
-        found = descend(start, slice(1, None))
-        profile.append((problem.inputs(found), problem.rms(found)))
-        best = min(best, found, key=problem.rms)
-    report(len(_EDGES) / (len(_EDGES) + 1), "all three inputs")
-    best = min(best, descend(best, slice(None)), key=problem.rms)
-    spread, correlation = problem.spread(best)
+    first = problem.start(Inputs.of(case))
+    if stop is not None and stop.is_set():
+        return None
+    report(0.1, "two inputs at each end of the conjunction")
+    inner = [edge for edge in reversed(_EDGES) if edge <= first[0]]
+    outer = [edge for edge in _EDGES if edge > first[0]]
+    with ThreadPoolExecutor(2) as pool:
+        both = list(pool.map(lambda edges: _chain(problem, first, edges, stop), (inner, outer)))
+    found = sorted([*both[0], *both[1]], key=lambda x: x[0])
+    if stop is not None and stop.is_set():
+        return None
+    report(0.7, "all three inputs")
+    best = min([first, *found], key=problem.rms)
+    best = min(best, _descended(problem, best, slice(None), 200), key=problem.rms)
+    profile = [(problem.inputs(x), problem.rms(x)) for x in found]
     report(1.0, "refitted")
-    return Refit(problem.inputs(best), problem.rms(best), spread, correlation, profile)
+    return Refit(problem.inputs(best), problem.rms(best), *problem.spread(best), profile)
+
+
+def _chain(
+    problem: _Problem, first: np.ndarray, edges: list[float], stop: threading.Event | None
+) -> list[np.ndarray]:
+    """Fits for ends of the conjunction one after the other, each a guess for the next."""
+    found: list[np.ndarray] = []
+    for edge in edges:
+        if stop is not None and stop.is_set():
+            break
+        near = found[-1] if found else first
+        # The pull at the edge falls with its pressure, by some e^-3.7 per rms height.
+        guess = np.array([edge, near[1], near[2] - 3.7 * (edge - near[0])])
+        found.append(_descended(problem, guess, slice(1, None), 60))
+    return found
+
+
+def _descended(problem: _Problem, start: np.ndarray, free: slice, most: int) -> np.ndarray:
+    """Least squares in some of the variables, then a simplex over the steps in time."""
+    from scipy.optimize import least_squares, minimize
+
+    def at(values: np.ndarray) -> np.ndarray:
+        whole = start.copy()
+        whole[free] = values
+        return problem.residuals(whole)
+
+    first = least_squares(at, start[free], diff_step=3e-3, max_nfev=30).x
+    options = {"xatol": 1e-5, "fatol": 1e-9, "maxfev": most}
+    last = minimize(
+        lambda v: float(np.sum(at(v) ** 2)), first, method="Nelder-Mead", options=options
+    )
+    out = start.copy()
+    out[free] = last.x
+    return out
 
 
 class _Problem:
@@ -196,7 +213,8 @@ class _Problem:
         return Inputs(float(x[0]), float(gap), float(np.exp(x[2])))
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
-        if not (_LOWEST_EDGE < x[0] < _HIGHEST_EDGE and x[2] < _LARGEST_FACTOR):
+        allowed = _LOWEST_EDGE < x[0] < _HIGHEST_EDGE and x[2] < _LARGEST_FACTOR
+        if not (allowed and x[1] > _LEAST_CLEARANCE):
             return np.full(len(self.targets), _MISSED)
         found = np.asarray(
             _flights(self._contact, self._body, self._surfaces, jnp.asarray(self.inputs(x)),
@@ -208,16 +226,13 @@ class _Problem:
     def rms(self, x: np.ndarray) -> float:
         return float(np.sqrt(np.mean(self.residuals(x) ** 2)))
 
-    def starts(self, given: Inputs) -> list[np.ndarray]:
-        """The inputs given, and the best of a coarse net for each end of the conjunction."""
-        clearance = max(given.release_gap - given.conjunction_ends * self._highest, 1e-10)
-        out = [
-            np.array([given.conjunction_ends, np.log(clearance), np.log(given.capillary_factor)])
-        ]
-        for edge in _EDGES:
-            net = [np.array([edge, np.log(c), np.log(f)]) for c in _CLEARANCES for f in _FACTORS]
-            out.append(min(net, key=self.rms))
-        return out
+    def start(self, given: Inputs) -> np.ndarray:
+        """The best of the inputs given and of a coarse net at their end of the conjunction."""
+        edge = given.conjunction_ends
+        clearance = max(given.release_gap - edge * self._highest, 1e-10)
+        net = [np.array([edge, np.log(c), np.log(f)]) for c in _CLEARANCES for f in _FACTORS]
+        here = np.array([edge, np.log(clearance), np.log(given.capillary_factor)])
+        return min([here, *net], key=self.rms)
 
     def spread(self, x: np.ndarray) -> tuple[Inputs, np.ndarray]:
         """Standard deviations of the inputs and their correlation, from central differences."""
@@ -238,6 +253,7 @@ class _Problem:
         )
         covariance = change @ covariance @ change.T
         sigma = np.sqrt(np.diag(covariance))
+        sigma = np.where(sigma > 0.0, sigma, np.nan)  # where no number depends on an input
         return Inputs(*map(float, sigma)), covariance / np.outer(sigma, sigma)
 
 

@@ -7,6 +7,7 @@ import io
 import json
 import textwrap
 from collections.abc import Iterable, Sequence
+from math import degrees
 from typing import Any
 
 from ..summary import WIDTH, amount
@@ -22,7 +23,9 @@ _ROWS = (
     "table", "asperity_radius", "rms_height", "quantity", "published", "computed",
     "relative_difference",
 )  # fmt: skip
-_BALANCES = ("over_first_impact", "over_whole_drop", "over_mean_of_impacts")
+_BALANCES = (
+    "over_first_impact", "over_whole_drop", "over_mean_of_impacts", "over_mean_of_large_impacts",
+)  # fmt: skip
 
 
 def brief(done: Reproduction) -> str:
@@ -46,6 +49,7 @@ def files(done: Reproduction) -> dict[str, bytes]:
     """The tables, the audit and both together, by file name."""
     return {
         "tables.csv": _csv(_ROWS, done.rows),
+        "table-1.csv": _csv(("quantity", "unit", "published", "used"), done.table_1),
         "audit.csv": _csv(("claim", "published", "found", "verdict"), done.audit),
         "reproduction.json": json.dumps(
             done.json_object(), allow_nan=False, indent=1, ensure_ascii=False
@@ -63,8 +67,13 @@ def _csv(columns: Sequence[str], rows: Iterable[dict[str, Any]]) -> bytes:
 
 
 def _tables(done: Reproduction) -> list[str]:
-    """Published beside computed, a line for each surface."""
-    lines = []
+    """Published beside what is used or computed, a line for each quantity or surface."""
+    lines = ["Table 1: published / used"]
+    for row in done.table_1:
+        unit = "" if row["unit"] == "1" else row["unit"]
+        published, used = (_plain(row[side], unit) for side in ("published", "used"))
+        lines.append(f"  {row['quantity']:<36}{published:>16} / {used}")
+    lines.append("")
     for table in dict.fromkeys(row["table"] for row in done.rows):
         lines += [f"Table {table}: published / computed"]
         lines.append(_line(("beta", "sigma"), _NAMES.values()))
@@ -77,6 +86,13 @@ def _tables(done: Reproduction) -> list[str]:
             lines.append(_line([amount(x, "m") for x in surface], cells))
         lines.append("")
     return lines
+
+
+def _plain(value: float | None, unit: str) -> str:
+    """Of an odd unit, which takes no prefix, the number with its exponent."""
+    if value is not None and unit == "rad":
+        return f"{degrees(value):.4g} deg"
+    return amount(value, unit) if unit in ("", "Pa") else f"{value:.4g} {unit}"
 
 
 def _line(left: Iterable[str], cells: Iterable[str]) -> str:
@@ -119,11 +135,12 @@ def _power(done: Reproduction) -> list[str]:
     lines = [
         "",
         "Published power loss over the energy lost in the first impact by its time, over",
-        "the energy of the whole drop by the time to rest, over eq. 23's mean of all impacts",
+        "the energy of the whole drop by the time to rest, over the mean of eq. 23 over",
+        "all impacts until a rebound of 1e-3 of the first, and until 1e-2",
     ]
     for row in done.power:
         left = [amount(row[name], "m") for name in ("asperity_radius", "rms_height")]
-        lines.append(_line(left, [_ratio(row[name]) for name in _BALANCES]))
+        lines.append(_line(left, [f"{_ratio(row[name]):>12}" for name in _BALANCES]))
     return lines
 
 

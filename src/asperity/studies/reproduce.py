@@ -5,12 +5,15 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from math import radians
 from typing import Any
 
 import numpy as np
 
 from ..case import Case, builtin
 from ..errors import InputError, SimulationError
+from ..materials import contact_modulus
+from ..regimes import ELASTICITY_PER_TABOR, tabor_number
 from ..result import Result
 from ..solver import solve
 from . import audit, figures
@@ -32,6 +35,8 @@ class Reproduction:
     rows
         One for each published number: "table", "asperity_radius", "rms_height", "quantity",
         "published", "computed", "relative_difference"; SI, None where there is none.
+    table_1
+        Its Table 1 and what is in use: "quantity", "unit", "published", "used"; SI.
     found
         The inputs that the publication does not name, and how well they fit.
     power
@@ -45,6 +50,7 @@ class Reproduction:
     """
 
     rows: list[dict[str, Any]]
+    table_1: list[dict[str, Any]]
     found: dict[str, Any]
     power: list[dict[str, float | None]]
     audit: list[dict[str, str]]
@@ -53,7 +59,7 @@ class Reproduction:
 
     def json_object(self) -> dict[str, Any]:
         """What ``--json`` prints."""
-        names = ("rows", "found", "power", "audit", "problems")
+        names = ("rows", "table_1", "found", "power", "audit", "problems")
         return {name: getattr(self, name) for name in names}
 
 
@@ -91,16 +97,19 @@ def reproduce(
     tell = progress or (lambda fraction, text: None)
     stop = stop or threading.Event()
     entries, case = read_tables(tables), builtin("published")
+    fit: Refit | None = None
     tell(0.02, "tables")
-    partial, results = _compared(case, entries, None, stop)
-    if refitted and not stop.is_set():
-        if keep is not None:
-            keep(partial)
+    if refitted:
+        before = _before(case, entries, stop)
+        if keep is not None and before is not None:
+            keep(before)
         fit = refit(case, entries, tell=lambda f, text: tell(0.2 + 0.4 * f, text), stop=stop)
         case = case if fit is None else fit.inputs.within(case)
-        if not stop.is_set():
-            partial, results = _compared(case, entries, fit, stop)
-            partial = replace(partial, problems=_problems(fit, entries, partial.rows))
+        if stop.is_set() and before is not None:
+            return before
+    partial, results = _compared(case, entries, fit, stop)
+    if refitted and not stop.is_set():
+        partial = replace(partial, problems=_problems(fit, entries, partial.rows))
     if keep is not None:
         keep(partial)
     if stop.is_set():
@@ -120,6 +129,14 @@ def reproduce(
     return replace(partial, audit=claims, drawings=drawings)
 
 
+def _before(case: Case, entries: list[Entry], stop: threading.Event) -> Reproduction | None:
+    """The tables with the built-in inputs; None where these do not go with a surface."""
+    try:
+        return _compared(case, entries, None, stop)[0]
+    except InputError:
+        return None
+
+
 def _compared(
     case: Case, entries: list[Entry], fit: Refit | None, stop: threading.Event
 ) -> tuple[Reproduction, Motions]:
@@ -131,7 +148,35 @@ def _compared(
         for entry in _unique(entries)
         if entry.surface in results
     ]
-    return Reproduction(rows, _found(Inputs.of(case), rows, fit), power, [], {}), results
+    found = _found(Inputs.of(case), rows, fit)
+    return Reproduction(rows, table_1(case), found, power, [], {}), results
+
+
+def table_1(case: Case) -> list[dict[str, Any]]:
+    """Table 1 and the numbers derived from it, as published and as a case has them."""
+    body, flat, rough = case.body_solid, case.counterface_solid, case.roughness
+    liquid, adhesion = case.liquid, case.adhesion
+    assert rough is not None
+    assert liquid is not None
+    assert adhesion.work is not None
+    assert adhesion.range is not None
+    modulus = contact_modulus(body, flat)
+    tabor = tabor_number(rough.asperity_radius, adhesion.work, modulus, adhesion.range)
+    lines = (
+        ("Young's modulus of silica", "Pa", 80e9, body.youngs_modulus),
+        ("Young's modulus of silicon carbide", "Pa", 161e9, flat.youngs_modulus),
+        ("Poisson's ratio of silica", "1", 0.25, body.poisson),
+        ("Poisson's ratio of silicon carbide", "1", 0.23, flat.poisson),
+        ("asperities per area", "1/m^2", 169e14, rough.asperity_density),
+        ("work of adhesion", "J/m^2", 30e-3, adhesion.work),
+        ("tension of water", "J/m^2", 75e-3, liquid.tension),
+        ("contact angle", "rad", radians(73.0), case.capillary.contact_angle),
+        ("contact modulus", "Pa", None, modulus),
+        ("Tabor number", "1", 0.02, tabor),
+        ("elasticity parameter", "1", 0.0235, ELASTICITY_PER_TABOR * tabor),
+    )
+    names = ("quantity", "unit", "published", "used")
+    return [dict(zip(names, line, strict=True)) for line in lines]
 
 
 def surface_case(case: Case, entry: Entry) -> Case:
@@ -142,13 +187,7 @@ def surface_case(case: Case, entry: Entry) -> Case:
     InputError
         Where the release lies within the conjunction there.
     """
-    radius, height = entry.surface
-    case = case.replace(
-        {
-            "roughness.asperity_radius": f"{radius!r} m",
-            "roughness.rms_height": f"{height!r} m",
-        }
-    )
+    case, (_, height) = entry.within(case), entry.surface
     edge, gap, _ = Inputs.of(case)
     if gap <= edge * height:
         raise InputError(
@@ -181,9 +220,20 @@ def _unique(entries: list[Entry]) -> list[Entry]:
     return list(found.values())
 
 
-def mean_power_loss(result: Result) -> float | None:
-    """Mean over the impacts of eq. 23, the one-way work over the impact time [W]."""
-    values = [value for value in result.measures["power_loss_published"] if value is not None]
+def mean_power_loss(result: Result, rest: float = 0.0) -> float | None:
+    """Mean over the impacts of eq. 23, the one-way work over the impact time [W].
+
+    Parameters
+    ----------
+    result
+        A motion.
+    rest
+        Share of the first rebound: the first impact whose rebound is lower is the last counted.
+    """
+    heights = [height or 0.0 for height in result.measures["rebound_height"]]
+    low = [k for k, height in enumerate(heights) if height < rest * heights[0]]
+    counted = result.measures["power_loss_published"][: low[0] + 1 if low else None]
+    values = [value for value in counted if value is not None]
     return float(np.mean(values)) if values else None
 
 
@@ -234,19 +284,19 @@ def _power(entry: Entry, result: Result) -> dict[str, float | None]:
         "over_first_impact": ratio(first),
         "over_whole_drop": ratio(whole),
         "over_mean_of_impacts": ratio(mean),
+        "over_mean_of_large_impacts": ratio(mean_power_loss(result, 1e-2)),
     }
 
 
 def _found(inputs: Inputs, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
     """The inputs and how well they fit, as plain numbers."""
-    off = [
-        row["relative_difference"]
+    # The row that both tables share counts once.
+    off = {
+        (row["asperity_radius"], row["rms_height"], row["quantity"]): row["relative_difference"]
         for row in rows
         if row["quantity"] in WITHIN and row["relative_difference"] is not None
-    ]
-    # The row that both tables share counts once.
-    off = list(dict.fromkeys(off))
-    rms = float(np.sqrt(np.mean(np.square(off)))) if off else None
+    }
+    rms = float(np.sqrt(np.mean(np.square(list(off.values()))))) if off else None
     out: dict[str, Any] = {**inputs._asdict(), "rms": rms, "refitted": fit is not None}
     if fit is not None:
         out["uncertainty"] = {k: _number(v) for k, v in fit.uncertainty._asdict().items()}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import csv
 import importlib.resources
-import math
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
+from ..case import Case
 from ..errors import InputError
 from ..units import shown
 
@@ -27,7 +27,20 @@ _COLUMNS = {
 }
 """Power of ten of each column's unit in SI."""
 
-_RANGE = {"asperity_radius_nm": (1e-3, 1e6), "rms_height_nm": (1e-3, 1e6)}
+_RANGE = {
+    "asperity_radius_nm": (1e-3, 1e6),
+    "rms_height_nm": (1e-3, 1e6),
+    "stiction_time_us": (1e-6, 1e12),
+    "power_loss_1e-4_nW": (1e-12, 1e12),
+    "log_decrement": (1e-9, 1e3),
+}
+"""Smallest and largest value of each, both allowed: wide, but nothing overflows."""
+
+_KEYS = ("asperity_radius_nm", "rms_height_nm")
+"""Columns that no row can do without."""
+
+_LONGEST = 60
+"""Characters of a number."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +73,12 @@ class Entry:
         radius, height = (f"{x * 1e9:.4g} nm" for x in self.surface)
         return f"beta = {radius}, sigma = {height}"
 
+    def within(self, case: Case) -> Case:
+        """A case on this surface."""
+        radius, height = self.surface
+        changes = {"asperity_radius": f"{radius!r} m", "rms_height": f"{height!r} m"}
+        return case.replace({f"roughness.{key}": value for key, value in changes.items()})
+
 
 def read_tables(file: str | None = None) -> list[Entry]:
     """Tables from a CSV file; without one the publication's Tables 2 and 3.
@@ -81,7 +100,9 @@ def read_tables(file: str | None = None) -> list[Entry]:
         return _entries(source.read_text(encoding="utf-8"), "published_tables.csv")
     path = Path(file)
     try:
-        if path.is_file() and path.stat().st_size > SIZE_LIMIT:
+        if path.exists() and not path.is_file():
+            raise InputError(f"{file}: tables must be a file; got a folder or device", file=file)
+        if path.exists() and path.stat().st_size > SIZE_LIMIT:
             raise InputError(f"{file}: tables must be at most 1 MiB", file=file)
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
@@ -119,23 +140,9 @@ def _entries(text: str, file: str) -> list[Entry]:
 
 
 def _entry(row: dict[str, str], place: str, file: str) -> Entry:
-    found: dict[str, float | None] = {}
-    for name, power in _COLUMNS.items():
-        text = row.get(name, "").strip()
-        low, high = _RANGE.get(name, (0.0, math.inf))
-        if not text and name not in _RANGE:
-            found[name] = None
-            continue
-        try:
-            value = Decimal(text)
-        except InvalidOperation:
-            value = Decimal("NaN")
-        if not (value.is_finite() and low < value < high):
-            rule = "must be a positive number" if low == 0.0 else f"must lie in [{low:g}, {high:g}]"
-            raise InputError(f"{place}: `{name}` {rule}; got {shown(text)}", file=file)
-        found[name] = float(value.scaleb(power))
+    found = {name: _value(row, name, place, file) for name in _COLUMNS}
     table = row.get("table", "").strip()
-    if not table.isdecimal():
+    if not (table.isdecimal() and len(table) < 10):
         raise InputError(f"{place}: `table` must be a whole number; got {shown(table)}", file=file)
     radius, height = found["asperity_radius_nm"], found["rms_height_nm"]
     assert radius is not None
@@ -146,3 +153,21 @@ def _entry(row: dict[str, str], place: str, file: str) -> Entry:
         "power_loss": found["power_loss_1e-4_nW"],
     }
     return Entry(int(table), radius, height, values)
+
+
+def _value(row: dict[str, str], name: str, place: str, file: str) -> float | None:
+    """A value in SI; None where it is left empty and may be."""
+    text = row.get(name, "").strip()
+    if not text and name not in _KEYS:
+        return None
+    try:
+        value = Decimal(text if len(text) <= _LONGEST else "NaN")
+    except InvalidOperation:
+        value = Decimal("NaN")
+    low, high = _RANGE[name]
+    if not (value.is_finite() and low <= value <= high):
+        raise InputError(
+            f"{place}: `{name}` must be a number in [{low:g}, {high:g}]; got {shown(text)}",
+            file=file,
+        )
+    return float(value.scaleb(_COLUMNS[name]))

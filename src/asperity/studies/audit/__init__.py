@@ -1,0 +1,14 @@
+"""The publication's claims beside what the program finds, each number computed."""
+
+from __future__ import annotations
+
+from ..evidence import Evidence
+from . import conjunction, forces, motion
+from .claim import Claim
+
+__all__ = ["Claim", "claims"]
+
+
+def claims(evidence: Evidence) -> list[Claim]:
+    """The audit, from the choice of the models to the power losses."""
+    return [*forces.claims(evidence), *conjunction.claims(evidence), *motion.claims(evidence)]
