@@ -98,11 +98,15 @@ class Conjunction:
         for _ in range(200):
             lift = 0.5 * (lift + self.displacement(pressure))
             new = self.pressure(place + self.rise + lift, parting)
-            known = pressure != 0.0  # eq. 22 divides by zero elsewhere
+            # Eq. 22 divides by zero elsewhere; and a cell that its own pressure lifts over the
+            # edge comes back without it, for ever.
+            known = (pressure != 0.0) & (new != 0.0)
             change = np.sum(np.abs((new[known] - pressure[known]) / pressure[known]))
             pressure = new
             if change <= self.tolerance:
                 break
+        else:
+            raise RuntimeError(f"eq. 22 is not met to {self.tolerance:g} at {place:.4g} m")
         return float(np.sum(pressure)) * self.area, lift
 
 
