@@ -115,8 +115,16 @@ def reproduce(
     if stop.is_set():
         return partial
     tell(0.2 + 0.4 * refitted, "what the exact model says")
+    return _audited(partial, case, results, tell, stop)
+
+
+def _audited(
+    partial: Reproduction, case: Case, results: Motions, tell: Report, stop: threading.Event
+) -> Reproduction:
+    """The tables with audit and figures; alone where it was stopped."""
+    usable = _usable(case)
     try:
-        evidence = Evidence.gather(case, results, partial.rows, partial.power, stop)
+        evidence = Evidence.gather(usable, results, partial.rows, partial.power, stop)
     except SimulationError:
         if not stop.is_set():
             raise
@@ -126,7 +134,21 @@ def reproduce(
     claims = [claim._asdict() for claim in audit.claims(evidence)]
     drawings = figures.drawings(evidence)
     tell(1.0, "done")
-    return replace(partial, audit=claims, drawings=drawings)
+    problems = [*partial.problems, *([_ELSEWHERE] if usable != case else [])]
+    return replace(partial, audit=claims, drawings=drawings, problems=problems)
+
+
+_ELSEWHERE = (
+    "the inputs found release the sphere inside contact on the publication's own surface: the "
+    "audit and the figures of that surface have the built-in inputs"
+)
+
+
+def _usable(case: Case) -> Case:
+    """The case; the built-in one where its release lies within its own conjunction."""
+    edge, gap, _ = Inputs.of(case)
+    assert case.roughness is not None
+    return case if gap > edge * case.roughness.rms_height else builtin("published")
 
 
 def _before(case: Case, entries: list[Entry], stop: threading.Event) -> Reproduction | None:
@@ -230,6 +252,8 @@ def mean_power_loss(result: Result, rest: float = 0.0) -> float | None:
     rest
         Share of the first rebound: the first impact whose rebound is lower is the last counted.
     """
+    if not any(value is not None for value in result.measures["log_decrement"]):
+        return None  # it sticks at once: there is no impact time
     heights = [height or 0.0 for height in result.measures["rebound_height"]]
     low = [k for k, height in enumerate(heights) if height < rest * heights[0]]
     counted = result.measures["power_loss_published"][: low[0] + 1 if low else None]
@@ -292,11 +316,16 @@ def _found(inputs: Inputs, rows: list[dict[str, Any]], fit: Refit | None) -> dic
     """The inputs and how well they fit, as plain numbers."""
     # The row that both tables share counts once.
     off = {
-        (row["asperity_radius"], row["rms_height"], row["quantity"]): row["relative_difference"]
+        (row["asperity_radius"], row["rms_height"], row["quantity"], row["published"]): row[
+            "relative_difference"
+        ]
         for row in rows
-        if row["quantity"] in WITHIN and row["relative_difference"] is not None
+        if row["quantity"] in WITHIN and row["published"] is not None
     }
-    rms = float(np.sqrt(np.mean(np.square(list(off.values()))))) if off else None
+    whole = bool(off) and None not in off.values()
+    rms = float(np.sqrt(np.mean(np.square(list(off.values()))))) if whole else None
+    if fit is not None:
+        rms = fit.rms
     out: dict[str, Any] = {**inputs._asdict(), "rms": rms, "refitted": fit is not None}
     if fit is not None:
         out["uncertainty"] = {k: _number(v) for k, v in fit.uncertainty._asdict().items()}

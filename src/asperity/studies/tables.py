@@ -133,10 +133,17 @@ def _entries(text: str, file: str) -> list[Entry]:
         )
     if len(rows) == 1:
         raise InputError(f"{file}: tables must have rows; got none", file=file)
-    return [
-        _entry(dict(zip(header, row, strict=False)), f"{file} (line {number})", file)
-        for (number, _), row in zip(lines[1:], rows[1:], strict=True)
-    ]
+    if len(set(header)) < len(header):
+        raise InputError(f"{file} (line {lines[0][0]}): a column stands there twice", file=file)
+    entries = []
+    for (number, _), row in zip(lines[1:], rows[1:], strict=True):
+        place = f"{file} (line {number})"
+        if len(row) != len(header):
+            raise InputError(
+                f"{place}: a row must have {len(header)} values; got {len(row)}", file=file
+            )
+        entries.append(_entry(dict(zip(header, row, strict=True)), place, file))
+    return entries
 
 
 def _entry(row: dict[str, str], place: str, file: str) -> Entry:

@@ -86,8 +86,9 @@ def _deformation(evidence: Evidence) -> list[Claim]:
             "The pressures have converged when eq. 22 is met",
             "0.1 <= eps <= 0.001",
             "the interval is the wrong way round; the sum divides by pressures that are zero on "
-            f"{100.0 * idle:.0f} % and more of the grid, and grows with the number of points, so "
-            "that it bounds no force",
+            f"{100.0 * idle:.0f} % and more of the grid; it grows with the number of points, so "
+            "that one value means another accuracy on each grid; and it bounds the change in one "
+            "step, not the error",
             WRONG,
         ),
     ]
