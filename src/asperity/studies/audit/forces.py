@@ -160,8 +160,8 @@ def _left_out(evidence: Evidence) -> Claim:
         "those between the flat and the mean plane",
         f"at lambda' = 3 those that touch, which are left out, carry {touching / summed:.2g} "
         f"times what the sum holds within the reach of a meniscus at {100.0 * _EXAMPLE:g} % "
-        "(beyond it the terms push, as printed); at 100 % also all below the mean plane are left out, and "
-        f"the whole is {everywhere:.3g} times the sum",
+        "(beyond it the terms push, as printed); at 100 % also all below the mean plane are "
+        f"left out, and the whole is {everywhere:.3g} times the sum",
         WRONG,
     )
 
