@@ -14,7 +14,7 @@ from asperity.case.build import build
 from asperity.contact import PublishedContact
 from asperity.errors import InputError, Outcome, Tolerance
 from asperity.impact import Body, simulate
-from asperity.laws import ExactFunctions, PrintedFunctions, PublishedPressure
+from asperity.laws import HeightFunctions, PublishedPressure
 from asperity.measures import measure
 from asperity.shapes import Sphere
 
@@ -35,7 +35,7 @@ def pressure(functions=None, reach=None, bands=100, edge=EDGE, **changes):
         "tension": TENSION,
         **changes,
     }
-    return PublishedPressure(functions or ExactFunctions(), bands, reach, edge=edge, **values)
+    return PublishedPressure(functions or HeightFunctions(), bands, reach, edge=edge, **values)
 
 
 def contact(parting_only=1.0, **options):
@@ -69,7 +69,7 @@ def test_nothing_acts_beyond_the_end_of_the_conjunction():
 
 def test_printed_polynomials_are_those_of_the_text():
     """Eq. 10 at 0 and 3, eq. 17 at 0 and at 3, added up by hand."""
-    printed = PrintedFunctions()
+    printed = HeightFunctions(1.0)
     assert float(printed.touching(jnp.asarray(0.0))) == 0.5
     assert float(printed.contact(jnp.asarray(0.0))) == 0.43
     assert float(printed.touching(jnp.asarray(3.0))) == pytest.approx(0.00202172, abs=1e-8)
@@ -96,7 +96,7 @@ def test_a_kelvin_radius_without_end_needs_no_bands():
     assert float(far) == pytest.approx(float(pressure().capillary(jnp.asarray(2.0 * SIGMA))))
 
 
-@pytest.mark.parametrize("options", [{}, {"functions": PrintedFunctions()}, {"reach": 3e-9}])
+@pytest.mark.parametrize("options", [{}, {"functions": HeightFunctions(1.0)}, {"reach": 3e-9}])
 @pytest.mark.parametrize("place", [-5e-9, 1e-9, 20e-9, 31.2e-9])
 def test_force_is_the_slope_of_the_energy_in_both_directions(options, place):
     """On the way in of the stored energy, on the way out less the work that the pulls take."""

@@ -20,12 +20,11 @@ from ..laws import (
     ByContact,
     ByKelvinGap,
     Dmt,
-    ExactFunctions,
+    HeightFunctions,
     Hertz,
     Jkr,
     Law,
     Meniscus,
-    PrintedFunctions,
     PublishedPressure,
 )
 from ..laws.base import Sum
@@ -116,7 +115,7 @@ def _published(
         tension=tension,
         edge=assumed.conjunction_ends,
         reach=reach,
-        functions=ExactFunctions() if assumed.polynomials == "exact" else PrintedFunctions(),
+        functions=HeightFunctions(float(assumed.polynomials == "printed")),
         bands=assumed.bands,
     )
     return PublishedContact(

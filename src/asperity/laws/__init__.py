@@ -6,21 +6,19 @@ from .dmt import Dmt
 from .hertz import Hertz
 from .jkr import Jkr
 from .meniscus import ByContact, ByKelvinGap, Meniscus
-from .published import ExactFunctions, HeightFunctions, PrintedFunctions, PublishedPressure
+from .published import HeightFunctions, PublishedPressure
 
 __all__ = [
     "Bradley",
     "ByContact",
     "ByKelvinGap",
     "Dmt",
-    "ExactFunctions",
     "HeightFunctions",
     "Hertz",
     "Jkr",
     "Law",
     "Meniscus",
     "Powers",
-    "PrintedFunctions",
     "PublishedPressure",
     "Sum",
     "TruncatedPower",

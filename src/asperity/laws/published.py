@@ -6,7 +6,6 @@ a separation of a few rms heights. What is wrong with them is in ``docs/audit``.
 
 from __future__ import annotations
 
-import abc
 from math import pi
 
 import equinox as eqx
@@ -24,35 +23,28 @@ EQ_17 = (0.43, -0.6167, 0.3215, -0.04654, -0.02193, 0.01106, -0.001913, 0.000121
 
 
 class HeightFunctions(eqx.Module):
-    """The two functions of the Stribeck parameter, lambda' = h/sigma, that everything rests on."""
+    """The two functions of the Stribeck parameter, lambda' = h/sigma, that everything rests on.
 
-    @abc.abstractmethod
+    Parameters
+    ----------
+    printed
+        0 for the integrals themselves, eq. 7; 1 for the polynomials as printed, eqs. 10 and 17,
+        which are fits for lambda' from 0 to about 3. Traced, so that both are one program.
+    """
+
+    printed: Real = quantity(0.0)
+
     def touching(self, reduced: jax.Array) -> jax.Array:
         """F_0, the share of asperities that touch."""
+        return self._either(EQ_10, height_integral(0.0, reduced), reduced)
 
-    @abc.abstractmethod
     def contact(self, reduced: jax.Array) -> jax.Array:
         """F_3/2."""
+        return self._either(EQ_17, height_integral(1.5, reduced), reduced)
 
-
-class ExactFunctions(HeightFunctions):
-    """The integrals themselves, eq. 7."""
-
-    def touching(self, reduced: jax.Array) -> jax.Array:
-        return height_integral(0.0, reduced)
-
-    def contact(self, reduced: jax.Array) -> jax.Array:
-        return height_integral(1.5, reduced)
-
-
-class PrintedFunctions(HeightFunctions):
-    """The polynomials as printed, eqs. 10 and 17: fits for lambda' from 0 to about 3."""
-
-    def touching(self, reduced: jax.Array) -> jax.Array:
-        return jnp.polyval(jnp.asarray(EQ_10[::-1]), reduced)
-
-    def contact(self, reduced: jax.Array) -> jax.Array:
-        return jnp.polyval(jnp.asarray(EQ_17[::-1]), reduced)
+    def _either(self, rising: tuple[float, ...], exact: jax.Array, reduced: jax.Array) -> jax.Array:
+        polynomial = jnp.polyval(jnp.asarray(rising[::-1]), reduced)
+        return jnp.where(self.printed > 0.0, polynomial, exact)
 
 
 class PublishedPressure(eqx.Module):
