@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import asperity
-from asperity.studies.reproduce import mean_power_loss
+from asperity.studies.comparison import mean_power_loss
 from asperity.studies.tables import read_tables
 
 FILE = Path(__file__).parents[1] / "data" / "publication_tables.csv"
