@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.film import gas_decrement, slip_factor, squeeze_drag
+from asperity.film import AIR_FREE_PATH, AIR_VISCOSITY, gas_decrement, slip_factor, squeeze_drag
 
 ROWS = np.genfromtxt(Path(__file__).parent / "data" / "gas_film.csv", delimiter=",")[1:]
 
@@ -21,6 +21,13 @@ def test_loss_of_a_drop_in_air(row):
     )  # fmt: skip
     assert found[0] == pytest.approx(decrement, rel=5e-5)
     assert found[1] == pytest.approx(speed * 1e-3, rel=5e-5)
+
+
+def test_free_path_of_air_follows_from_its_viscosity():
+    """eta/(0.499 rho c): ideal gas of 28.97 g/mol at 293.15 K and 101 325 Pa."""
+    per_kilogram = 8.314462618 / 0.028966 * 293.15
+    density, speed = 101325.0 / per_kilogram, np.sqrt(8.0 / pi * per_kilogram)
+    assert pytest.approx(AIR_VISCOSITY / (0.499 * density * speed), rel=2e-3) == AIR_FREE_PATH
 
 
 def test_no_slip_is_the_limit_of_little_slip():

@@ -9,8 +9,12 @@ import numpy as np
 AIR_VISCOSITY = 1.82e-5
 """Of air at 20 degC [Pa s] (CRC Handbook of Chemistry and Physics)."""
 
-AIR_FREE_PATH = 68e-9
-"""Mean free path in air at 20 degC and ambient pressure [m] (Jennings 1988)."""
+AIR_FREE_PATH = 65.4e-9
+"""Mean free path in air at 20 degC and 101 kPa [m].
+
+From the viscosity, eta/(0.499 rho c) with rho = 1.204 kg/m^3 and c = 463 m/s, the mean speed of
+its molecules (Chapman and Cowling 1970); the value of Jennings (1988).
+"""
 
 
 def slip_factor(separation: np.ndarray | float, slip_length: float) -> np.ndarray:

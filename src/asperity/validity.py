@@ -110,10 +110,13 @@ def _publication(case: Case) -> list[str]:
     pulls = "adhesion and menisci pull only while the bodies part, " * (
         assumed.pull_while_parting_only
     )
+    factor = assumed.capillary_factor
+    menisci = f", and menisci pull {factor:g} times as much as their equation says" * (
+        case.liquid is not None and factor != 1.0
+    )
     return [
         f"[publication] follows a paper, not physics: {pulls}nothing acts beyond "
-        f"{assumed.conjunction_ends:g} rms heights, and menisci pull "
-        f"{assumed.capillary_factor:g} times as much as their equation says"
+        f"{assumed.conjunction_ends:g} rms heights{menisci}"
     ]
 
 

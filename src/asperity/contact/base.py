@@ -112,11 +112,6 @@ class Contact(eqx.Module):
         return False
 
     @property
-    def lags(self) -> bool:
-        """Whether a way leads from a reversal to the outermost branch: bonds are many."""
-        return bool(self.mechanisms) and not self.discrete
-
-    @property
     def datum(self) -> jax.Array | None:
         """Separation [m] from which rebounds count; None for the static equilibrium."""
         return None
@@ -152,12 +147,12 @@ class Contact(eqx.Module):
 
     def way(
         self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
-    ) -> Way:
+    ) -> Way | None:
         """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m].
 
-        Only where the contact :attr:`lags`; else it is always on a branch.
+        None for a contact that is always on a branch.
         """
-        raise NotImplementedError(f"{type(self).__name__} is always on a branch")
+        return None
 
     @abc.abstractmethod
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:

@@ -178,11 +178,13 @@ class ElasticContact(Contact):
 
     def way(
         self, memory: RingMemory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
-    ) -> Way:
+    ) -> Way | None:
         """On the mesh of the reversal, from its displacement, step by step.
 
         Nowhere for a body that turned where no bond reaches.
         """
+        if not self.mechanisms:
+            return None
         size = jax.lax.stop_gradient(memory.size)
 
         def one(place: jax.Array, rest: Rest) -> State:

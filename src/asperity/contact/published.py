@@ -15,7 +15,6 @@ from ..shapes import Sphere
 from .base import Contact, Held, State, first_out_of_reach
 
 _PANELS = 2  # between two kinks of the pressures
-_FAR = 2
 _NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))
 _LADDER = 1.0 - 2.0 ** np.arange(-14.0, 21.0)  # of the edge: each depth twice the one before
 
@@ -55,10 +54,6 @@ class PublishedContact(Contact):
     @property
     def components(self) -> tuple[str, ...]:
         return ("elastic", *self.mechanisms)
-
-    @property
-    def lags(self) -> bool:
-        return False
 
     @property
     def datum(self) -> jax.Array:
@@ -129,8 +124,7 @@ class PublishedContact(Contact):
         marks = jnp.sort(jnp.clip(marks, low, high))
         steps = np.arange(self.count) / self.count
         near = (marks[:-1, None] + jnp.diff(marks)[:, None] * steps).ravel()
-        far = marks[-1] + (high - marks[-1]) * np.linspace(0.0, 1.0, _FAR)
-        return jnp.concatenate([near, far])
+        return jnp.concatenate([near, jnp.stack([marks[-1], high])])
 
     @property
     def reach(self) -> jax.Array:

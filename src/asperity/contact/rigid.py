@@ -97,8 +97,10 @@ class RigidContact(Contact):
 
     def way(
         self, memory: Thresholds, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
-    ) -> Way:
+    ) -> Way | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
+        if not self.mechanisms:
+            return None
         steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
         marks = [
             start + (b + jnp.where(parting, law.breaking_gap, law.forming_gap) - start) * steps

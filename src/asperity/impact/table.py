@@ -222,10 +222,10 @@ def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
 ) -> Pieces:
     """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
-    if not contact.lags:
+    way = contact.way(memory, start, parting, (table.ends[0], table.ends[-1]))
+    if way is None:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
-    way = contact.way(memory, start, parting, (table.ends[0], table.ends[-1]))
     odd = (-1.0) ** np.arange(NODES)[:, None]
     values = _fit(way.states)
     values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in

@@ -14,7 +14,6 @@ from asperity.plots.style import Panel, colour
 from asperity.studies.drawing import Drawing
 
 _ORDER = ("approach", "parting", "capillary", "apex", "central")
-_PULLS = (("capillary", "menisci"), ("adhesion", "adhesion"))
 
 
 def figures(drawings: dict[str, Drawing]) -> dict[str, Figure]:

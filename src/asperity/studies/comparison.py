@@ -159,13 +159,16 @@ def problems_of(
         f"{row['quantity']} at {row['asperity_radius'] * 1e9:.4g}, "
         f"{row['rms_height'] * 1e9:.4g} nm (off by {_off(row)})"
         for row in rows
-        if row["quantity"] in WITHIN
-        and row["published"] is not None
-        and not abs(row["relative_difference"] or np.inf) <= WITHIN[row["quantity"]]
+        if row["quantity"] in WITHIN and row["published"] is not None and not _met(row)
     ]
     if missed:
         problems.append(f"no inputs meet {', '.join(dict.fromkeys(missed))}")
     return problems
+
+
+def _met(row: dict[str, Any]) -> bool:
+    difference = row["relative_difference"]
+    return difference is not None and abs(difference) <= WITHIN[row["quantity"]]
 
 
 def _off(row: dict[str, Any]) -> str:

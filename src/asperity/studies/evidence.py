@@ -126,11 +126,6 @@ class Evidence:
         """The inputs in use."""
         return Inputs.of(self.case)
 
-    @property
-    def printed_inputs(self) -> Inputs:
-        """Those with which the printed polynomials meet the tables."""
-        return PRINTED
-
     @cached_property
     def contact(self) -> PublishedContact:
         """The contact of ``case``."""

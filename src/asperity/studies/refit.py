@@ -26,6 +26,8 @@ WITHIN = {"log_decrement": 0.03, "stiction_time": 0.05}
 UNKNOWN = ("conjunction_ends", "release_gap", "capillary_factor")
 
 _IMPACTS = 96
+"""A motion of more impacts counts as one that does not rest."""
+
 _EDGES = (2.4, 2.6, 2.8, 3.0, 3.2, 3.4)
 """Ends of the conjunction for which the other two inputs are fitted."""
 

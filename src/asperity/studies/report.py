@@ -75,7 +75,9 @@ def _tables(done: Reproduction) -> list[str]:
         lines.append(f"  {row['quantity']:<36}{published:>16} / {used}")
     lines.append("")
     for table in dict.fromkeys(row["table"] for row in done.rows):
-        lines += [f"Table {table}: published / computed"]
+        lines += [
+            f"Table {table}: published / computed (power loss: mean of eq. 23 over all impacts)"
+        ]
         lines.append(_line(("beta", "sigma"), _NAMES.values()))
         rows = [row for row in done.rows if row["table"] == table]
         surfaces = dict.fromkeys((row["asperity_radius"], row["rms_height"]) for row in rows)

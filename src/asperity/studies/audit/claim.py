@@ -10,7 +10,6 @@ WRONG = "does not hold"
 MISSING = "not in the text"
 UNEXPLAINED = "not explained"
 OUTSIDE = "outside the model"
-HARMLESS = "without effect here"
 
 
 class Claim(NamedTuple):

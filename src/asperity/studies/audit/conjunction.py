@@ -79,7 +79,7 @@ def _deformation(evidence: Evidence) -> list[Claim]:
             "-",
             f"the motion needs the rigid separation; the pressure of contact moves the surfaces "
             f"by {amount(middle, 'm')} at the axis, {100.0 * middle / depth:.2g} % of the "
-            f"{amount(depth, 'm')} past the edge. The tables are met without that",
+            f"{amount(depth, 'm')} past the edge, which the case `published` leaves out",
             either(middle < 0.01 * depth, AGREES, WRONG),
         ),
         Claim(

@@ -14,7 +14,7 @@ from ...laws.published import EQ_10, EQ_17
 from ...materials import contact_modulus
 from ...special import height_integral
 from ...summary import amount
-from ..evidence import Evidence, first
+from ..evidence import PRINTED, Evidence, first
 from ..refit import WITHIN
 from .claim import AGREES, OUTSIDE, WRONG, Claim, close, either
 
@@ -77,13 +77,13 @@ def _polynomials(evidence: Evidence) -> list[Claim]:
         else f"has a decrement of {decrement:.3g}"
     )
     edge = evidence.wet_inputs.conjunction_ends
-    fitted, worst = evidence.printed_inputs, evidence.printed_off
+    worst = evidence.printed_off
     published = evidence.published.values["log_decrement"]
     assert published is not None
     other = ""
     if all(worst[name] <= limit for name, limit in WITHIN.items()):
         other = (
-            f". With an end at {fitted.conjunction_ends:.4g} and other inputs the printed "
+            f". With an end at {PRINTED.conjunction_ends:.4g} and other inputs the printed "
             f"polynomials give the decrements within {100.0 * worst['log_decrement']:.1f} % and "
             f"the stiction times within {100.0 * worst['stiction_time']:.1f} %: the tables do not "
             "tell which were used"

@@ -14,7 +14,10 @@ from ..refit import WITHIN
 from .claim import AGREES, MISSING, OUTSIDE, REPRODUCED, UNEXPLAINED, WRONG, Claim, close, either
 
 SLIP = 75e-9
-"""Slip length of air at ambient pressure on both surfaces [m]."""
+"""Slip length of air at ambient pressure on both surfaces [m]: 1.15 mean free paths.
+
+Where molecules are reflected diffusely (Cercignani 1988).
+"""
 
 
 def claims(evidence: Evidence) -> list[Claim]:
