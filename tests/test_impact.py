@@ -11,7 +11,7 @@ from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, RigidContact, SmoothContact
 from asperity.errors import Outcome, Tolerance
 from asperity.impact import Body, simulate
-from asperity.impact.motion import ENDS
+from asperity.impact.history import ENDS
 from asperity.interface import Interface
 from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
 from asperity.measures import measure

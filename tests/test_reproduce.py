@@ -17,8 +17,10 @@ from asperity.errors import InputError
 from asperity.plots import publication
 from asperity.records import REPRODUCTION_FILES
 from asperity.studies import report
+from asperity.studies.comparison import problems_of
+from asperity.studies.refit import Inputs, Refit
 from asperity.studies.reproduce import Reproduction, reproduce
-from asperity.studies.tables import read_tables
+from asperity.studies.tables import Entry, read_tables
 
 HEADER = (
     "table,asperity_radius_nm,rms_height_nm,stiction_time_us,power_loss_1e-4_nW,log_decrement\n"
@@ -390,6 +392,18 @@ def test_a_power_loss_needs_an_impact_time(tmp_path: Path):
     assert done.found["rms"] is None
     (claim,) = [c for c in done.audit if c["claim"] == "The decrements of the tables"]
     assert claim["found"] == "1 of them have none by the model"
+
+
+def test_a_number_that_is_met_exactly_is_met():
+    row = {
+        "quantity": "log_decrement", "asperity_radius": 1e-9, "rms_height": 1e-9,
+        "published": 0.5, "computed": 0.5, "relative_difference": 0.0,
+    }  # fmt: skip
+    entry = Entry(2, 1e-9, 1e-9, {"log_decrement": 0.5, "stiction_time": 1e-4, "power_loss": None})
+    fitted = Refit(Inputs(3.0, 4e-8, 4.0), 0.0, Inputs(0.0, 0.0, 0.0), np.eye(3), [])
+    assert problems_of(fitted, [entry], [row]) == []
+    (problem,) = problems_of(fitted, [entry], [{**row, "relative_difference": 0.031}])
+    assert "log_decrement at 1, 1 nm (off by +3 %)" in problem
 
 
 def test_refit_of_too_few_numbers_changes_nothing(tmp_path: Path, monkeypatch):

@@ -13,7 +13,7 @@ from ._jax import jax, jnp
 from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import end_of_contact
-from .impact.motion import ENDS
+from .impact.history import ENDS
 from .program import kept
 
 

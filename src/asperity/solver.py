@@ -16,7 +16,7 @@ from .conversion import Flight, result_of
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
-from .impact.motion import ENDS, FLYING
+from .impact.history import ENDS, FLYING
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row
 from .program import Program

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .contact.base import Contact
-from .impact.motion import Impacts
+from .impact.history import Impacts
 from .impact.table import CENTRAL, FORCE, Table, quantities
 
 _POINTS = 240

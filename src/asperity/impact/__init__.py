@@ -1,6 +1,7 @@
 """The equation of motion of one body that falls, touches and rebounds."""
 
-from .motion import Body, Impacts, Limits, Motion, Progress, fly, prepare, simulate, start
+from .history import Body, Impacts, Limits, Motion, Progress
+from .motion import fly, prepare, simulate, start
 from .table import Table, tabulate
 
 __all__ = [

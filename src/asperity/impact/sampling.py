@@ -9,7 +9,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..program import Program
-from .motion import Body, Impacts, Phase
+from .history import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
 from .polynomials import chebyshev_sum, local
 from .table import RATE, RISE, Pieces, Table, join, read_row

@@ -1,0 +1,176 @@
+"""What moves, how it can end, and what is kept of a motion: its phases and impacts."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import equinox as eqx
+
+from .._jax import jax, jnp
+from ..contact.base import Memory
+from ..errors import Outcome, Tolerance
+from ..laws.base import Real, quantity
+from ..program import kept
+from .datum import Datum
+from .table import Pieces, Table
+
+FLYING = -1
+ENDS = (
+    Outcome.REST,
+    Outcome.OSCILLATING,
+    Outcome.ESCAPED,
+    Outcome.TIME_LIMIT,
+    Outcome.MAX_IMPACTS,
+    Outcome.FAILED,
+)
+"""Outcomes in the order of their codes in :class:`Progress`."""
+
+
+class Body(eqx.Module):
+    """What moves, and how it starts.
+
+    Parameters
+    ----------
+    mass
+        Mass [kg].
+    gravity
+        Acceleration towards the surface [m/s^2], 0 or more.
+    release
+        Rigid separation at time 0 [m].
+    speed
+        Speed towards the surface at time 0 [m/s], 0 or more.
+    """
+
+    mass: Real = quantity()
+    gravity: Real = quantity()
+    release: Real = quantity()
+    speed: Real = quantity(0.0)
+
+    @property
+    def weight(self) -> jax.Array:
+        """Weight [N]."""
+        return self.mass * self.gravity
+
+    @property
+    def kinetic(self) -> jax.Array:
+        """Kinetic energy at the release [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+
+@kept
+class Phase(NamedTuple):
+    """What a monotone phase started from; enough to draw it again."""
+
+    start: jax.Array
+    stop: jax.Array
+    kinetic: jax.Array
+    begun: jax.Array
+    branch: jax.Array
+    inner: Pieces
+    lost: jax.Array
+    bonds: jax.Array
+
+
+class Limits(NamedTuple):
+    """Ends of a motion as traced values: rest, time limit [s], largest number of impacts."""
+
+    rest: jax.Array
+    time: jax.Array
+    impacts: jax.Array
+
+    @classmethod
+    def of(cls, tolerance: Tolerance) -> Limits:
+        """The limits of a tolerance."""
+        return cls(
+            jnp.asarray(tolerance.rest, dtype=jnp.float64),
+            jnp.asarray(tolerance.time_limit, dtype=jnp.float64),
+            jnp.asarray(tolerance.max_impacts),
+        )
+
+
+@kept
+class Progress(NamedTuple):
+    """A motion at the turning point before its next impact."""
+
+    memory: Memory
+    place: jax.Array
+    kinetic: jax.Array
+    time: jax.Array
+    lost: jax.Array
+    bonds: jax.Array
+    first: jax.Array
+    impact_energy: jax.Array
+    outcome: jax.Array
+    made: jax.Array
+
+
+@kept
+class Impacts(NamedTuple):
+    """One row an impact; rows after the last have ``made`` False.
+
+    Attributes
+    ----------
+    made
+        Whether the impact took place.
+    deepest, apex
+        Rigid separations [m] of the turning points; the apex of a body that escapes is
+        the end of the table.
+    deepest_time, apex_time
+        Times [s].
+    mechanical
+        Kinetic, potential and stored energy at the apex [J].
+    force
+        Contact force at the deepest point [N].
+    touching, bonds
+        Expected asperities in contact, and bonds by law, at the deepest point.
+    lost
+        Energy lost by law until the apex, since the release [J].
+    closure
+        Largest change of the sum of all energies since the release [J].
+    pull_work
+        Work of the attractive parts on the way out [J], as in the publication's eq. 23.
+    fastest
+        Largest kinetic energy on the way in [J].
+    fall, rise
+        The two phases.
+    """
+
+    made: jax.Array
+    deepest: jax.Array
+    apex: jax.Array
+    deepest_time: jax.Array
+    apex_time: jax.Array
+    mechanical: jax.Array
+    force: jax.Array
+    touching: jax.Array
+    bonds: jax.Array
+    lost: jax.Array
+    closure: jax.Array
+    pull_work: jax.Array
+    fastest: jax.Array
+    fall: Phase
+    rise: Phase
+
+
+class Motion(NamedTuple):
+    """A whole motion.
+
+    Attributes
+    ----------
+    impacts
+        One row an impact.
+    end
+        Where it ended.
+    table
+        The contact's outermost branches.
+    datum
+        Static equilibrium and the end of contact.
+    release
+        Mechanical energy at the release [J].
+    """
+
+    impacts: Impacts
+    end: Progress
+    table: Table
+    datum: Datum
+    release: jax.Array
