@@ -24,7 +24,7 @@ from asperity.impact import simulate
 from asperity.measures import measure
 from asperity.studies.evidence import PRINTED
 
-from . import published_method
+from . import laws, published_method
 from .plain_scipy import Drop, fly
 
 PROGRAM = Path(sys.executable).with_name("asperity")
@@ -43,6 +43,7 @@ def main() -> None:
     _one_motion(wet)
     _batch(wet)
     _half_space()
+    _laws()
     _publication()
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     _line("peak memory of this run", f"{peak:.2f} GB", "1.5 GB")
@@ -204,6 +205,12 @@ def _half_space() -> None:
         f"{rate:.1f}",
         "50",
     )
+
+
+def _laws() -> None:
+    """Each law over Hertz with DMT."""
+    for what, ratios in laws.rows():
+        _line(what, ratios, "2.00")
 
 
 def _publication() -> None:

@@ -78,30 +78,39 @@ BAD = [
     ('deformation = "half-space"', 'deformation = "rigit"', "must be one of 'half-space' or "
      "'rigid'; got 'rigit' - did you mean 'rigid'?"),
     ('model = "dmt"', "", "adhesion.model"),
-    ('model = "dmt"', 'model = "dtm"', "`model` must be one of 'none', 'bradley', 'dmt' or 'jkr'; "
-     "got 'dtm' - did you mean 'dmt'?"),
+    ('model = "dmt"', 'model = "dtm"', "`model` must be one of 'none', 'auto', 'bradley', 'dmt', "
+     "'maugis' or 'jkr'; got 'dtm' - did you mean 'dmt'?"),
     ('model = "dmt"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
     ('model = "dmt"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "dmt"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
     ('work = "30 mJ/m^2"', "", "adhesion.work (line 32): `work` must be given with model = 'dmt'"),
     ('range = "0.2 nm"', "", "`range` must be given with model = 'dmt'"),
-    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 46): `humidity` must lie in "
-     "[0, 1); got 1.2"),
+    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 48): `humidity` must lie in "
+     "[0, 1]; got 1.2"),
+    ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',
+     "got 'argom' - did you mean 'argon'?"),
+    ("# [gas]", '[gas]\nviscosity = "18 uPa s"', "`slip_length` must be given with `viscosity`"),
+    ("# [gas]", '[gas]\nname = "air"\nviscosity = "18 uPa s"',
+     "`viscosity` must not be given beside `name`"),
+    ("# [gas]", '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "50 K"',
+     "gas.temperature"),
+    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "60 nm"',
+     "`closest_gap` must be smaller than `release_gap` (60 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
     ("[adhesion]", "[publication]\n[adhesion]", "counterface.deformation (line 19): `deformation` "
      "must be 'rigid' with a [publication] table, which replaces the other models; got "
      "'half-space'"),
-    ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1); got -0.1"),
+    ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1]; got -0.1"),
     ("humidity = 0.6", "humidity = nan", "`humidity` must be finite; got nan"),
-    ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1); got '60 %'"),
-    ("humidity = 0.6", "humidity = true", "`humidity` must be a number in [0, 1); got True"),
+    ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1]; got '60 %'"),
+    ("humidity = 0.6", "humidity = true", "`humidity` must be a number in [0, 1]; got True"),
     ("humidity = 0.6", "", "`humidity` must be given with model = 'equilibrium'"),
-    ('"73 deg"', '"120 deg"', "capillary.contact_angle (line 48): `contact_angle` must lie in "
+    ('"73 deg"', '"120 deg"', "capillary.contact_angle (line 50): `contact_angle` must lie in "
      "[0, 90) deg with menisci"),
     ('"73 deg"', '"300 deg"', "`contact_angle` must lie in [0, 180] deg; got '300 deg'"),
     ('"73 deg"', '"-1 deg"', "`contact_angle` must lie in [0, 180] deg; got '-1 deg'"),
     ('liquid = "water"', 'liquid = "watr"', "got 'watr' - did you mean 'water'?"),
-    ('"20 degC"', '"200 degC"', "capillary.temperature (line 47): `temperature` must lie in "
+    ('"20 degC"', '"200 degC"', "capillary.temperature (line 49): `temperature` must lie in "
      "[273.15 K, 373.15 K]"),
     ('"20 degC"', '"-300 degC"', "`temperature` must lie in [1, 10000] K; got '-300 degC'"),
     ('release_gap = "60 nm"', "", "`release_gap` or `speed` must be given; got neither"),

@@ -30,12 +30,14 @@ def solved():
 
 def test_there_is_an_example_for_each_question():
     assert CASES == [
+        "drop-in-air",
         "dry-drop",
         "fast-impact",
         "jkr-bounce",
         "jkr-stick",
         "published-exact",
         "wet-drop",
+        "wet-surface",
     ]
 
 
@@ -74,6 +76,25 @@ def test_wet_drop_comes_to_rest_captured_by_menisci(solved):
     assert measures["restitution"][0] == pytest.approx(0.922199, abs=1e-5)
     assert measures["stiction_time"] == pytest.approx(8.164e-3, rel=1e-3)
     assert set(result.ledger["lost"]) == {"capillary"}
+
+
+def test_air_takes_most_of_the_drop_in_air(solved):
+    result = solved("drop-in-air")
+    assert result.outcome is Outcome.REST
+    assert result.regime["adhesion_law"] == "dmt"
+    assert result.measures["restitution"][0] == pytest.approx(0.7508, abs=1e-4)
+    assert result.measures["stiction_time"] == pytest.approx(2.56e-3, rel=1e-3)
+    lost = result.ledger["lost"]
+    assert lost["gas"] == pytest.approx(0.857 * result.ledger["initial"], rel=1e-3)
+    assert lost["capillary"] < 1e-3 * lost["gas"]
+
+
+def test_water_between_asperities_is_said_and_takes_most_energy(solved):
+    result = solved("wet-surface")
+    assert result.regime["wetting"] == "coalesced"
+    assert result.measures["restitution"][0] == pytest.approx(0.99681, abs=1e-5)
+    share = result.ledger["lost"]["capillary"] / result.ledger["initial"]
+    assert share == pytest.approx(0.714, abs=1e-3)
 
 
 def test_dry_drop_loses_nothing(solved):

@@ -192,14 +192,14 @@ def test_first_page_shows_the_same_python_as_the_readme():
 @pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/cli.md"])
 def test_commands_named_in_the_pages_exist(page: str):
     shown = "\n".join(blocks(ROOT / page, "console") + blocks(ROOT / page, "text"))
-    named = set(re.findall(r"^(?:\$ )?asperity (\w+)", shown, re.MULTILINE))
+    named = set(re.findall(r"^(?:\$ )?asperity ([\w-]+)", shown, re.MULTILINE))
     assert named
     assert named <= command_names()
 
 
 def test_every_command_is_documented():
     page = (ROOT / "docs" / "cli.md").read_text()
-    headings = set(re.findall(r"^## asperity (\w+)$", page, re.MULTILINE))
+    headings = set(re.findall(r"^## asperity ([\w-]+)$", page, re.MULTILINE))
     assert headings == command_names()
 
 

@@ -3,12 +3,15 @@
 import dataclasses
 import json
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import asperity
 from asperity import InputError, Outcome, SimulationError, solver
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
 
 CHANGES = {"counterface.deformation": "rigid", "numerics.max_impacts": 5}
 
@@ -165,3 +168,13 @@ def test_a_ledger_that_does_not_close_is_said(case, monkeypatch):
     open_ = solver.solve(wide)
     assert open_.ledger["closure"] > 1e-6
     assert any("ledger" in line for line in open_.warnings)
+
+
+@pytest.mark.parametrize("speed", ["0.1 m/s", "2 m/s"])
+def test_a_rebound_of_many_millimetres_is_resolved_within_nanometres(speed):
+    """A smooth JKR sphere of 1 um under gravity, whose bond ends within 3 nm."""
+    bounce = asperity.load(str(EXAMPLES / "jkr-bounce.toml"))
+    thrown = bounce.replace({"impact.gravity": "9.81 m/s^2", "impact.speed": speed})
+    found = solver.solve(thrown)
+    assert found.outcome in (Outcome.REST, Outcome.OSCILLATING)
+    assert found.ledger["closure"] < 1e-10

@@ -13,15 +13,18 @@ from .case.build import Problem
 from .contact import Contact
 from .errors import Outcome
 from .impact import Body, Motion
-from .impact.datum import Datum
+from .impact.datum import Datum, end_of_contact
 from .impact.sampling import Series, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, quantities
+from .impact.trajectory import Trajectory
 from .measures import Measures, measure
 from .program import Program
 from .result import Result
-from .validity import AtDepth, warnings_of
+from .validity import AtDepth, slow_menisci, warnings_of
+from .wetness import Wetting, wetting_regime
 
 _measure = Program(measure)
+_end_of_contact = Program(end_of_contact)
 
 
 class Flight(NamedTuple):
@@ -30,17 +33,36 @@ class Flight(NamedTuple):
     motion: Motion
     contact: Contact
     outcome: Outcome
+    trajectory: Trajectory | None = None
 
 
-def _padded(motion: Motion, body: Body) -> Measures:
+def _padded(flight: Flight, body: Body) -> Measures:
     """Measures over a power of two of rows: few shapes, so few compilations."""
+    motion = flight.motion
     rows = motion.impacts.made.shape[0]
     size = max(16, 1 << (rows - 1).bit_length())
 
     def pad(leaf: Any) -> Any:
         return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
 
-    return _measure(motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts)), body)
+    passing = None
+    if flight.trajectory is not None and body.film is not None:
+        peak = np.max(np.abs(motion.impacts.force))
+        place = float(_end_of_contact(motion.table, peak))
+        passing = jax.tree_util.tree_map(pad, flight.trajectory.passing(place, float(body.mass)))
+    whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
+    return _measure(whole, body, passing)
+
+
+def _sampled(case: Case, flight: Flight, body: Body) -> tuple[Series, dict[str, np.ndarray]]:
+    """A motion as a time series, and the energy lost by mechanism along it."""
+    motion, contact, drawn = flight.motion, flight.contact, flight.trajectory
+    limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
+    if drawn is not None:
+        kept = drawn.until(limit)
+        return kept.series, _by_name(contact, body, kept.lost)
+    series = until(sample(body, motion.table, motion.impacts), limit)
+    return series, _losses_along(contact, motion, body, series)
 
 
 def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result:
@@ -57,13 +79,11 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
     """
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
-    measures = _padded(motion, body)
-    series = sample(body, motion.table, motion.impacts)
-    if case.numerics.time_limit is not None:
-        series = until(series, case.numerics.time_limit)
+    measures = _padded(flight, body)
+    series, lost = _sampled(case, flight, body)
     at_depth = AtDepth.of(flight.contact, motion)
     regime = _regime(case, problem, at_depth)
-    forces, energies = _histories(flight.contact, motion, body, series)
+    forces, energies = _histories(flight.contact, motion, body, series, lost)
     impacts = motion.impacts
     return Result(
         case=case,
@@ -77,8 +97,11 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
         energies=energies,
         regime=regime._asdict(),
         measures=_plain(measures, made),
-        ledger=_ledger(flight.contact, motion, float(body.weight), made),
-        warnings=warnings_of(case, problem, regime, at_depth, motion),
+        ledger=_ledger(flight.contact, motion, body, made),
+        warnings=[
+            *warnings_of(case, problem, regime, at_depth, motion),
+            *slow_menisci(problem, series),
+        ],
         events={
             name: np.asarray(values)[:made]
             for name, values in (
@@ -89,6 +112,59 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
             )
         },
     )
+
+
+class Assessment(NamedTuple):
+    """Which models hold in a case, at the deepest point of its first impact.
+
+    Attributes
+    ----------
+    name
+        What the case is called.
+    regime
+        Its dimensionless numbers.
+    verdicts
+        What each number says, by the number's name.
+    warnings
+        What to know before the case is believed.
+    """
+
+    name: str
+    regime: regimes.Regime
+    verdicts: dict[str, regimes.Verdict]
+    warnings: list[str]
+
+
+def assessment_of(
+    case: Case, name: str, problem: Problem, contact: Contact, motion: Motion
+) -> Assessment:
+    """What a case's numbers say, from a motion of one impact.
+
+    Parameters
+    ----------
+    case, name
+        The case, and what to call it.
+    problem
+        What was built from it.
+    contact, motion
+        The contact that was flown with, and the motion.
+    """
+    at_depth = AtDepth.of(contact, motion)
+    regime = _regime(case, problem, at_depth)
+    rough, liquid = case.roughness, case.liquid
+    situation = regimes.Situation(
+        regime=regime,
+        rough=rough is not None,
+        tip_radius=problem.tip_radius,
+        spacing=None if rough is None else rough.asperity_density**-0.5,
+        touching=at_depth.touching,
+        kelvin_radius=case.liquid_radius,
+        molecule_size=None if liquid is None else liquid.molecule_size,
+        bounded=case.liquid_radius < case.kelvin_radius,
+        on_tips=case.capillary.model != "kelvin-filling" or rough is None,
+    )
+    warnings = warnings_of(case, problem, regime, at_depth, motion)
+    return Assessment(name, regime, regimes.verdicts(situation), warnings)
 
 
 def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
@@ -108,11 +184,32 @@ def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
         elastic = at_depth.elastic
         load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)
     elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
-    return regimes.Regime(tabor, elasticity, plasticity, load, adhesion.model)
+    wetting = _wetting(case, problem, at_depth)
+    return regimes.Regime(
+        tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
+        wetting.regime, wetting.reason,
+    )  # fmt: skip
+
+
+def _wetting(case: Case, problem: Problem, at_depth: AtDepth) -> Wetting:
+    rough = case.roughness
+    rms = 0.0 if rough is None else case.capillary.surface_rms_height or rough.rms_height
+    return wetting_regime(
+        radius=case.liquid_radius,
+        span=case.liquid_span,
+        tip_radius=problem.tip_radius,
+        spacing=None if rough is None else rough.asperity_density**-0.5,
+        central=at_depth.central,
+        rms_height=rms,
+    )
 
 
 def _histories(
-    contact: Contact, motion: Motion, body: Body, series: Series
+    contact: Contact,
+    motion: Motion,
+    body: Body,
+    series: Series,
+    losses: dict[str, np.ndarray],
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Forces and energies along the motion."""
     layout = quantities(contact)
@@ -123,18 +220,23 @@ def _histories(
     forces["contact"] = rows[:, FORCE]
     forces["weight"] = np.full(len(rows), -weight)
     forces["total"] = rows[:, FORCE] - weight
+    if body.film is not None:
+        forces["gas"] = -np.asarray(body.film.drag(rows[:, CENTRAL])) * series.speed
+        forces["total"] = forces["total"] + forces["gas"]
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
         "potential": weight * (series.separation - _zero_height(motion.datum)),
         "stored": rows[:, STORED],
     }
-    for name, lost in _losses_along(contact, motion, series).items():
+    for name, lost in losses.items():
         energies[f"lost_{name}"] = lost
     return forces, energies
 
 
-def _losses_along(contact: Contact, motion: Motion, series: Series) -> dict[str, np.ndarray]:
-    """Energy lost by mechanism at every sample, from the bonds made and broken until then."""
+def _losses_along(
+    contact: Contact, motion: Motion, body: Body, series: Series
+) -> dict[str, np.ndarray]:
+    """Energy lost by mechanism at every sample: by bonds made and broken until then, and gas."""
     formation, rupture = (np.asarray(x) for x in contact.losses())
     bonds = series.rows[:, quantities(contact).bonds]
     impact, rising = series.phase // 2, series.phase % 2 == 1
@@ -142,9 +244,16 @@ def _losses_along(contact: Contact, motion: Motion, series: Series) -> dict[str,
     begun = np.where(rising[:, None], rise.bonds[impact], fall.bonds[impact])
     lost = np.where(rising[:, None], rise.lost[impact], fall.lost[impact])
     change = bonds - begun
-    lost = lost + np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
+    laws = len(contact.mechanisms)
+    lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
+    lost[:, laws:] += series.heat[:, None]
+    return _by_name(contact, body, lost)
+
+
+def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
+    """Losses by mechanism, those of one name together."""
     out: dict[str, np.ndarray] = {}
-    for k, name in enumerate(contact.mechanisms):
+    for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
         out[name] = out.get(name, 0.0) + lost[:, k]
     return out
 
@@ -155,10 +264,12 @@ def _zero_height(datum: Datum) -> float:
     return at_rest if np.isfinite(at_rest) else 0.0
 
 
-def _ledger(contact: Contact, motion: Motion, weight: float, made: int) -> dict[str, Any]:
+def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str, Any]:
     """Energy at the release, lost by mechanism, and how well all of it adds up."""
+    weight = float(body.weight)
     lost: dict[str, float] = {}
-    for name, value in zip(contact.mechanisms, motion.impacts.lost[made - 1], strict=True):
+    names = (*contact.mechanisms, *body.mechanisms)
+    for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
     impact_energy = float(motion.impacts.fastest[0])
     closure = float(np.max(motion.impacts.closure[:made])) / impact_energy

@@ -12,8 +12,10 @@ from typing import NamedTuple
 from ._jax import jax, jnp
 from .errors import Outcome
 from .impact import Body, Motion
+from .impact.damping import kinetic_at
 from .impact.datum import end_of_contact
-from .impact.history import ENDS
+from .impact.history import ENDS, Phase
+from .impact.table import join
 from .program import kept
 
 
@@ -61,8 +63,20 @@ class Measures(NamedTuple):
     reference: jax.Array
 
 
-def measure(motion: Motion, body: Body) -> Measures:
-    """Measures of a motion; see :class:`Measures`."""
+Passing = tuple[jax.Array, jax.Array]
+"""Kinetic energies [J] at the end of contact on the way in and out, per impact."""
+
+
+def measure(motion: Motion, body: Body, passing: Passing | None = None) -> Measures:
+    """Measures of a motion; see :class:`Measures`.
+
+    Parameters
+    ----------
+    motion, body
+        The motion, and what moved.
+    passing
+        For a motion in gas that was stepped in time: its energies at the end of contact.
+    """
     rows, datum, end = motion.impacts, motion.datum, motion.end
     peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
     reference = end_of_contact(motion.table, peak)
@@ -75,23 +89,24 @@ def measure(motion: Motion, body: Body) -> Measures:
     top = body.release + jnp.where(
         falls, body.kinetic / jnp.where(falls, body.weight, 1.0), jnp.inf * (body.kinetic > 0)
     )
-    apex = jnp.where(gone, jnp.nan, jnp.where(rows.made, rows.apex, jnp.nan))
+    rebounds = rows.made & (rows.apex > rows.deepest)  # a body that creeps to rest has none
+    apex = jnp.where(gone, jnp.nan, jnp.where(rebounds, rows.apex, jnp.nan))
     height = apex - datum.equilibrium
     before = _shift(height, top - datum.equilibrium)
     fits = jnp.logical_and(jnp.isfinite(before), height > 0.0)
-    ratio = jnp.where(fits, before, 1.0) / jnp.where(fits, height, 1.0)
-    decrement = jnp.where(fits, jnp.log(ratio), jnp.nan)
+    decrement = jnp.log(jnp.where(fits, before, 1.0) / jnp.where(fits, height, 1.0))
 
     duration = rows.apex_time - _shift(rows.apex_time, 0.0)
     period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(gone)), duration, jnp.nan)
-    total_lost = jnp.sum(rows.lost, axis=1)
-    lost = total_lost - _shift(total_lost, 0.0)
-    captures = jnp.logical_and(rows.made, jnp.logical_and(rows.apex < reference, ~gone))
+    total = jnp.sum(rows.lost, axis=1)
+    captures = _captures(motion, body, reference, gone)
     rests = end.outcome == ENDS.index(Outcome.REST)
-    captured = jnp.where(outside, jnp.any(captures), rests)
+    seen = jnp.logical_and(outside, jnp.any(captures))
+    damped = jnp.asarray(body.film is not None)
+    captured = jnp.where(jnp.logical_and(outside, ~damped), seen, jnp.logical_or(seen, rests))
     first = jnp.argmax(captures)
     stiction = jnp.where(rests, end.time, jnp.nan)
-    capture_time = jnp.where(outside, rows.deepest_time[first], stiction)
+    capture_time = jnp.where(seen, rows.deepest_time[first], stiction)
     safe = jnp.where(jnp.isfinite(period), period, 1.0)
     blank = jnp.where(jnp.isfinite(period), 1.0, jnp.nan)
     return Measures(
@@ -100,10 +115,10 @@ def measure(motion: Motion, body: Body) -> Measures:
         capture_time=jnp.where(captured, capture_time, jnp.nan),
         stiction_time=stiction,
         rebound_height=height,
-        restitution=_restitution(motion, body, reference, outside, gone),
-        log_decrement=decrement,
+        restitution=_restitution(motion, body, reference, outside, gone, captures, passing),
+        log_decrement=jnp.where(fits, decrement, jnp.nan),
         impact_time=period,
-        power_loss=lost / safe * blank,
+        power_loss=(total - _shift(total, 0.0)) / safe * blank,
         power_loss_published=rows.pull_work / safe * blank,
         reference=jnp.where(outside, reference, jnp.nan),
     )
@@ -114,13 +129,46 @@ def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
     return jnp.concatenate([jnp.asarray(first, dtype=jnp.float64)[None], values[:-1]])
 
 
+def _captures(motion: Motion, body: Body, reference: jax.Array, gone: jax.Array) -> jax.Array:
+    """Whether a rebound stays within the contact, per impact.
+
+    Gas alone may keep one within its reach: that is no capture, and the static equilibrium
+    counts in place of the end of contact.
+    """
+    rows = motion.impacts
+    held = reference if body.film is None else jnp.fmin(reference, motion.datum.equilibrium)
+    return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
+
+
+def _passing(motion: Motion, body: Body, place: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Kinetic energies [J] at a place outside contact, on the way in and out, per impact."""
+
+    def passing(phase: Phase, parting: bool) -> jax.Array:
+        way = jnp.asarray(parting)
+        pieces = join(motion.table, phase.branch, phase.inner, phase.start, way)
+        return kinetic_at(body, pieces, phase.kinetic, way, place)
+
+    rows = motion.impacts
+    return (
+        jax.vmap(lambda phase: passing(phase, False))(rows.fall),
+        jax.vmap(lambda phase: passing(phase, True))(rows.rise),
+    )
+
+
 def _restitution(
-    motion: Motion, body: Body, reference: jax.Array, outside: jax.Array, gone: jax.Array
+    motion: Motion,
+    body: Body,
+    reference: jax.Array,
+    outside: jax.Array,
+    gone: jax.Array,
+    captures: jax.Array,
+    passing: Passing | None,
 ) -> jax.Array:
     """sqrt(E_out / E_in), E the energy above a body at rest at the end of contact.
 
     A body released within the reach of the contact has no such place on its path: there E
-    counts from the static equilibrium. The impact that captures has 0, later ones NaN.
+    counts from the static equilibrium. The impact that captures has 0, later ones NaN, and so
+    has a rebound that gas alone keeps from coming back there.
     """
     rows = motion.impacts
     weight = body.weight
@@ -129,11 +177,19 @@ def _restitution(
     )
     after = rows.mechanical - zero
     before = _shift(after, motion.release - zero)
+    if body.film is not None:
+        # Gas takes energy beyond the reference too: count what passes there.
+        kinetic_in, kinetic_out = passing or _passing(motion, body, reference)
+        before = jnp.where(outside, kinetic_in, before)
+        after = jnp.where(outside, kinetic_out, after)
     back = jnp.logical_or(rows.apex >= reference, gone)
     counts = jnp.logical_or(back, jnp.logical_not(outside))
     usable = jnp.logical_and(jnp.logical_and(before > 0.0, after > 0.0), counts)
     ratio = jnp.where(usable, after, 1.0) / jnp.where(usable, before, 1.0)
     free_before = jnp.logical_or(_shift(counts.astype(float), 1.0) > 0.5, ~outside)
-    otherwise = jnp.where(jnp.logical_and(outside, free_before), 0.0, jnp.nan)
+    ends = jnp.logical_and(outside, free_before)
+    if body.film is not None:
+        ends = jnp.logical_and(ends, captures)
+    otherwise = jnp.where(ends, 0.0, jnp.nan)
     value = jnp.where(usable, jnp.sqrt(jnp.where(usable, ratio, 1.0)), otherwise)
     return jnp.where(rows.made, value, jnp.nan)

@@ -8,6 +8,7 @@ package, the versions of JAX, and the structure and shapes of the arguments.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import hashlib
 import os
@@ -81,7 +82,9 @@ class Program(Generic[P, Answer]):
             lowered, held.lowered = held.lowered, None
         if lowered is not None:
             if aside:
-                threading.Thread(target=held.make, args=(lowered,), daemon=True).start()
+                thread = threading.Thread(target=held.make, args=(lowered,), daemon=True)
+                _compiling.append(thread)
+                thread.start()
             else:
                 held.make(lowered)
         return held
@@ -105,6 +108,16 @@ class Program(Generic[P, Answer]):
             exported = jax.export.export(traced)(shapes)
             _write(file, exported.serialize())
         return jax.jit(exported.call, compiler_options=_OPTIONS).lower(shapes)
+
+
+_compiling: list[threading.Thread] = []
+
+
+@atexit.register
+def _finish() -> None:
+    """Let XLA end what it compiles aside: an interpreter that ends before is aborted."""
+    for thread in _compiling:
+        thread.join()
 
 
 class _Held:

@@ -12,11 +12,13 @@ from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem, build
 from .contact import Contact
-from .conversion import Flight, result_of
+from .conversion import Assessment, Flight, assessment_of, result_of
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
+from .impact.delayed import fly as fly_late
 from .impact.history import ENDS, FLYING
+from .impact.legs import Ended
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row
 from .program import Program
@@ -64,14 +66,18 @@ def solve(
     problem = build(case)
     tell(0.02, "force curves")
     limits = Limits.of(case.tolerance)
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits)
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, drawn=True)
     _check_release(problem, table)
-    flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
+    if problem.late is None:
+        flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
+    else:
+        flight = _fly_late(problem, contact, (table, datum), limits, tell, stop)
     tell(0.9, "measures")
     result = result_of(case, name, problem, flight)
     tell(1.0, "done")
     if flight.outcome is Outcome.FAILED and throw:
-        raise SimulationError("the motion left the tabulated separations", result)
+        damped = " or the gas film damps it too strongly to be followed" * (case.gas is not None)
+        raise SimulationError(f"the motion left the tabulated separations{damped}", result)
     return result
 
 
@@ -84,6 +90,8 @@ def curve(
 ) -> Curve:
     """Force against separation, approaching to the depth of the case's first impact and back.
 
+    So slowly that all menisci have the time to form, whatever time they take.
+
     Parameters
     ----------
     case, name, progress, stop
@@ -95,28 +103,64 @@ def curve(
         As :func:`solve`.
     """
     tell = progress or (lambda fraction, text: None)
-    problem = build(case)
     tell(0.1, "force curves")
-    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits)
-    _check_release(problem, table)
-    body = problem.body
-    first, origin = _start(contact, body, table)
-    _, impacts = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
+    contact, motion = _first_impact(case, build(case))
     tell(0.6, "parting")
-    drawn = trace(contact, table, impacts)
+    drawn = trace(contact, motion.table, motion.impacts)
     tell(1.0, "done")
     return Curve(case, name, **drawn)
 
 
-def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Contact, Table, Datum]:
+def assess(
+    case: Case,
+    *,
+    name: str = "case",
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+) -> Assessment:
+    """Which models hold in a case, by the depth of its first impact.
+
+    Parameters
+    ----------
+    case, name, progress, stop
+        As for :func:`solve`; one impact is too short to be stopped half-way.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    tell = progress or (lambda fraction, text: None)
+    tell(0.1, "first impact")
+    problem = build(case)
+    contact, motion = _first_impact(case, problem)
+    tell(1.0, "done")
+    return assessment_of(case, name, problem, contact, motion)
+
+
+def _first_impact(case: Case, problem: Problem) -> tuple[Contact, Motion]:
+    """The contact with its curves, and the motion as far as the first impact."""
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, drawn=False)
+    _check_release(problem, table)
+    body = problem.body
+    first, origin = _start(contact, body, table)
+    progress, rows = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
+    impacts = jax.tree_util.tree_map(np.asarray, rows)
+    return contact, Motion(impacts, progress, table, datum, origin)
+
+
+def _prepared(
+    problem: Problem, tolerance: float, limits: Limits, *, drawn: bool
+) -> tuple[Contact, Table, Datum]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
-    Meanwhile the motion compiles.
+    Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
     for factor in _REFINEMENTS:
         contact = problem.contact.refined(factor)
-        _compile(contact, problem.body, limits)
+        if problem.late is None or not drawn:
+            _compile(contact, problem.body, limits, drawn=drawn)
         table, datum = _prepare(contact, problem.body)
         if float(table.error) <= tolerance:
             break
@@ -134,12 +178,13 @@ def _prepared(problem: Problem, tolerance: float, limits: Limits) -> tuple[Conta
     return contact, table, datum
 
 
-def _compile(contact: Contact, body: Body, limits: Limits) -> None:
-    """Compile the curves, the motion and its drawing side by side."""
+def _compile(contact: Contact, body: Body, limits: Limits, *, drawn: bool) -> None:
+    """Compile the curves, the motion and, where wanted, its drawing side by side."""
     table, datum = _prepare.ahead(contact, body)
     progress, origin = _start.ahead(contact, body, table)
     _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
-    compile_ahead(body, table, impacts)
+    if drawn:
+        compile_ahead(body, table, impacts)
 
 
 _prepare = Program(prepare)
@@ -195,3 +240,26 @@ def _fly(
     code = int(progress.outcome)
     outcome = Outcome.INTERRUPTED if code == FLYING else ENDS[code]
     return Flight(Motion(impacts, progress, table, datum, origin), contact, outcome)
+
+
+def _fly_late(
+    problem: Problem,
+    contact: Contact,
+    prepared: tuple[Table, Datum],
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion with menisci that take time to form, step by step."""
+    assert problem.late is not None
+
+    def made(count: int) -> None:
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+
+    try:
+        motion, trajectory, outcome = fly_late(
+            contact, problem.late, problem.body, prepared, limits, made, stop
+        )
+    except Ended as error:
+        raise SimulationError("stopped before the first impact") from error
+    return Flight(motion, contact, outcome, trajectory)

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from asperity.regimes import LAW_NAMES
+
 if TYPE_CHECKING:
     from asperity.result import Curve, Result
 
@@ -19,14 +21,6 @@ _PREFIXES = {
     0: "", 3: "k", 6: "M", 9: "G", 12: "T",
 }  # fmt: skip
 
-_ADHESION_LAWS = {
-    "none": "none",
-    "hertz": "Hertz",
-    "bradley": "Bradley",
-    "dmt": "DMT",
-    "jkr": "JKR",
-    "maugis": "Maugis-Dugdale",
-}
 _COLUMNS = (
     ("height", "rebound_height", "m"),
     ("restitution", "restitution", ""),
@@ -86,8 +80,9 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
             *_section("Regime", _regime(result.regime)),
+            *_chosen(result.regime),
             *_impacts(result.measures, None),
-            *_warnings(result.warnings),
+            *warning_lines(result.warnings),
             *_provenance(made),
             "",
         ]
@@ -108,8 +103,9 @@ def brief(result: Result) -> str:
             f"{result.name}: {result.outcome.value}",
             *_wrapped(result.outcome.message),
             *_section("", rows),
+            *_chosen(result.regime),
             *_impacts(result.measures, FEW),
-            *_warnings(result.warnings),
+            *warning_lines(result.warnings),
         ]
     )
 
@@ -148,14 +144,32 @@ def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
 def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for name, value in regime.items():
+        if name.endswith("_reason"):
+            continue
         if isinstance(value, str):
-            text = _ADHESION_LAWS.get(value.lower(), value)
+            text = LAW_NAMES.get(value.lower(), value)
         elif isinstance(value, bool):
             text = "yes" if value else "no"
         else:
             text = amount(value)
         rows.append((name.replace("_", " ").replace("tabor", "Tabor"), text))
     return rows
+
+
+def _chosen(regime: dict[str, Any]) -> list[str]:
+    """Which law the program chose, and the state of the liquid, each with its reason.
+
+    Nothing where the case names the law, and where it is dry.
+    """
+    lines: list[str] = []
+    reason, wetting = regime.get("adhesion_reason"), regime.get("wetting")
+    if reason is not None:
+        law = LAW_NAMES[regime["adhesion_law"]]
+        lines += ["", *_wrapped(f"Adhesion law chosen: {law}. {reason}.")]
+    if wetting not in (None, "dry"):
+        why = regime["wetting_reason"]
+        lines += ["", *_wrapped(f"Liquid: {wetting}, since {why}.")]
+    return lines
 
 
 def _curve(curve: Curve) -> list[tuple[str, str]]:
@@ -212,7 +226,8 @@ def _section(title: str, rows: Sequence[tuple[str, str]]) -> list[str]:
     return [*head, *(f"  {label:<26}{text}" for label, text in rows)]
 
 
-def _warnings(warnings: Sequence[str]) -> list[str]:
+def warning_lines(warnings: Sequence[str]) -> list[str]:
+    """Warnings as a list under a heading; no lines where there are none."""
     if not warnings:
         return []
     lines = ["", "Warnings"]

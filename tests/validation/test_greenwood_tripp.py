@@ -1,5 +1,6 @@
 """Load of an elastic rough sphere at a given central separation (Greenwood and Tripp 1967)."""
 
+from functools import cache
 from math import sqrt
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from asperity.interface import Interface
 from asperity.laws import Hertz
 from asperity.roughness import Gaussian
 from asperity.shapes import Sphere
+from figures import Figure
 
 FILE = Path(__file__).parent.parent / "data" / "greenwood_tripp.csv"
 ROWS = np.genfromtxt(FILE, delimiter=",", comments="#", skip_header=4)
@@ -25,8 +27,8 @@ def state(contact, separation):
     return contact.state(separation, contact.fresh())
 
 
-@pytest.mark.parametrize(("mu", "central", "load"), ROWS)
-def test_load_at_a_central_separation(mu, central, load):
+@cache
+def figure(mu, central, load):
     density = 3.0 / 8.0 * mu / (SIGMA * sqrt(2.0 * RADIUS * BETA))
     layer = Interface(Hertz(BETA, E), Gaussian(SIGMA), density)
     contact = ElasticContact(layer, Sphere(RADIUS), E)
@@ -37,7 +39,18 @@ def test_load_at_a_central_separation(mu, central, load):
     d = brentq(miss, central - 40.0, central, xtol=1e-10)
     force = float(state(contact, jnp.asarray(d * SIGMA)).force)
     unit = 2.0 * RADIUS * SIGMA * E * sqrt(SIGMA / (8.0 * RADIUS))
-    assert force / unit == pytest.approx(load, rel=2e-4)
+    problem = f"rough elastic sphere, mu {mu:g}: load at central separation {central:g} rms"
+    source = "two independent programs, after Greenwood and Tripp (1967)"
+    return Figure(problem, source, load, force / unit, "", 2e-4)
+
+
+def figures():
+    return [figure(*row) for row in ROWS]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_load_at_a_central_separation(row):
+    assert figure(*row).holds
 
 
 def test_all_published_loads_are_read():

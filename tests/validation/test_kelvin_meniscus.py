@@ -10,32 +10,59 @@ from asperity.interface import Interface
 from asperity.laws import ByKelvinGap, Meniscus
 from asperity.materials import Liquid, kelvin_radius
 from asperity.roughness import Gaussian
+from figures import Figure
 
 WATER = Liquid("water", tension=0.075, molar_volume=1.805e-5, source="the publication's Table 1")
 ANGLE = radians(73.0)
 
 
-@pytest.mark.parametrize(("humidity", "radius"), [(0.5, 0.801e-9), (0.9, 5.27e-9), (0.99, 55.3e-9)])
-def test_kelvin_radius_of_water(humidity, radius):
-    assert kelvin_radius(WATER, humidity, 293.15) == pytest.approx(radius, rel=1e-3)
+RADII = {0.5: 0.801, 0.9: 5.27, 0.99: 55.3}  # nm
+HUMIDITIES = (0.3, 0.6, 0.95)
 
 
-@pytest.mark.parametrize("humidity", [0.3, 0.6, 0.95])
+def radius(humidity):
+    found = kelvin_radius(WATER, humidity, 293.15) * 1e9
+    problem, source = f"Kelvin radius of water, {humidity:.0%} humidity", "Kelvin's equation, apart"
+    return Figure(problem, source, RADII[humidity], found, "nm", 1e-3)
+
+
+def touch(humidity):
+    r_k = kelvin_radius(WATER, humidity, 293.15)
+    found = float(Meniscus(50e-6, 0.075, ANGLE, r_k, ByKelvinGap()).force(jnp.asarray(0.0)))
+    problem = f"meniscus at touch, {humidity:.0%} humidity"
+    known = -4.0 * pi * 50e-6 * 0.075 * cos(ANGLE)
+    return Figure(problem, "-4 pi R gamma cos(angle)", known, found, "N", 1e-13)
+
+
+def work():
+    law = Meniscus(50e-6, 0.075, ANGLE, 1e-9)
+    found = float(-law.bonded_force(jnp.asarray(0.0))) / (2.0 * pi * 50e-6)
+    problem = "meniscus: work of wet separation"
+    return Figure(problem, "2 gamma cos(angle)", 2.0 * 0.075 * cos(ANGLE), found, "J/m^2", 1e-13)
+
+
+def figures():
+    return [*map(radius, RADII), *map(touch, HUMIDITIES), work()]
+
+
+@pytest.mark.parametrize("humidity", RADII)
+def test_kelvin_radius_of_water(humidity):
+    assert radius(humidity).holds
+
+
+@pytest.mark.parametrize("humidity", HUMIDITIES)
 def test_capillary_force_does_not_depend_on_humidity_but_its_range_does(humidity):
     """4 pi R gamma cos(theta) at touch; zero at the Kelvin gap 2 r_k cos(theta)."""
     r_k = kelvin_radius(WATER, humidity, 293.15)
     law = Meniscus(50e-6, 0.075, ANGLE, r_k, ByKelvinGap())
-    touch = float(law.force(jnp.asarray(0.0)))
-    assert touch == pytest.approx(-4.0 * pi * 50e-6 * 0.075 * cos(ANGLE), rel=1e-13)
+    assert touch(humidity).holds
     assert float(law.reach) == pytest.approx(2.0 * r_k * cos(ANGLE), rel=1e-14)
     assert float(law.force(law.reach * 1.000001)) == 0.0
 
 
 def test_work_of_wet_separation_is_twice_the_tension_times_the_cosine():
     """Derjaguin: the pull at touch is 2 pi R times the work per area, 2 gamma cos(theta)."""
-    law = Meniscus(50e-6, 0.075, ANGLE, 1e-9)
-    work = float(-law.bonded_force(jnp.asarray(0.0))) / (2.0 * pi * 50e-6)
-    assert work == pytest.approx(2.0 * 0.075 * cos(ANGLE), rel=1e-13)
+    assert work().holds
 
 
 def banded(h, sigma, density, law, bands):

@@ -1,45 +1,81 @@
 """Where the sphere of the publication rests, by the exact model."""
 
-import pytest
+from functools import cache
+
+import equinox as eqx
 
 import asperity
 from asperity._jax import jnp
 from asperity.case.build import build
 from asperity.impact import prepare
 from asperity.materials import contact_modulus
+from figures import Figure, misses
+
+SOURCE = "independent computation"
 
 
-@pytest.fixture(scope="module")
+@eqx.filter_jit
+def equilibrium(contact, body):
+    return prepare(contact, body)[1].equilibrium
+
+
+@cache
 def dry():
     changes = {"counterface.deformation": "rigid", "capillary.model": "none"}
     return asperity.load("published-exact").replace(changes)
 
 
-def test_contact_modulus_of_table_1(dry):
-    modulus = contact_modulus(dry.body_solid, dry.counterface_solid)
-    assert modulus == pytest.approx(56.814e9, rel=1e-4)
+def modulus():
+    found = contact_modulus(dry().body_solid, dry().counterface_solid)
+    problem = "published case: contact modulus of its Table 1"
+    return Figure(problem, SOURCE, 56.814, found * 1e-9, "GPa", 1e-4)
 
 
-def test_sphere_rests_on_its_highest_asperities(dry):
-    """At 45.9 nm, lambda' = 4.37."""
-    problem = build(dry)
-    rest = float(prepare(problem.contact, problem.body)[1].equilibrium)
-    assert rest * 1e9 == pytest.approx(45.9, abs=0.05)
-    assert rest / dry.roughness.rms_height == pytest.approx(4.37, abs=0.005)
+@cache
+def resting():
+    """Where it rests, 45.9 nm or lambda' = 4.37; how many asperities touch; what bears it."""
+    problem = build(dry())
+    rest = equilibrium(problem.contact, problem.body)
+    at_rest = problem.contact.state(rest, problem.contact.fresh())
+    reduced = float(rest) / dry().roughness.rms_height
+    weight, force = float(problem.body.weight), float(at_rest.force)
+    touching = float(at_rest.touching)
+    return (
+        Figure("published case, dry: rests at", SOURCE, 45.9, float(rest) * 1e9, "nm", 0.05 / 45.9),
+        Figure("published case, dry: rests at", SOURCE, 4.37, reduced, "rms", 0.005 / 4.37),
+        Figure("published case, dry: touch at rest", SOURCE, 0.07, touching, "", 0.005 / 0.07),
+        Figure("published case, dry: force at rest", "weight", weight, force, "N", 1e-8),
+    )
 
 
-def test_fewer_than_one_asperity_touches_at_rest_on_average(dry):
-    problem = build(dry)
-    rest = prepare(problem.contact, problem.body)[1].equilibrium
-    found = problem.contact.state(rest, problem.contact.fresh())
-    assert float(found.touching) == pytest.approx(0.07, abs=0.005)
-    assert float(found.force) == pytest.approx(float(problem.body.weight), rel=1e-8)
-
-
-def test_dry_adhesion_is_negligible_beside_contact(dry):
-    """About 1 nN against a contact force of 4.9 uN at lambda' = 3."""
-    problem = build(dry)
+@cache
+def at_three():
+    """Adhesion of about 1 nN against a contact force of 4.9 uN at lambda' = 3."""
+    problem = build(dry())
     found = problem.contact.state(jnp.asarray(3.0 * 10.5e-9), problem.contact.fresh())
-    parts = dict(zip(problem.contact.components, found.parts, strict=True))
-    assert float(parts["elastic"]) == pytest.approx(4.9e-6, rel=0.01)
-    assert float(-parts["adhesion"]) == pytest.approx(1e-9, rel=0.1)
+    parts = dict(zip(problem.contact.components, map(float, found.parts), strict=True))
+    contact, pull = parts["elastic"] * 1e6, -parts["adhesion"] * 1e9
+    return (
+        Figure("published case, dry: contact force at 3 rms", SOURCE, 4.9, contact, "uN", 0.01),
+        Figure("published case, dry: adhesion at 3 rms", SOURCE, 1.0, pull, "nN", 0.1),
+    )
+
+
+def figures():
+    return [modulus(), *resting(), *at_three()]
+
+
+def test_contact_modulus_of_table_1():
+    assert modulus().holds
+
+
+def test_sphere_rests_on_its_highest_asperities():
+    assert not misses(resting()[:2])
+
+
+def test_fewer_than_one_asperity_touches_at_rest_on_average():
+    assert not misses(resting()[2:])
+
+
+def test_dry_adhesion_is_negligible_beside_contact():
+    assert not misses(at_three())

@@ -1,5 +1,6 @@
 """Force on a rigid rough sphere: the integral of F_n over the paraboloid."""
 
+from functools import cache
 from math import pi
 
 import numpy as np
@@ -12,6 +13,7 @@ from asperity.laws import Dmt, Hertz
 from asperity.roughness import Gaussian
 from asperity.shapes import Sphere
 from asperity.special import height_integral
+from figures import Figure, misses
 
 RADIUS, BETA, SIGMA, E, W, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 0.03, 1.69e16
 
@@ -30,21 +32,35 @@ def test_integral_over_the_paraboloid_raises_the_order(order, reduced):
     assert found == pytest.approx(2.0 * pi * RADIUS * SIGMA * raised, rel=1e-9)
 
 
-@pytest.mark.parametrize("reduced", [-1.0, 0.0, 2.0])
-def test_force_of_hertz_and_dmt_asperities(reduced):
+TABLE = {
+    -1.0: (2.755502, 1.083315),
+    0.0: (0.6166342, 0.3989423),
+    2.0: (5.423705e-3, 8.490703e-3),
+}
+
+
+@cache
+def forces(reduced):
     """F_5/2 and F_1 from the sourced table, each with its prefactor."""
-    table = {
-        -1.0: (2.755502, 1.083315),
-        0.0: (0.6166342, 0.3989423),
-        2.0: (5.423705e-3, 8.490703e-3),
-    }
     contact = RigidContact(
         Interface(Hertz(BETA, E) + Dmt(BETA, W), Gaussian(SIGMA), N), Sphere(RADIUS)
     )
     found = contact.state(jnp.asarray(reduced * SIGMA), contact.fresh())
     around = 2.0 * pi * RADIUS * SIGMA * N
-    repulsion = around * 4.0 / 3.0 * E * np.sqrt(BETA) * SIGMA**1.5 * table[reduced][0] / 2.5
-    pull = -around * 2.0 * pi * BETA * W * table[reduced][1]
+    repulsion = around * 4.0 / 3.0 * E * np.sqrt(BETA) * SIGMA**1.5 * TABLE[reduced][0] / 2.5
+    pull = -around * 2.0 * pi * BETA * W * TABLE[reduced][1]
     parts = dict(zip(contact.components, np.asarray(found.parts), strict=True))
-    assert parts["elastic"] == pytest.approx(repulsion, rel=1e-6)
-    assert parts["adhesion"] == pytest.approx(pull, rel=1e-6)
+    problem, source = f"rigid rough sphere at {reduced:g} rms", "height integrals tabulated apart"
+    return (
+        Figure(f"{problem}: elastic", source, repulsion, parts["elastic"], "N", 1e-6),
+        Figure(f"{problem}: adhesion", source, pull, parts["adhesion"], "N", 1e-6),
+    )
+
+
+def figures():
+    return [figure for reduced in TABLE for figure in forces(reduced)]
+
+
+@pytest.mark.parametrize("reduced", TABLE)
+def test_force_of_hertz_and_dmt_asperities(reduced):
+    assert not misses(forces(reduced))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from math import pi
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,22 +14,31 @@ from ..contact import (
     RigidContact,
     SmoothContact,
 )
+from ..contact.late import LATE, LateContact
+from ..film import SqueezeFilm
 from ..impact import Body
 from ..interface import Interface
 from ..laws import (
     Bradley,
     ByContact,
     ByKelvinGap,
+    ConstantVolume,
     Dmt,
     HeightFunctions,
     Hertz,
     Jkr,
+    KelvinFilling,
     Law,
+    Maugis,
     Meniscus,
     PublishedPressure,
 )
 from ..laws.base import Sum
+from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
+from ..laws.meniscus import Formation
+from ..layers import Layers, Surfaces
 from ..materials import contact_modulus
+from ..regimes import AdhesionChoice, choose_adhesion, tabor_number
 from ..roughness import Gaussian
 from ..shapes import Sphere
 
@@ -54,12 +64,18 @@ class Problem(NamedTuple):
         Contact modulus E* [Pa].
     tip_radius
         Radius [m] of one asperity, or of the smooth body.
+    adhesion
+        The law of adhesion in use, and why where the program chose it.
+    late
+        The contact with menisci that take time to form; None where they form at once.
     """
 
     contact: Contact
     body: Body
     modulus: float
     tip_radius: float
+    adhesion: AdhesionChoice
+    late: LateContact | None = None
 
 
 def build(case: Case) -> Problem:
@@ -73,14 +89,14 @@ def build(case: Case) -> Problem:
     modulus = contact_modulus(case.body_solid, case.counterface_solid)
     rough = case.roughness
     tip = case.body.radius if rough is None else rough.asperity_radius
+    adhesion = _adhesion(case, tip, modulus)
     contact: Contact
     if rough is None:
-        contact = SmoothContact(_law(case, tip, modulus))
+        contact = SmoothContact(_law(case, adhesion.law, tip, modulus))
     elif case.publication is not None:
         contact = _published(case, rough, case.publication, modulus)
     else:
-        law = _law(case, tip, modulus)
-        interface = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
+        interface = _interface(case, rough, adhesion.law, modulus)
         shape = Sphere(case.body.radius)
         if case.counterface.deformation == "rigid":
             contact = RigidContact(interface, shape)
@@ -91,8 +107,49 @@ def build(case: Case) -> Problem:
     if release is None:
         release = float(contact.reach) + CLEARANCE
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    body = Body(mass, impact.gravity, release, impact.speed or 0.0)
-    return Problem(contact, body, modulus, tip)
+    body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case))
+    return Problem(contact, body, modulus, tip, adhesion, _late(case, contact))
+
+
+def _late(case: Case, contact: Contact) -> LateContact | None:
+    """The contact with the formation time of its menisci, if they take any."""
+    time = case.capillary.formation_time
+    if not time or LATE not in contact.mechanisms:
+        return None
+    assert isinstance(contact, RigidContact | SmoothContact)
+    return LateContact(contact, time)
+
+
+def _interface(case: Case, rough: Roughness, adhesion: str, modulus: float) -> Surfaces:
+    """Asperities between two planes, and liquid on the surface if it is not on them."""
+    law = _law(case, adhesion, rough.asperity_radius, modulus)
+    asperities = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
+    air, liquid = case.capillary, case.liquid
+    if air.model != "kelvin-filling" or liquid is None or case.liquid_radius == 0.0:
+        return asperities
+    angle = _given(air.contact_angle)
+    filling = KelvinFilling(liquid.tension, angle, case.liquid_radius, _formation(case))
+    return Layers((asperities, Interface(filling, Gaussian(_given(air.surface_rms_height)), 1.0)))
+
+
+def _adhesion(case: Case, tip: float, modulus: float) -> AdhesionChoice:
+    """The law of adhesion that the case names, or the one that holds where it leaves the choice."""
+    given = case.adhesion
+    if given.model != "auto":
+        return AdhesionChoice(given.model)
+    return choose_adhesion(tabor_number(tip, _given(given.work), modulus, _given(given.range)))
+
+
+def _film(case: Case) -> SqueezeFilm | None:
+    """The gas in the gap; None in a vacuum."""
+    gas = case.gas
+    if gas is None:
+        return None
+    closest = gas.closest_gap
+    if closest is None:
+        assert case.roughness is not None
+        closest = case.roughness.rms_height
+    return SqueezeFilm(case.body.radius, gas.film_viscosity, gas.film_slip_length, closest)
 
 
 def _published(
@@ -123,24 +180,41 @@ def _published(
     )
 
 
-def _law(case: Case, tip: float, modulus: float) -> Law:
+def _law(case: Case, model: str, tip: float, modulus: float) -> Law:
     """The laws of one asperity, side by side."""
     laws: list[Law] = []
     adhesion = case.adhesion
-    if adhesion.model == "jkr":
+    if model == "jkr":
         laws.append(Jkr(tip, modulus, _given(adhesion.work)))
+    elif model == "maugis":
+        laws.append(Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.range)))
     else:
         laws.append(Hertz(tip, modulus))
-        if adhesion.model == "dmt":
+        if model == "dmt":
             laws.append(Dmt(tip, _given(adhesion.work)))
-        elif adhesion.model == "bradley":
+        elif model == "bradley":
             laws.append(Bradley(tip, _given(adhesion.work), _given(adhesion.range)))
-    liquid, kelvin_radius = case.liquid, case.kelvin_radius
-    if liquid is not None and kelvin_radius > 0.0:
-        angle = _given(case.capillary.contact_angle)
-        formation = ByContact() if case.capillary.formation == "contact" else ByKelvinGap()
-        laws.append(Meniscus(tip, liquid.tension, angle, kelvin_radius, formation))
+    laws += _menisci(case, tip)
     return laws[0] if len(laws) == 1 else Sum(laws)
+
+
+def _menisci(case: Case, tip: float) -> list[Law]:
+    """The meniscus of one asperity, or of the smooth body; none where liquid is on the surface."""
+    air, liquid, liquid_radius = case.capillary, case.liquid, case.liquid_radius
+    if liquid is None or liquid_radius == 0.0:
+        return []
+    angle = _given(air.contact_angle)
+    if air.model == "constant-volume":
+        bridge = ConstantVolume(tip, liquid.tension, angle, liquid_radius)
+        tested = float(bridge.volume) <= EDGE_HOLDS * tip**3 and angle <= EDGE_ANGLE
+        return [dataclasses.replace(bridge, edge=tested)]
+    if air.model == "kelvin-filling" and case.roughness is not None:
+        return []
+    return [Meniscus(tip, liquid.tension, angle, liquid_radius, _formation(case))]
+
+
+def _formation(case: Case) -> Formation:
+    return ByContact() if case.capillary.formation == "contact" else ByKelvinGap()
 
 
 def _given(value: float | None) -> float:

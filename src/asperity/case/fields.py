@@ -70,13 +70,10 @@ class Number:
         The interval in words of mathematics, e.g. ``"(-1, 0.5]"``.
     whole : bool
         Whether it must be a whole number.
-    said : str
-        The interval to name in messages, where a rule between keys narrows it.
     """
 
     interval: str
     whole: bool = False
-    said: str = ""
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -96,13 +93,12 @@ class Number:
         name = info.field_name or "value"
         kind = "a whole number" if self.whole else "a number"
         allowed = int if self.whole else (int, float)
-        interval = self.said or self.interval
         if isinstance(value, bool) or not isinstance(value, allowed):
-            raise InputError(f"`{name}` must be {kind} in {interval}; got {shown(value)}")
+            raise InputError(f"`{name}` must be {kind} in {self.interval}; got {shown(value)}")
         if isinstance(value, float) and not math.isfinite(value):
             raise InputError(f"`{name}` must be finite; got {shown(value)}")
         if not self.holds(value):
-            raise InputError(f"`{name}` must lie in {interval}; got {shown(value)}")
+            raise InputError(f"`{name}` must lie in {self.interval}; got {shown(value)}")
         return value if self.whole else float(value)
 
     def __get_pydantic_core_schema__(
@@ -154,8 +150,11 @@ Tension = Annotated[float, Quantity("N/m", 1e-6, 10.0)]
 MolarVolume = Annotated[float, Quantity("m^3/mol", 1e-7, 1.0)]
 Temperature = Annotated[float, Quantity("K", 1.0, 1e4, rule="must lie in [1, 10000] K")]
 Angle = Annotated[float, Quantity("rad", 1e-9, math.pi, True, "must lie in [0, 180] deg")]
+Pressure = Annotated[float, Quantity("Pa", 1e-6, 1e9)]
+Viscosity = Annotated[float, Quantity("Pa s", 1e-9, 1e3)]
+SlipLength = Annotated[float, Quantity("m", 1e-15, 1.0, zero=True)]
 Speed = Annotated[float, Quantity("m/s", 1e-9, 1e4)]
 Acceleration = Annotated[float, Quantity("m/s^2", 1e-9, 1e9, zero=True)]
 Time = Annotated[float, Quantity("s", 1e-12, 1e9)]
 Poisson = Annotated[float, Number("(-1, 0.5]")]
-Humidity = Annotated[float, Number("[0, 1]", said="[0, 1)")]
+Humidity = Annotated[float, Number("[0, 1]")]

@@ -22,8 +22,8 @@ def _one_model(value: object) -> object:
     several = isinstance(value, list) or (isinstance(value, str) and "+" in value)
     if several:
         raise InputError(
-            "`model` must be one model, since 'bradley', 'dmt' and 'jkr' are the same adhesion "
-            f"and together would count it twice; got {shown(value)}"
+            "`model` must be one model, since 'bradley', 'dmt', 'jkr' and 'maugis' are the same "
+            f"adhesion and together would count it twice; got {shown(value)}"
         )
     if isinstance(value, str) and value.strip().lower() == "hertz":
         raise InputError(
@@ -36,8 +36,12 @@ def _one_model(value: object) -> object:
 class Adhesion(Table):
     """Dry adhesion; without this table there is none."""
 
-    model: Annotated[Literal["none", "bradley", "dmt", "jkr"], BeforeValidator(_one_model)] = entry(
-        "", "Law of one asperity: 'none', 'bradley', 'dmt' or 'jkr'.", "dmt"
+    model: Annotated[
+        Literal["none", "auto", "bradley", "dmt", "maugis", "jkr"], BeforeValidator(_one_model)
+    ] = entry(
+        "",
+        "Law of one asperity: 'none', 'bradley', 'dmt', 'maugis' or 'jkr'; 'auto' chooses.",
+        "dmt",
     )
     work: fields.SurfaceEnergy | None = entry(
         "J/m^2", "Work of adhesion.", "30 mJ/m^2", default=None, shown=True
@@ -59,8 +63,10 @@ class Adhesion(Table):
 class Capillary(Table):
     """Menisci of condensed vapour; without this table there are none."""
 
-    model: Literal["none", "equilibrium"] = entry(
-        "", "Law of one meniscus: 'none' or 'equilibrium' (constant Kelvin radius).", "equilibrium"
+    model: Literal["none", "equilibrium", "constant-volume", "kelvin-filling"] = entry(
+        "",
+        "'none', 'equilibrium' (constant Kelvin radius), 'constant-volume', or 'kelvin-filling'.",
+        "equilibrium",
     )
     formation: Literal["contact", "kelvin"] = entry(
         "",
@@ -77,9 +83,12 @@ class Capillary(Table):
         shown=True,
     )
     humidity: fields.Humidity | None = entry(
-        "1", "Vapour pressure over saturated vapour pressure, in [0, 1).", 0.6, default=None,
+        "1",
+        "Vapour pressure over saturated vapour pressure; 1 needs `film_thickness`.",
+        0.6,
+        default=None,
         shown=True,
-    )  # fmt: skip
+    )
     temperature: fields.Temperature | None = entry(
         "K", "Temperature of liquid and vapour.", "20 degC", default=None, shown=True
     )
@@ -92,12 +101,50 @@ class Capillary(Table):
     molar_volume: fields.MolarVolume | None = entry(
         "m^3/mol", "Molar volume, in place of the catalogue's.", "18.05 cm^3/mol", default=None
     )
+    film_thickness: fields.Length | None = entry(
+        "m",
+        "Adsorbed film on each surface, from which menisci draw: they span no gap wider than both.",
+        "0.5 nm",
+        default=None,
+    )
+    surface_rms_height: fields.Length | None = entry(
+        "m",
+        "Rms height of the surface (not of its summits), for 'kelvin-filling' of rough bodies.",
+        "11 nm",
+        default=None,
+    )
+    formation_time: Annotated[float, fields.Quantity("s", 1e-12, 1e9, zero=True)] | None = entry(
+        "s",
+        "Time that menisci take to form; without it, or at 0, they form at once.",
+        "1 us",
+        default=None,
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if self.model == "none":
             return self
         need(self, ("liquid", "humidity", "temperature", "contact_angle"))
+        if self.model == "constant-volume" and self.formation == "kelvin":
+            raise InputError(
+                "`formation` must be 'contact' with model = 'constant-volume': how much liquid a "
+                "meniscus keeps that formed at the Kelvin gap is not in this model ('equilibrium' "
+                "has it); got 'kelvin'",
+                key="formation",
+            )
+        if self.surface_rms_height is not None and self.model != "kelvin-filling":
+            raise InputError(
+                "`surface_rms_height` must be given with model = 'kelvin-filling' alone, which has "
+                f"no asperities; got model = '{self.model}'",
+                key="surface_rms_height",
+            )
+        if self.formation_time and self.formation == "kelvin":
+            raise InputError(
+                "`formation_time` must be absent with formation = 'kelvin', whose menisci are in "
+                "equilibrium with the vapour at every gap and have no delay; take 'contact'; got "
+                f"{self.formation_time:.6g} s",
+                key="formation_time",
+            )
         assert self.contact_angle is not None
         if self.contact_angle >= math.pi / 2:
             raise InputError(

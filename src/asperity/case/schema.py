@@ -12,6 +12,7 @@ from asperity import materials as catalogue
 from asperity.case import problems, writing
 from asperity.case.bodies import Body, Counterface, Material, Roughness
 from asperity.case.forces import Adhesion, Capillary
+from asperity.case.gas import Gas
 from asperity.case.publication import Publication
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
@@ -42,6 +43,7 @@ class Case(Table):
     roughness: Roughness | None = None
     adhesion: Adhesion = Field(default_factory=lambda: Adhesion(model="none"))
     capillary: Capillary = Field(default_factory=lambda: Capillary(model="none"))
+    gas: Gas | None = Field(None, json_schema_extra={"rare": True})
     impact: Impact
     publication: Publication | None = Field(None, json_schema_extra={"rare": True})
     numerics: Numerics = Field(default_factory=Numerics)
@@ -63,23 +65,78 @@ class Case(Table):
                 )
         if self.publication is not None:
             self._only_what_the_publication_has()
+        self._film_between_ends()
         if self.roughness is None and self.counterface.deformation == "rigid":
             raise InputError(
                 "`deformation` must be 'half-space' without a [roughness] table: a smooth rigid "
                 "body has no elasticity at all; got 'rigid'",
                 key="counterface.deformation",
             )
-        if (
-            self.publication is None
-            and self.capillary.humidity == 1.0
-            and self.capillary.model != "none"
-        ):
+        self._bounded_liquid()
+        self._late_liquid()
+        return self
+
+    def _late_liquid(self) -> None:
+        """Refuse menisci that take time where every place would have a history of its own."""
+        time, rough = self.capillary.formation_time, self.roughness is not None
+        if not time or self.capillary.model == "none" or self.publication is not None:
+            return
+        if rough and self.counterface.deformation != "rigid":
             raise InputError(
-                "`humidity` must lie in [0, 1) (at 1 the Kelvin radius is infinite: menisci would "
-                "reach to any gap); got 1",
+                "`formation_time` must be absent on a rough half-space, where every place moves "
+                "in its own way and would need its own history in time; take deformation = "
+                f"'rigid'; got {time:.6g} s",
+                key="capillary.formation_time",
+            )
+
+    def _film_between_ends(self) -> None:
+        """Refuse a film that has no thinnest or no thickest place."""
+        gas, release = self.gas, self.impact.release_gap
+        if gas is None:
+            return
+        if self.roughness is None and gas.closest_gap is None:
+            raise InputError(
+                "`closest_gap` must be given for a smooth body: a film between smooth surfaces "
+                "that touch would hold them apart for ever; got nothing",
+                key="gas.closest_gap",
+            )
+        if release is None:
+            raise InputError(
+                "`release_gap` must be given with a [gas] table: the film takes energy at every "
+                "separation, and none beyond it is counted; got nothing",
+                key="impact.release_gap",
+            )
+        if gas.closest_gap is not None and gas.closest_gap >= release:
+            raise InputError(
+                f"`closest_gap` must be smaller than `release_gap` ({release * 1e9:.6g} nm), or "
+                f"the film would never thin; got {gas.closest_gap * 1e9:.6g} nm",
+                key="gas.closest_gap",
+            )
+
+    def _bounded_liquid(self) -> None:
+        """Refuse liquid without end, or on a surface that is not described."""
+        air = self.capillary
+        if air.model == "none" or self.publication is not None:
+            return
+        if air.humidity == 1.0 and air.film_thickness is None:
+            raise InputError(
+                "`humidity` must lie in [0, 1) without a `film_thickness` (at 1 the Kelvin radius "
+                "is infinite: menisci would reach to any gap, and only the adsorbed film that they "
+                "draw from bounds them); got 1",
                 key="capillary.humidity",
             )
-        return self
+        if air.model == "kelvin-filling":
+            rough, given = self.roughness is not None, air.surface_rms_height is not None
+            if rough != given:
+                rule = (
+                    "must be given with a [roughness] table"
+                    if rough
+                    else ("must not be given for a smooth body, which has none")
+                )
+                raise InputError(
+                    f"`surface_rms_height` {rule}; got {'nothing' if rough else 'a value'}",
+                    key="capillary.surface_rms_height",
+                )
 
     def _only_what_the_publication_has(self) -> None:
         """Refuse models that a [publication] table leaves no room for."""
@@ -87,17 +144,26 @@ class Case(Table):
             raise InputError(
                 "a [roughness] table must be given with [publication]; got none", key="publication"
             )
+        if self.gas is not None:
+            raise InputError(
+                "[gas] must not be given with a [publication] table, which leaves the gas out",
+                key="gas",
+            )
         wanted = (
             ("counterface.deformation", self.counterface.deformation, ("rigid",)),
             ("adhesion.model", self.adhesion.model, ("dmt", "none")),
+            ("capillary.model", self.capillary.model, ("equilibrium", "none")),
             ("capillary.formation", self.capillary.formation, ("contact",)),
+            ("capillary.formation_time", self.capillary.formation_time, (None,)),
+            ("capillary.film_thickness", self.capillary.film_thickness, (None,)),
         )
         for key, value, allowed in wanted:
             if value not in allowed:
                 name = key.split(".")[1]
+                rule = "absent" if allowed == (None,) else " or ".join(map(repr, allowed))
                 raise InputError(
-                    f"`{name}` must be {' or '.join(map(repr, allowed))} with a [publication] "
-                    f"table, which replaces the other models; got {value!r}",
+                    f"`{name}` must be {rule} with a [publication] table, which replaces the other "
+                    f"models; got {value!r}",
                     key=key,
                 )
 
@@ -132,6 +198,21 @@ class Case(Table):
         if air.humidity == 1.0:
             return math.inf
         return catalogue.kelvin_radius(liquid, air.humidity, air.temperature)
+
+    @property
+    def liquid_radius(self) -> float:
+        """Radius of curvature of the liquid [m]: Kelvin's, or less where its film bounds it."""
+        film, angle = self.capillary.film_thickness, self.capillary.contact_angle
+        kelvin = self.kelvin_radius
+        if film is None or angle is None:
+            return kelvin
+        return min(kelvin, film / math.cos(angle))
+
+    @property
+    def liquid_span(self) -> float:
+        """Largest gap that the liquid bridges [m], twice its radius times cos(contact angle)."""
+        angle = self.capillary.contact_angle
+        return 0.0 if angle is None else 2.0 * self.liquid_radius * math.cos(angle)
 
     @property
     def tolerance(self) -> Tolerance:

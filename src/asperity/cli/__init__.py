@@ -1,4 +1,4 @@
-"""The command line: ``asperity run``, ``curve``, ``reproduce``, ``plot``, ``init``, ``materials``.
+"""The command line: ``asperity run``, ``curve``, ``regime``, ``adhesion-map`` and the rest.
 
 This module imports nothing but typer, so that ``--help`` answers at once; every command imports
 what it needs when it is called.
@@ -103,6 +103,47 @@ def _compute(what: str, case: str, **options: Any) -> None:
 
 
 @app.command()
+def regime(
+    case: CaseName,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
+) -> None:
+    """Say which models hold in a case.
+
+    Dimensionless numbers with a verdict on each, at the depth of the first impact. Writes nothing.
+    """
+    from asperity.cli.regimes import tell_regime
+
+    tell_regime(case, as_json=as_json)
+
+
+@app.command()
+def adhesion_map(
+    cases: Annotated[
+        list[str], typer.Argument(metavar="CASE...", help="As for run.", show_default=False)
+    ],
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.png",
+            help="Picture to write, ./adhesion-map.png unless given.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier map.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Draw the adhesion map with cases on it.
+
+    Writes FILE.png, FILE.svg, and the boundaries and the cases' places as FILE.csv.
+    """
+    from asperity.cli.regimes import draw_map
+
+    draw_map(cases, output=output, force=force, as_json=as_json)
+
+
+@app.command()
 def reproduce(
     output: Folder = None,
     force: Force = False,
@@ -163,7 +204,7 @@ def init(
 def materials(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
 ) -> None:
-    """List solids and liquids with their sources."""
+    """List solids, liquids and gases with their sources."""
     from asperity.cli.listing import list_materials
 
     list_materials(as_json=as_json)

@@ -11,7 +11,8 @@ from typing import Any
 
 from asperity.cli.terminal import tell
 from asperity.errors import InputError, OutputError
-from asperity.materials import LIQUIDS, SOLIDS
+from asperity.gases import ATMOSPHERE, GASES
+from asperity.materials import LIQUIDS, ROOM_TEMPERATURE, SOLIDS
 from asperity.records.layout import plain
 from asperity.summary import WIDTH, amount
 
@@ -51,7 +52,11 @@ def write_template(file: str) -> None:
 def list_materials(*, as_json: bool) -> None:
     """Print the catalogue."""
     if as_json:
-        found = {"solids": _rows(SOLIDS.values()), "liquids": _rows(LIQUIDS.values())}
+        found = {
+            "solids": _rows(SOLIDS.values()),
+            "liquids": _rows(LIQUIDS.values()),
+            "gases": _rows(GASES.values()),
+        }
         tell(json.dumps(found, allow_nan=False))
         return
     lines = ["Solids: Young's modulus, Poisson's ratio, density, hardness", ""]
@@ -71,6 +76,14 @@ def list_materials(*, as_json: bool) -> None:
             _density(liquid.density),
         ]
         lines += _entry(liquid.name, numbers, liquid.source)
+    lines += ["Gases: viscosity, mean free path and slip length at 20 degC and 101.325 kPa", ""]
+    for gas in GASES.values():
+        numbers = [
+            amount(gas.viscosity(ROOM_TEMPERATURE), "Pa s"),
+            amount(gas.free_path(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
+            amount(gas.slip_length(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
+        ]
+        lines += _entry(gas.name, numbers, gas.source)
     tell("\n".join(lines).rstrip())
 
 

@@ -10,9 +10,9 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
-from ..interface import Interface
 from ..interface import Memory as Thresholds
 from ..laws.base import Real, quantity
+from ..layers import Surfaces
 from ..program import kept
 from ..shapes import Sphere
 from .base import Contact, Held, State, Way
@@ -65,7 +65,7 @@ class ElasticContact(Contact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
-    interface: Interface
+    interface: Surfaces
     shape: Sphere
     rings: int = eqx.field(static=True)
     resolved: Resolution = eqx.field(static=True)
@@ -73,7 +73,7 @@ class ElasticContact(Contact):
 
     def __init__(
         self,
-        interface: Interface,
+        interface: Surfaces,
         shape: Sphere,
         modulus: Real,
         rings: int = 80,

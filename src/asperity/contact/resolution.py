@@ -6,7 +6,7 @@ from math import ceil
 from typing import NamedTuple
 
 from .._jax import jax, jnp
-from ..interface import Interface
+from ..layers import Surfaces
 from ..program import Program
 
 
@@ -28,7 +28,7 @@ class Resolution(NamedTuple):
     pieces: int
 
 
-def resolution(interface: Interface, *, deforms: bool) -> Resolution:
+def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.
 
     By the reach of the forces and of the bonds, over the rms height; where these are traced,
@@ -36,21 +36,29 @@ def resolution(interface: Interface, *, deforms: bool) -> Resolution:
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         return Resolution(10, 16, 2)
-    share, beyond = (float(length) for length in _lengths(interface))
+    share, beyond, bends = (float(length) for length in _lengths(interface))
     reach = 9.0 + beyond
     nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
+    pieces = ceil(share / 4.5) or 1
+    if bends > 1.5:
+        nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
     if not deforms:
-        return Resolution(ceil(reach / 2.2), max(nodes, 8), ceil(share / 4.5) or 1)
+        return Resolution(ceil(reach / 2.2), max(nodes, 8), pieces)
     # Rings that lag behind have a piece of their own.
-    return Resolution(ceil(reach / 1.7), nodes, (ceil(share / 4.5) or 1) + (share > 0.1))
+    return Resolution(ceil(reach / 1.7), nodes, pieces + (share > 0.1))
 
 
-def _in_rms(interface: Interface) -> tuple[jax.Array, jax.Array]:
-    """How far a bond stretches and a force reaches, over the rms height."""
+def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """How far a bond stretches and a force reaches, over the rms height.
+
+    And how far a bond stretches over the length on which its force changes.
+    """
     widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
-    width = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
+    widest = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
     rms = interface.heights.rms
-    return width / rms, jnp.maximum(interface.reach, 0.0) / rms
+    bends = [width / law.length for width, law in zip(widths, interface.hysteretic, strict=True)]
+    most = jnp.max(jnp.stack([jnp.zeros(()), *bends]))
+    return widest / rms, jnp.maximum(interface.reach, 0.0) / rms, most
 
 
 _lengths = Program(_in_rms)

@@ -10,8 +10,8 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
-from ..interface import Interface
 from ..interface import Memory as Thresholds
+from ..layers import Surfaces
 from ..shapes import Sphere
 from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
 from .resolution import Resolution, resolution
@@ -40,12 +40,12 @@ class RigidContact(Contact):
     which for Gaussian heights raises the order of each height integral by one.
     """
 
-    interface: Interface
+    interface: Surfaces
     shape: Sphere
     resolved: Resolution = eqx.field(static=True)
 
     def __init__(
-        self, interface: Interface, shape: Sphere, resolved: Resolution | None = None
+        self, interface: Surfaces, shape: Sphere, resolved: Resolution | None = None
     ) -> None:
         self.interface = interface
         self.shape = shape

@@ -13,8 +13,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
-from ..interface import Interface
 from ..interface import Memory as Thresholds
+from ..layers import Surfaces
 from ..shapes import Sphere
 
 _ENOUGH = 1e-12  # relative change left in the separation
@@ -26,7 +26,7 @@ _STEPS = 120
 class Rough(Protocol):
     """What rings are pressed by."""
 
-    interface: Interface
+    interface: Surfaces
     shape: Sphere
     modulus: Any
 

@@ -133,5 +133,5 @@ class SmoothContact(Contact):
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has
-_RUNGS = 24  # panels on each side of a kink
+_RUNGS = 36  # panels on each side of a kink
 _RATIO = 3.0  # of their lengths

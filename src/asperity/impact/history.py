@@ -9,6 +9,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..contact.base import Memory
 from ..errors import Outcome, Tolerance
+from ..film import SqueezeFilm
 from ..laws.base import Real, quantity
 from ..program import kept
 from .datum import Datum
@@ -39,12 +40,20 @@ class Body(eqx.Module):
         Rigid separation at time 0 [m].
     speed
         Speed towards the surface at time 0 [m/s], 0 or more.
+    film
+        The gas that it squeezes; None in a vacuum.
     """
 
     mass: Real = quantity()
     gravity: Real = quantity()
     release: Real = quantity()
     speed: Real = quantity(0.0)
+    film: SqueezeFilm | None = None
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names of the losses that are not the contact's."""
+        return () if self.film is None else ("gas",)
 
     @property
     def weight(self) -> jax.Array:
@@ -124,7 +133,7 @@ class Impacts(NamedTuple):
     touching, bonds
         Expected asperities in contact, and bonds by law, at the deepest point.
     lost
-        Energy lost by law until the apex, since the release [J].
+        Energy lost until the apex, since the release [J]: by law, then in the gas if any.
     closure
         Largest change of the sum of all energies since the release [J].
     pull_work

@@ -9,9 +9,10 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..contact.base import Contact, Held
 from ..errors import Outcome, Tolerance
+from .damping import fall_to_rest
 from .datum import Datum, find_datum
 from .history import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
-from .phase import Turn, look_ahead, pull_work, row_at, travel_time
+from .phase import Turn, in_order, look_ahead, pull_work, row_at, travel_time
 from .table import (
     FORCE,
     SIZE,
@@ -20,13 +21,15 @@ from .table import (
     Table,
     branch_of,
     inner_pieces,
+    join,
     outer_row,
     quantities,
     tabulate,
 )
 from .turning import find_turn
 
-_LEAST_LOSS = 1e-9  # of the impact energy: a cycle that loses less repeats for ever
+LEAST_LOSS = 1e-9
+"""Share of the impact energy: a cycle that loses less repeats for ever."""
 
 
 def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
@@ -53,7 +56,7 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
         place=body.release,
         kinetic=body.kinetic,
         time=zero,
-        lost=jnp.zeros(len(contact.mechanisms)),
+        lost=jnp.zeros(len(contact.mechanisms) + len(body.mechanisms)),
         bonds=row[quantities(contact).bonds],
         first=zero,
         impact_energy=zero,
@@ -130,24 +133,43 @@ class _Leg(NamedTuple):
     time: jax.Array
     bonds: jax.Array
     pull_work: jax.Array
+    crept: jax.Array
+    followed: jax.Array
 
 
 def _leg(
-    contact: Contact, body: Body, table: Table, progress: Progress, parting: jax.Array
+    contact: Contact,
+    body: Body,
+    table: Table,
+    rest: tuple[jax.Array, jax.Array],
+    progress: Progress,
+    parting: jax.Array,
 ) -> tuple[Progress, _Leg]:
-    """One phase down or up, and the bonds that it makes or breaks."""
+    """One phase down or up, and the bonds that it makes or breaks.
+
+    ``rest`` is the equilibrium, and the separation that counts as there [m].
+    """
+    crept, followed = jnp.asarray(False), jnp.asarray(True)
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = branch_of(contact, progress.memory, parting)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
-    turn = find_turn(ahead)
-    time = progress.time + travel_time(ahead, turn, body.mass)
+    if body.film is None:
+        turn, heat = find_turn(ahead), jnp.zeros(0)
+        time = progress.time + travel_time(ahead, turn, body.mass)
+    else:
+        way = join(table, branch, inner, progress.place, parting)
+        goal = jnp.where(parting, jnp.inf, rest[1])
+        passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
+        turn, heat = in_order(ahead, passage.turn), passage.lost[None]
+        crept, followed = passage.crept, passage.followed
+        time = progress.time + passage.duration
     row = row_at(ahead, turn)
     layout = quantities(contact)
     bonds = row[layout.bonds]
     formed = jnp.maximum(bonds - progress.bonds, 0.0)
     broken = jnp.maximum(progress.bonds - bonds, 0.0)
     at_forming, at_breaking = contact.losses()
-    lost = progress.lost + formed * at_forming + broken * at_breaking
+    lost = jnp.concatenate([formed * at_forming + broken * at_breaking, heat]) + progress.lost
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
         progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
@@ -159,7 +181,8 @@ def _leg(
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
     row = row[: layout.components.stop]
-    return after, _Leg(turn, phase, row, lost, time, bonds, -pull_work(ahead, turn))
+    leg = _Leg(turn, phase, row, lost, time, bonds, -pull_work(ahead, turn), crept, followed)
+    return after, leg
 
 
 def _impact(
@@ -172,9 +195,11 @@ def _impact(
     limits: Limits,
 ) -> tuple[Progress, Impacts]:
     """Down to the deepest point and up to the next apex."""
+    resting = datum.equilibrium
+    rest = resting, resting + limits.rest * (body.release - resting)
 
     def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, _Leg]:
-        return _leg(contact, body, table, progress, parting)
+        return _leg(contact, body, table, rest, progress, parting)
 
     # One body of code for both directions: half to compile.
     end, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
@@ -185,14 +210,15 @@ def _impact(
     first = jnp.where(progress.made == 0, height, progress.first)
     energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
-    failed = jnp.logical_not(jnp.logical_and(fall.turn.found, jnp.isfinite(mechanical[1])))
+    sound = fall.turn.found & jnp.all(both.followed) & jnp.isfinite(mechanical[1])
     outcome = _outcome(
         (
-            (failed, Outcome.FAILED),
+            (jnp.logical_not(sound), Outcome.FAILED),
+            (fall.crept, Outcome.REST),
             (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
             (rise.time >= limits.time, Outcome.TIME_LIMIT),
             (height < limits.rest * first, Outcome.REST),
-            (cycle < _LEAST_LOSS * energy, Outcome.OSCILLATING),
+            (cycle < LEAST_LOSS * energy, Outcome.OSCILLATING),
             (progress.made + 1 >= limits.impacts, Outcome.MAX_IMPACTS),
         )
     )

@@ -97,6 +97,14 @@ class Turn(NamedTuple):
     kinetic: jax.Array
 
 
+def in_order(ahead: Ahead, turn: Turn) -> Turn:
+    """A turn whose piece counts along the joined way, with panels counted as the table does."""
+    panels = ahead.table.ends.shape[0] - 1
+    step = turn.piece - ahead.pieces
+    panel = jnp.where(ahead.parting, step, panels - 1 - step)
+    return turn._replace(piece=jnp.where(step < 0, turn.piece, ahead.pieces + panel))
+
+
 def work_along(pieces: Pieces, kinetic: jax.Array, weight: jax.Array) -> Work:
     """Integrate the force along pieces that are entered with a kinetic energy [J]."""
     half = 0.5 * (pieces.high - pieces.low)

@@ -9,6 +9,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..program import Program
+from .damping import cut, follow
 from .history import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
 from .polynomials import chebyshev_sum, local
@@ -27,6 +28,8 @@ class Series(NamedTuple):
         [s], [m] and [m/s], shape (samples,).
     rows
         Quantities of the contact (see :mod:`.table`), shape (samples, rows).
+    heat
+        Energy left in a gas since the phase began [J], shape (samples,).
     phase
         Index of the phase of each sample, two an impact.
     """
@@ -35,6 +38,7 @@ class Series(NamedTuple):
     separation: np.ndarray
     speed: np.ndarray
     rows: np.ndarray
+    heat: np.ndarray
     phase: np.ndarray
 
 
@@ -54,14 +58,17 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         parts.append([np.stack(pair, axis=1)[:count] for pair in zip(*drawn, strict=True)])
     joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
     phase = np.broadcast_to(np.arange(2 * made).reshape(made, 2, 1), joined[0].shape)
-    time, separation, speed, kept = (a.ravel() for a in (*joined[:3], joined[4]))
+    time, separation, speed, heat, kept = (a.ravel() for a in (*joined[:3], *joined[4:]))
     values = joined[3].reshape(time.size, -1)
     keep = kept.astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
-    release = (0.0, body.release, -body.speed, row, 0)
-    rest = (time[keep], separation[keep], speed[keep], values[keep], phase.ravel()[keep])
+    release = (0.0, body.release, -body.speed, row, 0.0, 0)
+    rest = (time, separation, speed, values, heat, phase.ravel())
     return Series(
-        *(np.concatenate([np.asarray(a)[None], b]) for a, b in zip(release, rest, strict=True))
+        *(
+            np.concatenate([np.asarray(a)[None], b[keep]])
+            for a, b in zip(release, rest, strict=True)
+        )
     )
 
 
@@ -100,8 +107,10 @@ _draw = Program(_draw_all)
 def _draw_one(
     body: Body, table: Table, phase: Phase, parting: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
-    """Time, separation, speed, rows and whether to keep, in the order of time."""
+    """Time, separation, speed, rows, heat and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, parting)
+    if body.film is not None:
+        return _draw_damped(body, pieces, phase, parting)
     work = work_along(pieces, phase.kinetic, body.weight)
     ahead = jnp.where(parting, 1.0, -1.0)
     path = _path(pieces, phase, places)
@@ -128,7 +137,27 @@ def _draw_one(
         ends[1:],
         ahead * jnp.sqrt(2.0 * kinetic / body.mass),
         rows,
+        jnp.zeros_like(spans),
         spans != 0.0,
+    )
+
+
+def _draw_damped(
+    body: Body, pieces: Pieces, phase: Phase, parting: jax.Array
+) -> tuple[jax.Array, ...]:
+    """The same through a gas."""
+    passed = cut(pieces, parting, phase.stop)
+    places, times, speeds, heats = follow(body, passed, phase.kinetic)
+    x = local(passed.low[:, None], passed.high[:, None], places)
+    rows = chebyshev_sum(jnp.moveaxis(passed.values, 1, 0)[:, :, None], x[..., None])
+    filled = jnp.broadcast_to((passed.enter != passed.leave)[:, None], places.shape)
+    return (
+        phase.begun + times.ravel(),
+        places.ravel(),
+        jnp.where(parting, 1.0, -1.0) * speeds.ravel(),
+        rows.reshape(places.size, -1),
+        heats.ravel(),
+        filled.ravel(),
     )
 
 

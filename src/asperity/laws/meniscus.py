@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import equinox as eqx
 
@@ -34,7 +34,47 @@ class ByKelvinGap(Formation):
         return reach
 
 
-class Meniscus(Law):
+class Condensed(Law):
+    """Liquid in equilibrium with the vapour, wherever it forms: the gaps between its branches.
+
+    What is one has ``contact_angle``, ``kelvin_radius`` and ``formation``.
+    """
+
+    mechanism: ClassVar[str] = "capillary"
+    counts: ClassVar[frozenset[str]] = frozenset({"capillary"})
+
+    @property
+    def reach(self: Any) -> jax.Array:
+        """Largest gap that it spans, c [m]."""
+        return jnp.asarray(2.0 * self.kelvin_radius * jnp.cos(self.contact_angle))
+
+    @property
+    def hysteretic(self: Any) -> bool:
+        return isinstance(self.formation, ByContact)
+
+    @property
+    def forming_gap(self: Any) -> jax.Array:
+        gap: jax.Array = self.formation.gap(self.reach)
+        return gap
+
+    @property
+    def breaking_gap(self) -> jax.Array:
+        return self.reach
+
+    @property
+    def kinks(self) -> tuple[jax.Array | float, ...]:
+        return (0.0, self.reach)
+
+    def force(self, gap: jax.Array) -> jax.Array:
+        return jnp.where(gap < self.forming_gap, self.bonded_force(gap), 0.0)
+
+    def energy(self, gap: jax.Array) -> jax.Array:
+        """Energy [J]; with :class:`ByContact` the free branch ends where a bond forms."""
+        inside = jnp.where(gap < self.forming_gap, self.bonded_energy(gap), 0.0)
+        return jnp.where(gap < 0.0, self.bonded_energy(gap), inside)
+
+
+class Meniscus(Condensed):
     """Meniscus of constant curvature between a paraboloid and a plane.
 
     Parameters
@@ -63,34 +103,10 @@ class Meniscus(Law):
     kelvin_radius: Real = quantity()
     formation: Formation = ByContact()
 
-    mechanism: ClassVar[str] = "capillary"
-    counts: ClassVar[frozenset[str]] = frozenset({"capillary"})
-
-    @property
-    def reach(self) -> jax.Array:
-        """Largest gap that it spans, c [m]."""
-        return jnp.asarray(2.0 * self.kelvin_radius * jnp.cos(self.contact_angle))
-
     @property
     def pull(self) -> jax.Array:
         """Its largest force [N], at contact."""
         return 4.0 * pi * self.radius * self.tension * jnp.cos(self.contact_angle)
-
-    @property
-    def hysteretic(self) -> bool:
-        return isinstance(self.formation, ByContact)
-
-    @property
-    def forming_gap(self) -> jax.Array:
-        return self.formation.gap(self.reach)
-
-    @property
-    def breaking_gap(self) -> jax.Array:
-        return self.reach
-
-    @property
-    def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (0.0, self.reach)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
         return -self.pull * jnp.clip(1.0 - gap / self.reach, 0.0, 1.0)
@@ -98,14 +114,6 @@ class Meniscus(Law):
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
         left = jnp.clip(1.0 - gap / self.reach, 0.0, 1.0)
         return -self.pull * (0.5 * self.reach * left**2 + jnp.maximum(-gap, 0.0))
-
-    def force(self, gap: jax.Array) -> jax.Array:
-        return jnp.where(gap < self.forming_gap, self.bonded_force(gap), 0.0)
-
-    def energy(self, gap: jax.Array) -> jax.Array:
-        """Energy [J]; with :class:`ByContact` the free branch ends where a bond forms."""
-        inside = jnp.where(gap < self.forming_gap, self.bonded_energy(gap), 0.0)
-        return jnp.where(gap < 0.0, self.bonded_energy(gap), inside)
 
     def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers]:
         c, slope = self.reach, self.pull / self.reach

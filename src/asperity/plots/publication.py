@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from asperity.plots import style
+from asperity.plots import adhesion_map, style
 from asperity.plots.style import Panel, colour
+from asperity.regimes import Frame
 from asperity.studies.drawing import Drawing
 
 _ORDER = ("approach", "parting", "capillary", "apex", "central")
@@ -131,38 +132,16 @@ def _distribution(axes: Axes, drawing: Drawing) -> None:
     style.legend_above(axes)
 
 
-_PLACES = {
-    "Bradley": (0.0045, 1.5),
-    "DMT": (0.033, 6.0),
-    "Maugis-\nDugdale": (0.6, 6.0),
-    "JKR": (25.0, 6.0),
-    "Hertz": (0.15, 2e4),
-}
-
-
 def _map(axes: Axes, drawing: Drawing) -> None:
-    for name, (x, y) in drawing.series.items():
-        if "|" in name:
-            if not name.startswith("Hertz"):
-                limit = np.interp(np.log(x), *_limit(drawing))
-                x, y = x[np.log(y) < limit], y[np.log(y) < limit]
-            axes.plot(x, y, color=colour("contact"), lw=0.8)
+    lines = {name: columns for name, columns in drawing.series.items() if "|" in name}
+    frame = Frame.around([])
+    adhesion_map.draw_lines(axes, lines, frame)
+    adhesion_map.name_regions(axes, frame, [])
     marks = (("closest approach", "o", "motion"), ("at rest, exact model", "^", "parting"))
     for name, mark, tint in marks:
         x, y = drawing.series[name]
         axes.plot(x, y, mark, ms=4.0, mew=0.0, color=colour(tint), label=name)
-    for name, place in _PLACES.items():
-        axes.annotate(name, place, ha="center", va="center", color="#444444", fontsize=7.0)
-    axes.set(xscale="log", yscale="log", xlim=(1e-3, 1e2), ylim=(1e-1, 1e5))
-    axes.set_xlabel("elasticity parameter λ [-]")
-    axes.set_ylabel("load parameter [-]")
     style.legend_above(axes)
-
-
-def _limit(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
-    """The line above which adhesion is negligible, on logarithmic scales."""
-    x, y = drawing.series["Hertz | adhesive"]
-    return np.log(x), np.log(y)
 
 
 def _meniscus(axes: Axes, drawing: Drawing) -> None:

@@ -40,11 +40,13 @@ COLOURS = {
     "elastic": "#0072B2",
     "adhesion": "#D55E00",
     "capillary": "#009E73",
+    "gas": "#CC79A7",
     "kinetic": "#0072B2",
     "potential": "#56B4E9",
     "stored": "#F0E442",
     "lost_adhesion": "#D55E00",
     "lost_capillary": "#009E73",
+    "lost_gas": "#CC79A7",
     "approach": "#0072B2",
     "parting": "#D55E00",
     "lost": "#F5D0B5",
@@ -52,7 +54,7 @@ COLOURS = {
 """Okabe and Ito's colours, which the colour-blind can tell apart; the same thing has the same
 colour in every picture."""
 
-_SPARE = ("#CC79A7", "#444444", "#8C6D31")
+_SPARE = ("#444444", "#8C6D31", "#7F3C8D")
 
 _LOOK: Any = {
     "font.size": 8.0,

@@ -24,7 +24,7 @@ VERSION = 1
 _FORCES = {
     "weight": "weight",
     "contact": "contact force, all mechanisms together",
-    "total": "contact force and weight",
+    "total": "all forces, weight included",
 }
 _ENERGIES = {
     "kinetic": "kinetic energy",

@@ -7,17 +7,13 @@ from math import pi
 import numpy as np
 from scipy.special import ndtr
 
-from ...film import AIR_FREE_PATH, AIR_VISCOSITY, gas_decrement
+from ...film import gas_decrement
+from ...gases import ATMOSPHERE, GASES
+from ...materials import ROOM_TEMPERATURE
 from ...summary import amount
 from ..evidence import Evidence, first
 from ..refit import WITHIN
 from .claim import AGREES, MISSING, OUTSIDE, REPRODUCED, UNEXPLAINED, WRONG, Claim, close, either
-
-SLIP = 75e-9
-"""Slip length of air at ambient pressure on both surfaces [m]: 1.15 mean free paths.
-
-Where molecules are reflected diffusely (Cercignani 1988).
-"""
 
 
 def claims(evidence: Evidence) -> list[Claim]:
@@ -94,21 +90,24 @@ def _wet_over_dry(evidence: Evidence) -> Claim:
 def _gas(evidence: Evidence) -> Claim:
     case, inputs = evidence.case, evidence.wet_inputs
     edge = float(evidence.contact.pressure.end)
+    air = GASES["air"]
+    slip = air.slip_length(ATMOSPHERE, ROOM_TEMPERATURE)
+    path = air.free_path(ATMOSPHERE, ROOM_TEMPERATURE)
     gas, _ = gas_decrement(
         release=inputs.release_gap,
         rebound=edge,
         mass=case.body_density * 4.0 / 3.0 * pi * case.body.radius**3,
         gravity=case.impact.gravity,
         radius=case.body.radius,
-        viscosity=AIR_VISCOSITY,
-        slip_length=SLIP,
+        viscosity=air.viscosity(ROOM_TEMPERATURE),
+        slip_length=slip,
     )
     return Claim(
         "Surface forces and gravity are all that acts on the sphere (section 3.5)",
         "-",
         f"the gas film is left out: alone it gives a decrement of {gas:.2g} in air, by first-order "
-        f"slip ({amount(SLIP, 'm')}), whose range ends at a Knudsen number of 0.1; here it is "
-        f"{AIR_FREE_PATH / edge:.2g}",
+        f"slip ({amount(slip, 'm')}), whose range ends at a Knudsen number of 0.1; here it is "
+        f"{path / edge:.2g}",
         OUTSIDE,
     )
 

@@ -1,0 +1,93 @@
+"""What each law costs beside Hertz with DMT, in one run: values, and whole motions, in batches."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from math import pi
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+
+from asperity._jax import jax, jnp
+from asperity.contact import RigidContact, SmoothContact
+from asperity.errors import Tolerance
+from asperity.film import SqueezeFilm
+from asperity.impact import Body, simulate
+from asperity.interface import Interface
+from asperity.laws import Bradley, ConstantVolume, Dmt, Hertz, Jkr, Law, Maugis, Meniscus
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+
+MODULUS, WORK, SPACING, TENSION, ANGLE = 50e9, 0.05, 0.3e-9, 0.0728, 0.5
+IMPACTS = 3
+FILM = SqueezeFilm(5e-6, 18.2e-6, 75e-9, 1e-9)
+
+LAWS: dict[str, Callable[[float], Law]] = {
+    "Hertz + DMT": lambda r: Hertz(r, MODULUS) + Dmt(r, WORK),
+    "Hertz + Bradley": lambda r: Hertz(r, MODULUS) + Bradley(r, WORK, SPACING),
+    "JKR": lambda r: Jkr(r, MODULUS, WORK),
+    "Maugis-Dugdale": lambda r: Maugis(r, MODULUS, WORK, SPACING),
+    "Hertz + meniscus": lambda r: Hertz(r, MODULUS) + Meniscus(r, TENSION, ANGLE, 1e-9),
+    "Hertz + bridge": lambda r: Hertz(r, MODULUS) + ConstantVolume(r, TENSION, ANGLE, 1e-9),
+}
+
+
+def _seconds(action: Callable[[], Any], repeats: int = 5) -> float:
+    jax.block_until_ready(action())
+    times = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        jax.block_until_ready(action())
+        times.append(time.perf_counter() - begun)
+    return min(times)
+
+
+def _values(make: Callable[[float], Law]) -> float:
+    """Forces of the bonded branch at 1e5 gaps."""
+    law = make(50e-9)
+    gaps = jnp.linspace(-20e-9, 2e-9, 100_000)
+    force = eqx.filter_jit(
+        lambda gaps: sum(part.bonded_force(gaps) for part in getattr(law, "parts", (law,)))
+    )
+    return _seconds(lambda: force(gaps))
+
+
+def _smooth(make: Callable[[float], Law], film: SqueezeFilm | None = None) -> float:
+    """200 motions of a smooth sphere of 5 um, at speeds from 0.1 to 1 m/s."""
+    contact = SmoothContact(make(5e-6))
+    return _motions(contact, 5e-6, jnp.linspace(0.1, 1.0, 200), film)
+
+
+def _rough(make: Callable[[float], Law]) -> float:
+    """20 motions of a rough sphere of 20 um."""
+    plane = Interface(make(50e-9), Gaussian(2e-9), 1e14)
+    return _motions(RigidContact(plane, Sphere(20e-6)), 20e-6, jnp.linspace(1e-3, 1e-2, 20))
+
+
+def _motions(
+    contact: Any, radius: float, speeds: jax.Array, film: SqueezeFilm | None = None
+) -> float:
+    mass = 2000.0 * 4.0 / 3.0 * pi * radius**3
+
+    def one(speed: jax.Array) -> jax.Array:
+        body = Body(mass, 9.81, 100e-9, speed, film)
+        motion = simulate(contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
+        return motion.impacts.apex_time
+
+    batch = jax.jit(jax.vmap(one))
+    return _seconds(lambda: batch(speeds), repeats=2)
+
+
+def rows() -> list[tuple[str, str]]:
+    """Ratios to Hertz with DMT: of single values, of smooth and of rough motions."""
+    out, base = [], np.ones(3)
+    for name, make in LAWS.items():
+        taken = np.array([_values(make), _smooth(make), _rough(make)])
+        base = taken if name == "Hertz + DMT" else base
+        ratios = " ".join(f"{ratio:8.2f}" for ratio in taken / base)
+        out.append((f"{name}: values, smooth motions, rough motions", ratios))
+    gas = _smooth(LAWS["Hertz + DMT"], FILM) / base[1]
+    out.append(("Hertz + DMT through gas: smooth motions", f"{gas:8.2f}"))
+    return out

@@ -1,0 +1,225 @@
+"""``asperity regime`` and ``asperity adhesion-map``: which models hold, before a motion is run."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import textwrap
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from asperity.cli.sources import Source, source
+from asperity.cli.terminal import say, tell
+from asperity.cli.working import Progress, Work, progress_bar
+from asperity.errors import InputError, SimulationError
+from asperity.records import check_folder, plain, write_folder
+from asperity.regimes import LAW_NAMES, Boundary, Frame, Place, Verdict, region
+from asperity.summary import WIDTH, amount, warning_lines
+
+if TYPE_CHECKING:
+    from asperity.conversion import Assessment
+
+MAP_FILE = "adhesion-map.png"
+"""The map's picture unless another is named."""
+
+_NAMES, _VALUES = 22, 17
+
+
+def tell_regime(case: str, *, as_json: bool) -> None:
+    """Print the numbers of a case with what each says.
+
+    Parameters
+    ----------
+    case : str
+        As the user named it.
+    as_json : bool
+        Whether to print one JSON object.
+    """
+    (found,) = _assessed([source(case)], quiet=as_json)
+    if as_json:
+        numbers = {name: one._asdict() for name, one in found.verdicts.items()}
+        shown = {"name": found.name, "regime": numbers, "warnings": found.warnings}
+        tell(json.dumps(plain(shown), allow_nan=False))
+        return
+    rows = [line for name, one in found.verdicts.items() for line in _row(name, one)]
+    title = f"{found.name}: which models hold"
+    tell("\n".join([title, "", *rows, *warning_lines(found.warnings)]))
+
+
+def draw_map(cases: Sequence[str], *, output: str | None, force: bool, as_json: bool) -> None:
+    """Draw the adhesion map with cases on it.
+
+    Parameters
+    ----------
+    cases : sequence of str
+        As the user named them.
+    output : str or None
+        The picture's path; the other files go beside it.
+    force, as_json : bool
+        The options of these names.
+    """
+    given = [source(case) for case in cases]
+    for one in given:
+        _need_a_place(one)
+    picture = None
+    if output is not None or not as_json:
+        picture = Path(output or MAP_FILE)
+        _check_picture(picture, force=force)
+    found = _assessed(given, quiet=as_json)
+    places = _places(given, found)
+    frame = Frame.around(places)
+    boundaries = frame.boundaries()
+    written = _keep(picture, frame, boundaries, places) if picture else []
+    if as_json:
+        tell(json.dumps(plain(_map_object(boundaries, places, found)), allow_nan=False))
+    else:
+        tell("\n".join(_map_lines(places, found)))
+    if written:
+        text = f"written to {written[0].parent}:\n  {' '.join(path.name for path in written)}"
+        if as_json:
+            say(text)
+        else:
+            tell("\n" + text)
+
+
+def _assessed(given: Sequence[Source], *, quiet: bool) -> list[Assessment]:
+    """What each case's numbers say; an error names the file."""
+
+    def task(stop: threading.Event, progress: Progress | None) -> list[Assessment]:
+        assess: Callable[..., Assessment] = importlib.import_module("asperity.solver").assess
+        found: list[Assessment] = []
+        for one in given:
+            if stop.is_set():
+                break
+            try:
+                found.append(assess(one.case, name=one.name, progress=progress, stop=stop))
+            except InputError as error:
+                error.file = error.file or one.file
+                raise
+            except SimulationError as error:
+                raise SimulationError(f"{one.file or one.name}: {error}", error.partial) from error
+        return found
+
+    with progress_bar(not quiet) as progress:
+        found, code = Work(lambda stop: task(stop, progress)).wait()
+    if code or found is None:
+        say("asperity: interrupted; nothing was written")
+        raise typer.Exit(code)
+    return found
+
+
+def _row(name: str, one: Verdict) -> list[str]:
+    """A number and its verdict, the verdict in a column of its own."""
+    label = name.replace("_", " ").replace("tabor", "Tabor").replace("kelvin", "Kelvin")
+    label = label.replace("Kelvin radius over", "over")
+    if isinstance(one.value, str):
+        value = LAW_NAMES.get(one.value, one.value)
+    else:
+        value = amount(one.value, one.unit.replace("1", ""))
+    head = f"  {label:<{_NAMES}}{value:<{_VALUES}}"
+    return textwrap.wrap(
+        one.verdict, WIDTH, initial_indent=head, subsequent_indent=" " * (2 + _NAMES + _VALUES)
+    )
+
+
+def _need_a_place(given: Source) -> None:
+    """Refuse a case that has no place on the map, and say what it lacks."""
+    adhesion = given.case.adhesion
+    if adhesion.model == "none":
+        raise InputError(
+            "`model` must be a law of adhesion for a place on the map; got 'none'",
+            file=given.file,
+            key="adhesion.model",
+        )
+    if adhesion.range is None:
+        raise InputError(
+            "`range` must be given for a place on the map, whose elasticity parameter rests on it; "
+            "got nothing",
+            file=given.file,
+            key="adhesion.range",
+        )
+
+
+def _places(given: Sequence[Source], found: Sequence[Assessment]) -> list[Place]:
+    """A place for each case, by its name; by what the user wrote where names are the same."""
+    names = [one.name for one in found]
+    out = []
+    for one, assessed in zip(given, found, strict=True):
+        name = one.name if names.count(one.name) == 1 else one.file or one.name
+        elasticity, load = assessed.regime.elasticity_parameter, assessed.regime.load_parameter
+        assert elasticity is not None
+        out.append(Place(name, elasticity, math.nan if load is None else load))
+    return out
+
+
+def _region(place: Place) -> str | None:
+    return region(place.elasticity, place.load) if place.load > 0.0 else None
+
+
+def _map_lines(places: Sequence[Place], found: Sequence[Assessment]) -> list[str]:
+    wide = max(4, *(len(place.name) for place in places)) + 2
+    lines = [f"{'case':<{wide}}{'elasticity':<12}{'load':<12}{'region':<16}law in use"]
+    for place, assessed in zip(places, found, strict=True):
+        law = LAW_NAMES[assessed.regime.adhesion_law]
+        numbers = f"{place.elasticity:<12.4g}{amount(place.load):<12}"
+        lines.append(f"{place.name:<{wide}}{numbers}{_region(place) or '-':<16}{law}")
+    return lines
+
+
+def _map_object(
+    boundaries: Sequence[Boundary], places: Sequence[Place], found: Sequence[Assessment]
+) -> dict[str, Any]:
+    return {
+        "boundaries": [
+            {
+                "between": line.between,
+                "elasticity_parameter": line.elasticity,
+                "load_parameter": line.load,
+            }
+            for line in boundaries
+        ],
+        "cases": [
+            {
+                "name": place.name,
+                "elasticity_parameter": place.elasticity,
+                "load_parameter": place.load,
+                "region": _region(place),
+                "adhesion_law": assessed.regime.adhesion_law,
+            }
+            for place, assessed in zip(places, found, strict=True)
+        ],
+    }
+
+
+def _files(picture: Path) -> list[str]:
+    """The picture's name, and those of the files beside it."""
+    return [picture.with_suffix(suffix).name for suffix in (".png", ".svg", ".csv")]
+
+
+def _check_picture(picture: Path, *, force: bool) -> None:
+    """See to it, before anything is computed, that the map can be written."""
+    if picture.suffix != ".png":
+        raise InputError(f"`--output` must be a FILE.png; got {str(picture)!r}")
+    names = _files(picture)
+    there = [name for name in names if (picture.parent / name).exists()]
+    if there and not force:
+        path = picture.parent / there[0]
+        raise InputError(f"{path}: is there already; --force replaces it", file=str(path))
+    check_folder(picture.parent, names, force=True)
+
+
+def _keep(
+    picture: Path, frame: Frame, boundaries: Sequence[Boundary], places: Sequence[Place]
+) -> list[Path]:
+    """Write the map as PNG, SVG and CSV."""
+    from asperity.plots import adhesion_map
+
+    contents = adhesion_map.files(frame, boundaries, places)
+    names = _files(picture)
+    files = dict(zip(names, contents, strict=True))
+    return write_folder(picture.parent, files, names, force=True)

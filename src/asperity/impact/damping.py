@@ -1,0 +1,200 @@
+"""The phases of a motion through a gas: one piece after the other, until the body turns."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .._jax import jax, jnp
+from ..program import kept
+from .drag import SHARES, Stretch, course_on, turning_place
+from .history import Body
+from .phase import Turn, work_along
+from .table import Pieces
+
+_PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
+
+
+class Gone(NamedTuple):
+    """A body on its way through a phase."""
+
+    kinetic: jax.Array
+    time: jax.Array
+    heat: jax.Array
+    going: jax.Array
+    piece: jax.Array
+    fastest: jax.Array
+
+
+@kept
+class Passage(NamedTuple):
+    """A phase through gas.
+
+    Attributes
+    ----------
+    turn
+        Its end.
+    duration
+        Time that it takes [s].
+    lost
+        Energy left in the gas [J].
+    kinetic, times, heats
+        Kinetic energy [J], time since the start [s] and energy left in the gas [J] where each
+        piece is entered.
+    crept
+        Whether the body came so close to rest without a turn that the phase ends there.
+    followed
+        Whether it turned because it was pushed back: speeds that a drag changes within a
+        thousandth of a piece are too much for its points, and it seems to turn too early.
+    """
+
+    turn: Turn
+    duration: jax.Array
+    lost: jax.Array
+    kinetic: jax.Array
+    times: jax.Array
+    heats: jax.Array
+    crept: jax.Array
+    followed: jax.Array
+
+
+def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
+    """Follow the pieces of a phase, entered with a kinetic energy [J], to where the body turns.
+
+    Parameters
+    ----------
+    body
+        The body, with its film.
+    pieces
+        The polynomials ahead of it, all that there are.
+    kinetic
+        Kinetic energy at the start [J].
+    """
+    work = work_along(pieces, kinetic, body.weight)
+
+    def one(gone: Gone, k: jax.Array) -> tuple[Gone, tuple[jax.Array, ...]]:
+        piece = Stretch.of(work, k)
+        course = course_on(body, piece, gone.kinetic, piece.leave)
+        on = gone.going & course.passed
+        after = Gone(
+            kinetic=jnp.where(on, course.kinetic, gone.kinetic),
+            time=gone.time + jnp.where(on, course.duration, 0.0),
+            heat=gone.heat + jnp.where(on, course.lost, 0.0),
+            going=on,
+            piece=jnp.where(gone.going, k, gone.piece),
+            fastest=jnp.maximum(gone.fastest, jnp.where(on, course.fastest, 0.0)),
+        )
+        return after, (gone.kinetic, gone.time, gone.heat)
+
+    count = pieces.low.shape[0]
+    zero = jnp.zeros(())
+    first = Gone(kinetic, zero, zero, jnp.asarray(True), jnp.asarray(0), kinetic)
+    gone, entered = jax.lax.scan(one, first, jnp.arange(count))
+    piece = Stretch.of(work, gone.piece)
+    found = jnp.logical_not(gone.going)
+    stop = turning_place(body, piece, gone.kinetic)
+    course = course_on(body, piece, gone.kinetic, stop)
+    turn = Turn(
+        piece=gone.piece,
+        place=jnp.where(found, stop, pieces.leave[-1]),
+        found=found,
+        fastest=jnp.maximum(gone.fastest, jnp.where(found, course.fastest, 0.0)),
+        kinetic=jnp.where(found, 0.0, gone.kinetic),
+    )
+    return Passage(
+        turn,
+        gone.time + jnp.where(found, course.duration, 0.0),
+        gone.heat + jnp.where(found, course.lost, 0.0),
+        entered[0],
+        entered[1],
+        entered[2],
+        jnp.asarray(False),
+        jnp.logical_not(found) | _pushed_back(piece, stop, body.weight),
+    )
+
+
+def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Array:
+    """Whether contact and weight push a body back at a place of a piece."""
+    push = piece.push(place, weight)
+    return piece.ahead * push <= _PUSHED * (jnp.abs(push + weight) + weight)
+
+
+def fall_to_rest(
+    body: Body, pieces: Pieces, kinetic: jax.Array, resting: jax.Array, goal: jax.Array
+) -> Passage:
+    """Like :func:`pass_through`, for a fall that may creep to rest.
+
+    A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
+    time. Such a phase ends at ``goal``, where what is left of the energy goes to the gas too.
+
+    Parameters
+    ----------
+    body, pieces, kinetic
+        As for :func:`pass_through`.
+    resting
+        Separation of the equilibrium [m], or NaN.
+    goal
+        Separation, a little outside it, that counts as rest [m].
+    """
+    whole = pass_through(body, pieces, kinetic)
+    turn = whole.turn
+    here = jnp.argmax(pieces.leave <= goal)
+    near = turn.place > resting - (goal - resting)
+    crept = turn.found & near & (turn.piece >= here) & (goal < pieces.enter[0])
+    place = jnp.where(crept, goal, pieces.leave[here])
+    work = work_along(pieces, kinetic, body.weight)
+    course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
+    stop = Turn(here, goal, jnp.asarray(True), turn.fastest, jnp.zeros(()))
+    ends = (
+        stop,
+        whole.times[here] + course.duration,
+        whole.heats[here] + course.lost + course.kinetic,
+    )
+    turned = (turn, whole.duration, whole.lost)
+    turn, duration, lost = jax.tree_util.tree_map(lambda a, b: jnp.where(crept, a, b), ends, turned)
+    followed = crept | whole.followed
+    return whole._replace(turn=turn, duration=duration, lost=lost, crept=crept, followed=followed)
+
+
+def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, ...]:
+    """A body on pieces that it passes: places, times, speeds and energy left in the gas.
+
+    Each of shape (pieces, POINTS + 1), at SHARES of every piece and at its end.
+    """
+    work = work_along(pieces, kinetic, body.weight)
+    entered = pass_through(body, pieces, kinetic).kinetic
+
+    def one(k: jax.Array, entry: jax.Array) -> tuple[jax.Array, ...]:
+        piece = Stretch.of(work, k)
+        course = course_on(body, piece, entry, piece.leave)
+        places = piece.enter + (piece.leave - piece.enter) * SHARES
+        last = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
+        return (
+            jnp.append(places, piece.leave),
+            jnp.append(course.time, course.duration),
+            jnp.append(course.speed, last),
+            jnp.append(course.heat, course.lost),
+        )
+
+    places, times, speeds, heats = jax.vmap(one)(jnp.arange(entered.shape[0]), entered)
+
+    def summed(values: jax.Array) -> jax.Array:
+        before = jnp.cumsum(values[:, -1]) - values[:, -1]
+        return values + before[:, None]
+
+    return places, summed(times), speeds, summed(heats)
+
+
+def cut(pieces: Pieces, parting: jax.Array, place: jax.Array) -> Pieces:
+    """The pieces until a place [m]; those beyond it are empty."""
+
+    def until(end: jax.Array) -> jax.Array:
+        return jnp.where(parting, jnp.minimum(end, place), jnp.maximum(end, place))
+
+    return pieces._replace(enter=until(pieces.enter), leave=until(pieces.leave))
+
+
+def kinetic_at(
+    body: Body, pieces: Pieces, kinetic: jax.Array, parting: jax.Array, place: jax.Array
+) -> jax.Array:
+    """Kinetic energy [J] with which a body passes a place [m] of a phase."""
+    return pass_through(body, cut(pieces, parting, place), kinetic).turn.kinetic

@@ -1,0 +1,74 @@
+"""A motion that was stepped in time, as a time series."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import legval
+
+from .collocation import STAGES
+from .history import Body
+from .legs import Leg, Samples
+from .sampling import Series
+from .stepping import KNOTS, TO_SERIES
+
+
+class Trajectory(NamedTuple):
+    """A motion in time.
+
+    Attributes
+    ----------
+    series
+        Its samples.
+    lost
+        Energy lost since the release [J], by law, then in the gas if any, shape (samples, names).
+    """
+
+    series: Series
+    lost: np.ndarray
+
+    @classmethod
+    def of(cls, body: Body, release: Samples, legs: list[Leg]) -> Trajectory:
+        """The trajectory of a motion from its release, two legs an impact."""
+        parts, heats, phases = [release], [np.zeros(1)], [np.zeros(1, int)]
+        for number, way in enumerate(legs):
+            begun = parts[-1].lost[-1, -1]
+            for samples in way.samples:
+                parts.append(samples)
+                heats.append(samples.lost[:, -1] - begun)
+                phases.append(np.full(samples.time.size, number))
+        whole = Samples.joined(parts)
+        heat = np.concatenate(heats) * (body.film is not None)
+        series = Series(
+            whole.time, whole.separation, whole.speed, whole.rows, heat, np.concatenate(phases)
+        )
+        return cls(series, whole.lost)
+
+    def until(self, limit: float) -> Trajectory:
+        """The samples up to a time limit [s]."""
+        kept = self.series.time <= limit
+        series = Series(*(column[kept] for column in self.series))
+        return Trajectory(series, self.lost[kept])
+
+    def passing(self, place: float, mass: float) -> tuple[np.ndarray, np.ndarray]:
+        """Kinetic energies [J] at a separation [m] on each way in and out; NaN where not passed."""
+        x, phase = self.series.separation, self.series.phase
+        count = 2 * (1 + int(phase[-1]) // 2)
+        found = np.full(count, np.nan)
+        passed = np.flatnonzero((x[:-1] - place) * (x[1:] - place) <= 0.0)
+        for k in passed[::-1]:
+            found[phase[k + 1]] = self._kinetic(k, place, mass)
+        return found[0::2], found[1::2]
+
+    def _kinetic(self, k: int, place: float, mass: float) -> float:
+        """Kinetic energy [J] between two samples, by the polynomials of their step."""
+        from scipy.optimize import brentq
+
+        first = STAGES * (k // STAGES)
+        points = slice(first, first + STAGES + 1)
+        there = TO_SERIES @ (self.series.separation[points] - place)
+        speed = TO_SERIES @ self.series.speed[points]
+        low, high = 2.0 * KNOTS[k - first] - 1.0, 2.0 * KNOTS[k - first + 1] - 1.0
+        x = brentq(lambda x: legval(x, there), low, high, xtol=1e-15)
+        return float(0.5 * mass * legval(x, speed) ** 2)

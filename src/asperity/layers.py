@@ -1,0 +1,133 @@
+"""Interfaces that act side by side between the same two planes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import equinox as eqx
+
+from ._jax import jax, jnp
+from .errors import InputError
+from .interface import Interface, Means, Memory
+from .laws.base import Law, terms
+
+
+class Scale(NamedTuple):
+    """How rough several interfaces are together."""
+
+    rms: jax.Array
+
+
+class Layers(eqx.Module):
+    """Several interfaces between the same two planes: asperities, and liquid on the surface.
+
+    Parameters
+    ----------
+    parts
+        The interfaces. Their heights count from the same mean plane.
+
+    Raises
+    ------
+    InputError
+        If two of them contain the same force.
+
+    Notes
+    -----
+    Pressures, energies and bonds add up; the memory is that of the parts in a row.
+    """
+
+    parts: tuple[Interface, ...]
+
+    def __init__(self, parts: Sequence[Interface]) -> None:
+        counted = [name for part in parts for law in terms(part.law) for name in law.counts]
+        twice = sorted({name for name in counted if counted.count(name) > 1})
+        if twice:
+            raise InputError(f"two layers contain the {twice[0]} force; it would count twice")
+        self.parts = tuple(parts)
+
+    @property
+    def hysteretic(self) -> tuple[Law, ...]:
+        """The laws that remember, in the order of the memory."""
+        return tuple(law for part in self.parts for law in part.hysteretic)
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names under which losses are booked."""
+        return tuple(name for part in self.parts for name in part.mechanisms)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Mechanisms of the forces, elastic first."""
+        names = {name for part in self.parts for name in part.components}
+        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
+        return jnp.max(jnp.stack([part.reach for part in self.parts]))
+
+    @property
+    def heights(self) -> Scale:
+        """The largest rms height among them."""
+        return Scale(jnp.max(jnp.stack([jnp.asarray(part.heights.rms) for part in self.parts])))
+
+    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory of surfaces that have never touched, one threshold per ``place``."""
+        return tuple(b for part in self.parts for b in part.fresh(place))
+
+    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory on the outermost parting branch: all bonds that can hold do."""
+        return tuple(b for part in self.parts for b in part.torn(place))
+
+    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
+        """The memory after the separation moved monotonically to ``separation`` [m]."""
+        return tuple(
+            b for part, own in self._shares(memory) for b in part.remember(own, separation)
+        )
+
+    def measure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> Means:
+        """All means over the heights; see :meth:`Interface.measure`."""
+        each = [part.measure(separation, own, lift) for part, own in self._shares(memory)]
+        zero = jnp.zeros_like(separation)
+        sums = dict.fromkeys(self.components, zero)
+        touching = zero
+        for part, means in zip(self.parts, each, strict=True):
+            for name, share in zip(part.components, means.parts, strict=True):
+                sums[name] = sums[name] + share
+            if "elastic" in part.components:
+                touching = touching + means.touching
+        return Means(
+            parts=jnp.stack([sums[name] for name in self.components]),
+            energy=jnp.sum(jnp.stack([means.energy for means in each]), axis=0),
+            bonds=jnp.concatenate([means.bonds for means in each]),
+            touching=touching,
+        )
+
+    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+        values = [part.pressure(separation, own, lift) for part, own in self._shares(memory)]
+        return jnp.sum(jnp.stack(values), axis=0)
+
+    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
+        values = [part.energy(separation, own, lift) for part, own in self._shares(memory)]
+        return jnp.sum(jnp.stack(values), axis=0)
+
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""
+        formation, rupture = zip(*(part.losses() for part in self.parts), strict=True)
+        return jnp.concatenate(formation), jnp.concatenate(rupture)
+
+    def _shares(self, memory: Memory) -> list[tuple[Interface, Memory]]:
+        """Each interface with its own part of the memory."""
+        out, first = [], 0
+        for part in self.parts:
+            last = first + len(part.hysteretic)
+            out.append((part, memory[first:last]))
+            first = last
+        return out
+
+
+Surfaces = Interface | Layers
+"""What a rough contact presses."""

@@ -1,0 +1,212 @@
+"""What each number of a case says, in words."""
+
+from __future__ import annotations
+
+from math import isinf
+from typing import NamedTuple
+
+from .boundaries import hertz_load, region
+from .choice import DMT_BELOW, JKR_ABOVE
+from .parameters import Regime
+
+ELASTIC_BELOW = 0.6
+"""Plasticity index below which asperities stay elastic at ordinary loads (Greenwood and
+Williamson 1966); above 1 they yield."""
+
+NARROW_BELOW = 0.1
+"""Kelvin radius over the tip's radius below which a meniscus is narrow beside its tip."""
+
+FEW = 10.0
+"""Touching asperities below which a mean over asperities says little of one impact."""
+
+
+class Verdict(NamedTuple):
+    """A number and what it says.
+
+    Attributes
+    ----------
+    value
+        The number, or a word; None where it does not apply.
+    unit
+        Its SI unit; "1" for a plain number, "" for a word.
+    verdict
+        What it says; of a value that is None, why.
+    """
+
+    value: float | str | None
+    unit: str
+    verdict: str
+
+
+class Situation(NamedTuple):
+    """The numbers that verdicts rest on.
+
+    Attributes
+    ----------
+    regime
+        The dimensionless numbers.
+    rough
+        Whether the body has asperities.
+    tip_radius
+        Radius of one asperity, or of the smooth body [m].
+    spacing
+        Mean distance of asperities [m]; None for a smooth body.
+    touching
+        Expected number of touching asperities at the deepest point of the first impact.
+    kelvin_radius
+        Radius of curvature of the liquid [m]: Kelvin's, or less where an adsorbed film bounds
+        it; 0 without menisci, infinite in saturated vapour without a film.
+    bounded
+        Whether a film bounds it.
+    on_tips
+        Whether the liquid forms menisci on the tips, not a filling of the surface.
+    molecule_size
+        Size of a molecule of the liquid [m]; None without menisci.
+    """
+
+    regime: Regime
+    rough: bool
+    tip_radius: float
+    spacing: float | None
+    touching: float
+    kelvin_radius: float
+    molecule_size: float | None
+    bounded: bool = False
+    on_tips: bool = True
+
+
+def verdicts(situation: Situation) -> dict[str, Verdict]:
+    """A verdict on each number, by the number's name."""
+    regime = situation.regime
+    reason = regime.adhesion_reason
+    return {
+        "tabor_number": _tabor(regime),
+        "elasticity_parameter": _elasticity(regime),
+        "load_parameter": _load(situation),
+        "adhesion_law": Verdict(
+            regime.adhesion_law, "", f"chosen: {reason}" if reason else "as the case says"
+        ),
+        "plasticity_index": _plasticity(situation),
+        "touching_asperities": _touching(situation),
+        "kelvin_radius": _kelvin(situation),
+        "kelvin_radius_over_spacing": _over_spacing(situation),
+        "kelvin_radius_over_tip_radius": _over_tip(situation),
+        "humidity_regime": _humidity(situation),
+    }
+
+
+def _missing(regime: Regime) -> str:
+    """Why there is no Tabor number."""
+    if regime.adhesion_law == "none":
+        return "the case has no adhesion"
+    return "`adhesion.range` is not given"
+
+
+def _tabor(regime: Regime) -> Verdict:
+    value = regime.tabor_number
+    if value is None:
+        return Verdict(None, "1", _missing(regime))
+    if value < DMT_BELOW:
+        said = f"below {DMT_BELOW:g}: adhesion does not bend the contact (Bradley, DMT)"
+    elif value <= JKR_ABOVE:
+        said = f"between {DMT_BELOW:g} and {JKR_ABOVE:g}: neither DMT nor JKR (Maugis-Dugdale)"
+    else:
+        said = f"above {JKR_ABOVE:g}: adhesion bends the contact over far more than its range (JKR)"
+    return Verdict(value, "1", said)
+
+
+def _elasticity(regime: Regime) -> Verdict:
+    value, load = regime.elasticity_parameter, regime.load_parameter
+    if value is None:
+        return Verdict(None, "1", _missing(regime))
+    if load is None or load <= 0.0:
+        return Verdict(value, "1", "no load, so no place on the adhesion map")
+    return Verdict(value, "1", f"the adhesion map's region at this load: {region(value, load)}")
+
+
+def _load(situation: Situation) -> Verdict:
+    regime = situation.regime
+    value, elasticity = regime.load_parameter, regime.elasticity_parameter
+    if value is None:
+        touches = situation.touching > 0.0
+        why = "the case has no adhesion" if touches else "nothing touches at closest approach"
+        return Verdict(None, "1", why)
+    # Without a range the limit is known only to lie between those of rigid and of soft bodies.
+    low = hertz_load(1e-4 if elasticity is None else elasticity)
+    high = hertz_load(1e4) if elasticity is None else low
+    if value > high:
+        said = f"above {high:.3g}: adhesion is negligible beside contact at closest approach"
+    elif value < low:
+        said = f"below {low:.3g}: adhesion counts beside contact at closest approach"
+    else:
+        said = f"adhesion is negligible above a limit between {low:.3g} and {high:.3g}, which "
+        said += "`adhesion.range` decides"
+    return Verdict(value, "1", said)
+
+
+def _plasticity(situation: Situation) -> Verdict:
+    value = situation.regime.plasticity_index
+    if value is None:
+        why = "neither material has a hardness" if situation.rough else "the body is smooth"
+        return Verdict(None, "1", why)
+    if value < ELASTIC_BELOW:
+        said = f"below {ELASTIC_BELOW:g}: asperities stay elastic"
+    elif value <= 1.0:
+        said = f"between {ELASTIC_BELOW:g} and 1: some asperities yield under load"
+    else:
+        said = "above 1: asperities yield, and the models keep them elastic"
+    return Verdict(value, "1", said)
+
+
+def _touching(situation: Situation) -> Verdict:
+    value = situation.touching
+    if not situation.rough:
+        return Verdict(None, "1", "the body is smooth: it is its own one asperity")
+    if value < FEW:
+        return Verdict(value, "1", f"below {FEW:g}: single impacts scatter about the mean")
+    return Verdict(value, "1", f"expected at closest approach; {FEW:g} or more make a mean")
+
+
+def _kelvin(situation: Situation) -> Verdict:
+    value, molecule = situation.kelvin_radius, situation.molecule_size
+    if value == 0.0 or molecule is None:
+        return Verdict(None, "m", "no menisci: dry")
+    if isinf(value):
+        return Verdict(None, "m", "infinite: the vapour is saturated")
+    said = f"{value / molecule:.2g} molecules of {molecule * 1e9:.2g} nm"
+    if value < molecule:
+        said = f"less than a molecule ({molecule * 1e9:.2g} nm): no continuum"
+    bound = "; bounded by the adsorbed film, below Kelvin's" * situation.bounded
+    return Verdict(value, "m", said + bound)
+
+
+def _over_spacing(situation: Situation) -> Verdict:
+    value, spacing = situation.kelvin_radius, situation.spacing
+    if value == 0.0 or isinf(value):
+        return Verdict(None, "1", _kelvin(situation).verdict)
+    if spacing is None:
+        return Verdict(None, "1", "the body is smooth: its one meniscus has no neighbour")
+    said = f"of {spacing * 1e9:.3g} nm between asperities: menisci "
+    said += "stay apart" if value < spacing else "merge"
+    return Verdict(value / spacing, "1", said)
+
+
+def _over_tip(situation: Situation) -> Verdict:
+    value = situation.kelvin_radius
+    if value == 0.0 or isinf(value):
+        return Verdict(None, "1", _kelvin(situation).verdict)
+    if not situation.on_tips:
+        return Verdict(None, "1", "the liquid fills the surface, whatever its tips")
+    ratio = value / situation.tip_radius
+    if ratio < NARROW_BELOW:
+        said = f"below {NARROW_BELOW:g}: menisci are narrow beside their tips, as their law assumes"
+    elif ratio < 1.0:
+        said = "menisci are about as wide as their tips: their law is rough"
+    else:
+        said = "above 1: menisci are wider than their tips, against what their law assumes"
+    return Verdict(ratio, "1", said)
+
+
+def _humidity(situation: Situation) -> Verdict:
+    """Dry, isolated or coalesced menisci, or a gap full of liquid."""
+    return Verdict(situation.regime.wetting, "", situation.regime.wetting_reason)

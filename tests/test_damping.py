@@ -1,0 +1,224 @@
+"""A motion through gas: beside an integration in time, its limits, its ledger, its gradient."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.case.build import build
+from asperity.errors import Outcome, Tolerance
+from asperity.film import SqueezeFilm
+from asperity.impact import simulate
+from asperity.impact.motion import ENDS
+from asperity.measures import measure
+
+IMPACTS = 4
+
+
+@pytest.fixture(scope="module")
+def problem():
+    case = asperity.load("published-exact").replace(
+        {
+            "counterface.deformation": "rigid",
+            "gas.viscosity": "18.2 uPa s",
+            "gas.slip_length": "75 nm",
+        }
+    )
+    return build(case)
+
+
+@pytest.fixture(scope="module")
+def flown(problem):
+    """Motion and measures for a viscosity [Pa s], a slip length and a release [m]."""
+
+    @jax.jit
+    def fly(viscosity, slip, release=60e-9):
+        old = problem.body.film
+        film = SqueezeFilm(old.radius, viscosity, slip, old.closest)
+        body = dataclasses.replace(problem.body, film=film, release=release)
+        motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
+        return motion, measure(motion, body)
+
+    return fly
+
+
+@pytest.fixture(scope="module")
+def in_air(flown):
+    return flown(18.2e-6, 75e-9)
+
+
+def _in_time(problem, start, sign, memory, film, until=None):
+    """Place, time and speed of the next turn, or at a place, in nm and us."""
+    contact, body = problem.contact, problem.body
+    force = jax.jit(lambda d: contact.state(d, memory).force)
+    drag = jax.jit(lambda gap: jnp.asarray(film.drag(gap)))
+    mass, weight = float(body.mass), float(body.weight)
+
+    def rate(_, y):
+        place = y[0] * 1e-9
+        pull = (float(force(place)) - weight) / mass - float(drag(place)) / mass * y[1] * 1e-3
+        return [y[1], pull * 1e-3]
+
+    def ends(_, y):
+        return y[1] if until is None else y[0] - until * 1e9
+
+    ends.terminal, ends.direction = True, -sign if until is None else 0
+    method = "DOP853" if until is None else "Radau"
+    answer = solve_ivp(rate, (0, 1e7), [start * 1e9, sign * 1e-9], method, events=ends,
+                       rtol=1e-10 if until is None else 1e-8, atol=1e-12)  # fmt: skip
+    place, speed = answer.y_events[0][0]
+    return place * 1e-9, answer.t_events[0][0] * 1e-6, abs(speed) * 1e-3
+
+
+def test_turns_and_times_are_those_of_an_integration_in_time(problem, in_air):
+    motion, _ = in_air
+    memory, place, time = problem.contact.fresh(), float(problem.body.release), 0.0
+    for k in range(2):
+        for sign, rows in ((-1, (motion.impacts.deepest, motion.impacts.deepest_time)),
+                           (1, (motion.impacts.apex, motion.impacts.apex_time))):  # fmt: skip
+            place, taken, _ = _in_time(problem, place, sign, memory, problem.body.film)
+            memory, time = problem.contact.remember(memory, place), time + taken
+            assert float(rows[0][k]) == pytest.approx(place, rel=1e-8)
+            assert float(rows[1][k]) == pytest.approx(time, rel=1e-7)
+
+
+def test_what_the_gas_takes_is_missing_from_the_energy(in_air):
+    motion, _ = in_air
+    rows = motion.impacts
+    assert float(jnp.max(rows.closure) / rows.fastest[0]) < 1e-11
+    taken = np.diff(np.asarray(rows.lost)[:, -1])
+    assert np.all(taken > 0.0)
+
+
+def test_thin_gas_is_a_vacuum(problem, flown):
+    body = dataclasses.replace(problem.body, film=None)
+    motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
+    thin, _ = flown(1e-16, 0.0)
+    for name in ("deepest", "apex", "deepest_time", "apex_time"):
+        np.testing.assert_allclose(
+            getattr(thin.impacts, name), getattr(motion.impacts, name), rtol=1e-9
+        )
+
+
+def test_slip_takes_less_energy_than_none(flown):
+    lost = [float(flown(18.2e-6, slip)[0].impacts.lost[0, -1]) for slip in (0.0, 75e-9, 480e-9)]
+    assert lost[0] > 1.5 * lost[1] > 1.5 * lost[2]
+
+
+def test_restitution_counts_what_passes_the_end_of_contact(problem, flown):
+    """Speeds there, in and out, of an integration in time; less is lost than between apexes."""
+    start = 200e-9
+    motion, measures = flown(18.2e-6, 75e-9, start)
+    weight, place = float(problem.body.weight), float(measures.reference)
+    film, memory = problem.body.film, problem.contact.fresh()
+    speeds = []
+    speeds.append(_in_time(problem, start, -1, memory, film, until=place)[2])
+    deepest = float(motion.impacts.deepest[0])
+    memory = problem.contact.remember(memory, deepest)
+    speeds.append(_in_time(problem, deepest, 1, memory, film, until=place)[2])
+    found = float(measures.restitution[0])
+    assert found == pytest.approx(speeds[1] / speeds[0], rel=1e-6)
+    apex = float(motion.impacts.apex[0])
+    assert found**2 > weight * (apex - place) / (weight * (start - place))
+
+
+@pytest.mark.parametrize("viscosity", [2e-4, 1e-3, 1e-2])
+def test_a_body_that_the_gas_holds_creeps_to_rest(problem, flown, viscosity):
+    motion, measures = flown(viscosity, 0.0)
+    assert ENDS[int(motion.end.outcome)] is Outcome.REST
+    assert np.isnan(measures.rebound_height[0])
+    rest = float(motion.datum.equilibrium)
+    goal = rest + 1e-3 * (float(problem.body.release) - rest)
+    film = SqueezeFilm(problem.body.film.radius, viscosity, 0.0, problem.body.film.closest)
+    _, time, _ = _in_time(
+        problem, float(problem.body.release), -1, problem.contact.fresh(), film, until=goal
+    )
+    assert float(measures.stiction_time) == pytest.approx(time, rel=2e-4)
+    assert float(motion.impacts.closure[0] / motion.impacts.fastest[0]) < 1e-8
+
+
+def test_a_drag_that_cannot_be_followed_is_a_failure(flown):
+    motion, _ = flown(0.1, 0.0)
+    assert ENDS[int(motion.end.outcome)] is Outcome.FAILED
+
+
+def test_a_batch_in_gas_equals_single_motions(flown):
+    viscosity = jnp.asarray([1e-5, 2e-5, 2e-4])
+    both, _ = jax.jit(jax.vmap(flown, in_axes=(0, None)))(viscosity, 75e-9)
+    for k, value in enumerate(viscosity):
+        one, _ = flown(value, 75e-9)
+        made = np.asarray(one.impacts.made)
+        np.testing.assert_array_equal(both.impacts.made[k], made)
+        np.testing.assert_allclose(both.impacts.apex[k][made], one.impacts.apex[made], rtol=1e-10)
+
+
+def test_gradient_of_the_first_apex_with_respect_to_the_viscosity(problem):
+    def apex(viscosity):
+        old = problem.body.film
+        film = SqueezeFilm(old.radius, viscosity, old.slip_length, old.closest)
+        body = dataclasses.replace(problem.body, film=film)
+        motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=1))
+        return motion.impacts.apex[0]
+
+    _, slope = jax.jit(lambda x: jax.jvp(apex, (x,), (jnp.ones(()),)))(jnp.asarray(1.82e-5))
+    value = jax.jit(apex)
+    step = 1e-9
+    middle = (float(value(1.82e-5 + step)) - float(value(1.82e-5 - step))) / (2.0 * step)
+    assert float(slope) == pytest.approx(middle, rel=1e-6)
+
+
+def test_a_drawn_motion_runs_in_time_and_keeps_its_energy():
+    """On a half-space, to rest: every sample later than the one before, all energies summed."""
+    case = asperity.load("published-exact").replace(
+        {"gas.name": "air", "gas.pressure": "1 bar", "gas.temperature": "20 degC"}
+    )
+    result = asperity.solve(case)
+    assert result.outcome is Outcome.REST
+    assert np.all(np.diff(result.time) >= 0.0)
+    assert result.time[-1] == pytest.approx(result.measures["stiction_time"], rel=1e-9)
+    total = sum(result.energies.values())
+    assert np.ptp(total) < 1e-6 * result.ledger["initial"]
+    steps = np.diff(result.time) * 0.5 * (result.speed[1:] + result.speed[:-1])
+    travelled = result.separation[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    np.testing.assert_allclose(travelled, result.separation, atol=1e-3 * np.ptp(travelled))
+    assert set(result.ledger["lost"]) == {"capillary", "gas"}
+
+
+def test_a_rebound_that_gas_keeps_low_is_no_capture():
+    """Released near the end of contact: it bounces on, whether its rebound comes back there."""
+    case = asperity.load("published-exact").replace(
+        {
+            "counterface.deformation": "rigid",
+            "gas.viscosity": "18.2 uPa s",
+            "gas.slip_length": "75 nm",
+            "numerics.max_impacts": 3,
+        }
+    )
+    for release in ("60 nm", "80 nm", "120 nm"):
+        measures = asperity.solve(case.replace({"impact.release_gap": release})).measures
+        assert measures["captured"] is False
+        assert measures["restitution"][0] is None or measures["restitution"][0] > 0.3
+        assert measures["rebound_height"][0] > 8e-9
+
+
+def test_the_force_of_the_gas_is_part_of_the_total(problem):
+    case = asperity.load("published-exact").replace(
+        {
+            "counterface.deformation": "rigid",
+            "gas.viscosity": "18.2 uPa s",
+            "gas.slip_length": "75 nm",
+            "numerics.max_impacts": 3,
+        }
+    )
+    result = asperity.solve(case)
+    forces = result.forces
+    whole = forces["contact"] + forces["weight"] + forces["gas"]
+    np.testing.assert_allclose(forces["total"], whole, rtol=1e-12, atol=1e-20)
+    assert np.all(forces["gas"] * result.speed <= 0.0)
+    gained = np.diff(0.5 * float(problem.body.mass) * result.speed**2)
+    middle = 0.5 * (forces["total"][1:] + forces["total"][:-1])
+    worked = middle * np.diff(result.separation)
+    assert np.sum(np.abs(gained - worked)) < 2e-2 * np.sum(np.abs(gained))

@@ -1,0 +1,94 @@
+"""Gas squeezed between a sphere and a plane: drag by the exact series, loss of a drop."""
+
+from functools import cache
+from math import acosh, log, pi, sinh
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.film import SqueezeFilm, gas_decrement
+from figures import Figure, misses
+
+FILE = Path(__file__).parent.parent / "data" / "gas_film.csv"
+ROWS = np.genfromtxt(FILE, delimiter=",", comments="#", skip_header=4)
+GAPS = (1e-5, 1e-4, 1e-3, 3.9e-3)  # of the radius
+RADIUS, VISCOSITY = 50e-6, 1.82e-5
+
+
+def brenner(gap):
+    """Drag over Stokes's at a gap in units of the radius. Brenner (1961), cosh(alpha) = 1 + gap.
+
+    Sums and differences of hyperbolic functions over exp((2 n + 1) alpha), which has no overflow.
+    """
+    alpha = acosh(1.0 + gap)
+    n = np.arange(1.0, 60.0 / alpha)
+    m = 2.0 * n + 1.0
+    fade = np.exp(-m * alpha)
+    above = 1.0 - fade**2 + m * sinh(2.0 * alpha) * fade
+    below = (1.0 - fade) ** 2 - (m * sinh(alpha)) ** 2 * fade
+    share = n * (n + 1.0) / ((2.0 * n - 1.0) * (2.0 * n + 3.0))
+    return 4.0 / 3.0 * sinh(alpha) * float(np.sum(share * (above / below - 1.0)))
+
+
+@cache
+def drag(gap):
+    """Against the series, with a slip length of 1e-6 of the gap."""
+    stokes = 6.0 * pi * VISCOSITY * RADIUS
+    film = SqueezeFilm(RADIUS, VISCOSITY, 1e-6 * gap * RADIUS)
+    found = float(film.drag(gap * RADIUS)) / stokes
+    problem = f"gas film: drag over Stokes's, gap {gap:g} R"
+    return Figure(problem, "series, Brenner (1961)", brenner(gap), found, "", 0.01)
+
+
+@cache
+def drop(slip, speed, decrement):
+    """Loss of a drop in air, and its speed at the rebound, by slip length [nm]."""
+    mass = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
+    found = gas_decrement(
+        release=40e-9, rebound=29.4e-9, mass=mass, gravity=9.81, radius=RADIUS,
+        viscosity=VISCOSITY, slip_length=slip * 1e-9,
+    )  # fmt: skip
+    problem, source = f"drop through the gas film, slip {slip:g} nm", "independent integration"
+    return (
+        Figure(f"{problem}: decrement", source, decrement, found[0], "", 5e-5),
+        Figure(f"{problem}: speed", source, speed, found[1] * 1e3, "mm/s", 5e-5),
+    )
+
+
+def figures():
+    return [*map(drag, GAPS), *(row for known in ROWS for row in drop(*known))]
+
+
+@pytest.mark.parametrize("gap", GAPS)
+def test_drag_with_little_slip_is_that_of_the_exact_series(gap):
+    assert drag(gap).holds
+
+
+def test_the_series_tends_to_stokes_far_away():
+    """With the first order of its distance: 1 + (9/8)/(1 + gap) (Lorentz 1907)."""
+    assert brenner(200.0) == pytest.approx(1.0 + 9.0 / 8.0 / 201.0, rel=1e-4)
+
+
+@pytest.mark.parametrize("gap", GAPS[:3])
+def test_the_film_leaves_out_the_next_order_of_the_series(gap):
+    """ln(R/gap)/5 + 0.9713 of Stokes's drag (Cox and Brenner 1967)."""
+    missing = brenner(gap) - 1.0 / gap
+    assert missing == pytest.approx(0.2 * log(1.0 / gap) + 0.9713, rel=3e-3)
+
+
+def test_drag_tends_to_that_without_slip_in_proportion_to_the_slip_length():
+    """A share 2 b/gap is missing."""
+    whole = float(SqueezeFilm(RADIUS, VISCOSITY).drag(1e-8))
+    for share in (1e-2, 1e-3, 1e-4):
+        left = float(SqueezeFilm(RADIUS, VISCOSITY, share * 1e-8).drag(1e-8)) / whole
+        assert 1.0 - left == pytest.approx(2.0 * share, rel=3.1 * share)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_loss_of_a_drop_in_air(row):
+    assert not misses(drop(*row))
+
+
+def test_all_losses_are_read():
+    assert ROWS.shape == (3, 3)
