@@ -39,7 +39,10 @@ FILLING = KelvinFilling(TENSION, ANGLE, 1e-9)
 ASPERITIES = Interface(Hertz(0.25e-9, 56.8e9) + Dmt(0.25e-9, 0.03), Gaussian(10.5e-9), 1.69e16)
 
 
-@pytest.mark.parametrize("law", [SMALL, THIN], ids=["with its edge", "thin"])
+CONDENSED = ConstantVolume(RADIUS, TENSION, ANGLE, 0.4e-9, ByKelvinGap(), edge=False)
+
+
+@pytest.mark.parametrize("law", [SMALL, THIN, CONDENSED], ids=["edge", "thin", "condensed"])
 def test_a_bridge_of_constant_volume_is_a_law(law):
     check_law(law)
 
@@ -64,6 +67,26 @@ def test_a_bridge_loses_what_drawing_it_out_has_cost():
     work = float(jnp.trapezoid(-SMALL.bonded_force(gaps), gaps))
     assert float(SMALL.formation_loss) == 0.0
     assert float(SMALL.rupture_loss) == pytest.approx(work, rel=1e-6)
+
+
+def test_a_condensed_bridge_begins_where_equilibrium_ends():
+    """Force and energy go on at touch; it loses what equilibrium did not give on the way in."""
+    touch = jnp.zeros(())
+    assert float(CONDENSED.bonded_force(touch)) == pytest.approx(float(CONDENSED.force(touch)))
+    assert float(CONDENSED.formation_loss) == pytest.approx(0.0, abs=1e-30)
+    given = 2.0 * pi * RADIUS * TENSION * cos(ANGLE) * float(CONDENSED.height)
+    spent = float(THIN.rupture_loss)
+    assert float(CONDENSED.rupture_loss) == pytest.approx(spent - given, rel=1e-12)
+
+
+def test_a_bridge_that_would_break_within_the_kelvin_gap_stays_in_equilibrium():
+    """On a tip much smaller than the meniscus."""
+    law = ConstantVolume(0.05e-9, TENSION, ANGLE, 5e-9, ByKelvinGap(), edge=False)
+    assert not bool(law.keeps)
+    gaps = jnp.linspace(-1e-9, 1.2 * float(law.height), 50)
+    np.testing.assert_array_equal(law.bonded_force(gaps), law.force(gaps))
+    assert float(law.formation_loss + law.rupture_loss) == 0.0
+    assert float(law.breaking_gap) == float(law.height)
 
 
 def test_a_bridge_of_constant_volume_reaches_further_than_one_in_equilibrium():
@@ -165,11 +188,6 @@ def test_a_film_bounds_what_menisci_span():
             "'kelvin-filling' alone",
         ),
         (
-            {"capillary.model": "constant-volume", "capillary.formation": "kelvin"},
-            "capillary.formation",
-            "must be 'contact'",
-        ),
-        (
             {
                 "capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm",
                 "roughness": None,
@@ -222,6 +240,12 @@ AREAS = {
     "menisci": {},
     "bridges": {
         "capillary.model": "constant-volume",
+        "roughness.asperity_radius": "20 nm",
+        "roughness.asperity_density": "1e15 1/m^2",
+    },
+    "condensed bridges": {
+        "capillary.model": "constant-volume",
+        "capillary.formation": "kelvin",
         "roughness.asperity_radius": "20 nm",
         "roughness.asperity_density": "1e15 1/m^2",
     },

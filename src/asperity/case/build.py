@@ -205,9 +205,11 @@ def _menisci(case: Case, tip: float) -> list[Law]:
         return []
     angle = _given(air.contact_angle)
     if air.model == "constant-volume":
-        bridge = ConstantVolume(tip, liquid.tension, angle, liquid_radius)
+        formation = _formation(case)
+        bridge = ConstantVolume(tip, liquid.tension, angle, liquid_radius, formation)
         tested = float(bridge.volume) <= EDGE_HOLDS * tip**3 and angle <= EDGE_ANGLE
-        return [dataclasses.replace(bridge, edge=tested)]
+        edge = tested and isinstance(formation, ByContact)
+        return [dataclasses.replace(bridge, edge=edge)]
     if air.model == "kelvin-filling" and case.roughness is not None:
         return []
     return [Meniscus(tip, liquid.tension, angle, liquid_radius, _formation(case))]

@@ -125,13 +125,6 @@ class Capillary(Table):
         if self.model == "none":
             return self
         need(self, ("liquid", "humidity", "temperature", "contact_angle"))
-        if self.model == "constant-volume" and self.formation == "kelvin":
-            raise InputError(
-                "`formation` must be 'contact' with model = 'constant-volume': how much liquid a "
-                "meniscus keeps that formed at the Kelvin gap is not in this model ('equilibrium' "
-                "has it); got 'kelvin'",
-                key="formation",
-            )
         if self.surface_rms_height is not None and self.model != "kelvin-filling":
             raise InputError(
                 "`surface_rms_height` must be given with model = 'kelvin-filling' alone, which has "

@@ -10,6 +10,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from . import bridge
 from .base import Law, Real, quantity
+from .meniscus import ByContact, Formation, Meniscus
 
 EDGE_HOLDS = 0.1
 """Volume over radius^3 up to which the edge of the liquid is counted: as far as it is tested."""
@@ -20,7 +21,7 @@ EDGE_ANGLE = radians(80.0)
 
 
 class ConstantVolume(Law):
-    """Meniscus that forms when the bodies touch and then keeps its volume until it breaks.
+    """Meniscus that keeps from touch on the volume that it has there, until it breaks.
 
     Parameters
     ----------
@@ -32,6 +33,8 @@ class ConstantVolume(Law):
         Contact angle on both bodies [rad], below pi/2.
     kelvin_radius
         Radius of curvature in equilibrium with the vapour [m], at which it forms.
+    formation
+        With :class:`ByKelvinGap` there is a :class:`Meniscus` in equilibrium before touch.
     edge
         Whether the surface energy of the liquid's edge counts (static). It holds for small
         volumes, up to EDGE_HOLDS radius^3; without it the pull is that of a thin bridge.
@@ -42,12 +45,19 @@ class ConstantVolume(Law):
     c = 2 kelvin_radius cos(angle), and breaks at `bridge.rupture_distance`. Force and energy
     are those of :mod:`.bridge`, with their errors. What separating it has cost is lost when it
     breaks. For impacts, which are too short for liquid to condense or to evaporate.
+
+    Formed at the Kelvin gap, the meniscus follows equilibrium in and out until the bodies
+    touch; from then on it is the bridge, without its edge, so that the force is continuous. A
+    meniscus that came close and never touched stays in equilibrium, where in truth it keeps a
+    volume that is smaller by (its closest gap/c)^2. Where the bridge would break within c, or
+    with a gain, it is in equilibrium throughout.
     """
 
     radius: Real = quantity()
     tension: Real = quantity()
     contact_angle: Real = quantity()
     kelvin_radius: Real = quantity()
+    formation: Formation = ByContact()
     edge: bool = eqx.field(static=True, default=True)
 
     mechanism: ClassVar[str] = "capillary"
@@ -69,30 +79,62 @@ class ConstantVolume(Law):
 
     @property
     def breaking_gap(self) -> jax.Array:
-        return bridge.rupture_distance(self.volume, self.radius, self.contact_angle)
+        return jnp.where(self.keeps, self._rupture, self.height)
 
     @property
     def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (0.0, self.breaking_gap)
+        inner = () if self._touches else (self.height,)
+        return (0.0, *inner, self.breaking_gap)
+
+    @property
+    def keeps(self) -> jax.Array:
+        """Whether it keeps its volume, or is in equilibrium throughout."""
+        if self._touches:
+            return jnp.asarray(True)
+        reaches = self._rupture > self.height
+        cost = bridge.leading_energy(self._rupture, *self._liquid) + self._at_touch
+        return jnp.logical_and(reaches, cost > 0.0)
 
     @property
     def length(self) -> jax.Array:
         return jnp.minimum(self.height, self.breaking_gap)
 
     def force(self, gap: jax.Array) -> jax.Array:
-        return jnp.zeros_like(gap)
+        return jnp.zeros_like(gap) if self._touches else self._before.force(gap)
 
     def energy(self, gap: jax.Array) -> jax.Array:
         """Energy of the free branch [J]; it ends at touch."""
-        return jnp.zeros_like(gap)
+        return jnp.zeros_like(gap) if self._touches else self._before.energy(gap)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
         pull = bridge.force if self.edge else bridge.leading_force
-        return pull(gap, *self._liquid)
+        bonded = pull(gap, *self._liquid)
+        return bonded if self._touches else jnp.where(self.keeps, bonded, self.force(gap))
 
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
         spent = bridge.energy if self.edge else bridge.leading_energy
-        return spent(gap, *self._liquid)
+        bonded = spent(gap, *self._liquid) + self._at_touch
+        return bonded if self._touches else jnp.where(self.keeps, bonded, self.energy(gap))
+
+    @property
+    def _touches(self) -> bool:
+        """Whether nothing is there before touch. Known without values."""
+        return isinstance(self.formation, ByContact)
+
+    @property
+    def _before(self) -> Meniscus:
+        return Meniscus(
+            self.radius, self.tension, self.contact_angle, self.kelvin_radius, self.formation
+        )
+
+    @property
+    def _at_touch(self) -> jax.Array:
+        """Energy with which it begins [J]."""
+        return self.energy(jnp.zeros(()))
+
+    @property
+    def _rupture(self) -> jax.Array:
+        return bridge.rupture_distance(self.volume, self.radius, self.contact_angle)
 
     @property
     def _liquid(self) -> tuple[Real, Real, Real, Real]:
