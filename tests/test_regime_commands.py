@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import records
+from asperity import records, solver
 from asperity.case import Case
 from asperity.cli import app
 from asperity.plots import adhesion_map
@@ -83,6 +83,31 @@ def test_regime_gives_the_publications_numbers(built_in: Any):
 def test_regime_warns_as_a_run_does(built_in: Any):
     assert any("the plasticity index is 40.9" in warning for warning in built_in["warnings"])
     assert any("asperities are expected to touch" in warning for warning in built_in["warnings"])
+
+
+@pytest.mark.parametrize("limit", [None, "1 ns"])
+@pytest.mark.parametrize(("time", "slow"), [("1 us", False), ("1 ms", True)])
+def test_regime_warns_of_slow_menisci_as_a_run_does_whatever_its_time_limit(
+    time: str, slow: bool, limit: str | None
+):
+    """On a rigid plane, from above the reach of all forces; the first contact lasts 10.5 us."""
+    case = asperity.load("published-exact").replace(
+        {"counterface.deformation": "rigid", "impact.release_gap": "2 um",
+         "capillary.formation_time": time, "numerics.time_limit": limit,
+         "numerics.max_impacts": 1}
+    )  # fmt: skip
+    for found in (solver.assess(case), asperity.solve(case)):
+        assert any("menisci take" in warning for warning in found.warnings) is slow
+
+
+def test_menisci_of_a_smooth_sphere_that_take_longer_than_its_contact_are_slow():
+    """Some 8 nm deep at about 0.9 m/s: in and out take about 19 ns."""
+    water = {"model": "equilibrium", "liquid": "water", "humidity": 0.6, "temperature": "20 degC",
+             "contact_angle": "40 deg"}  # fmt: skip
+    for time, slow in (("10 ns", False), ("30 ns", True)):
+        case = smooth(capillary=water | {"formation_time": time})
+        found = solver.assess(case).warnings
+        assert any("menisci take" in warning for warning in found) is slow
 
 
 def test_regime_finds_the_load_of_the_run_it_stands_for():

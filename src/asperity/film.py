@@ -41,7 +41,9 @@ class SqueezeFilm(eqx.Module):
     slip_length
         Slip length on both surfaces [m].
     closest
-        Separation [m] below which the film does not thin: the rms height of rough surfaces.
+        Separation [m] below which the film does not thin: the rms height of rough surfaces. At
+        0 the film thins without end, for bodies that never touch: the drag is not finite at
+        separations of 0 and below, so that a contact that reaches them needs it above 0.
 
     Notes
     -----

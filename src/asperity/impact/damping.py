@@ -8,7 +8,7 @@ from .._jax import jax, jnp
 from ..program import kept
 from .drag import SHARES, Stretch, course_on, turning_place
 from .history import Body
-from .phase import Turn, work_along
+from .phase import Turn, Work, work_along
 from .table import Pieces
 
 _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
@@ -70,25 +70,12 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
         Kinetic energy at the start [J].
     """
     work = work_along(pieces, kinetic, body.weight)
-
-    def one(gone: Gone, k: jax.Array) -> tuple[Gone, tuple[jax.Array, ...]]:
-        piece = Stretch.of(work, k)
-        course = course_on(body, piece, gone.kinetic, piece.leave)
-        on = gone.going & course.passed
-        after = Gone(
-            kinetic=jnp.where(on, course.kinetic, gone.kinetic),
-            time=gone.time + jnp.where(on, course.duration, 0.0),
-            heat=gone.heat + jnp.where(on, course.lost, 0.0),
-            going=on,
-            piece=jnp.where(gone.going, k, gone.piece),
-            fastest=jnp.maximum(gone.fastest, jnp.where(on, course.fastest, 0.0)),
-        )
-        return after, (gone.kinetic, gone.time, gone.heat)
-
     count = pieces.low.shape[0]
     zero = jnp.zeros(())
     first = Gone(kinetic, zero, zero, jnp.asarray(True), jnp.asarray(0), kinetic)
-    gone, entered = jax.lax.scan(one, first, jnp.arange(count))
+    gone, entered = jax.lax.scan(
+        lambda gone, k: _over(body, work, gone, k), first, jnp.arange(count)
+    )
     piece = Stretch.of(work, gone.piece)
     found = jnp.logical_not(gone.going)
     stop = turning_place(body, piece, gone.kinetic)
@@ -100,16 +87,28 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
         fastest=jnp.maximum(gone.fastest, jnp.where(found, course.fastest, 0.0)),
         kinetic=jnp.where(found, 0.0, gone.kinetic),
     )
-    return Passage(
-        turn,
-        gone.time + jnp.where(found, course.duration, 0.0),
-        gone.heat + jnp.where(found, course.lost, 0.0),
-        entered[0],
-        entered[1],
-        entered[2],
-        jnp.asarray(False),
-        jnp.logical_not(found) | _pushed_back(piece, stop, body.weight),
+    duration = gone.time + jnp.where(found, course.duration, 0.0)
+    lost = gone.heat + jnp.where(found, course.lost, 0.0)
+    followed = jnp.logical_not(found) | _pushed_back(piece, stop, body.weight)
+    return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed)
+
+
+def _over(
+    body: Body, work: Work, gone: Gone, k: jax.Array
+) -> tuple[Gone, tuple[jax.Array, jax.Array, jax.Array]]:
+    """Piece ``k``, passed by a body that still goes; and kinetic, time, heat at its entry."""
+    piece = Stretch.of(work, k)
+    course = course_on(body, piece, gone.kinetic, piece.leave)
+    on = gone.going & course.passed
+    after = Gone(
+        kinetic=jnp.where(on, course.kinetic, gone.kinetic),
+        time=gone.time + jnp.where(on, course.duration, 0.0),
+        heat=gone.heat + jnp.where(on, course.lost, 0.0),
+        going=on,
+        piece=jnp.where(gone.going, k, gone.piece),
+        fastest=jnp.maximum(gone.fastest, jnp.where(on, course.fastest, 0.0)),
     )
+    return after, (gone.kinetic, gone.time, gone.heat)
 
 
 def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Array:

@@ -130,7 +130,8 @@ def _draw_one(
     speed = jnp.sqrt(jnp.where(moving, 2.0 * energy / body.mass, 1.0))
     taken = jnp.sum(jnp.where(moving, RATE / speed, 0.0), axis=1) * jnp.abs(spans)
     kinetic = jnp.maximum(kinetic_along(here, ends[1:, None])[:, 0], 0.0)
-    x = local(here.pieces.low, here.pieces.high, ends[1:])
+    # A place is rounded by its distance from the start, which a narrow panel may not allow.
+    x = jnp.clip(local(here.pieces.low, here.pieces.high, ends[1:]), -1.0, 1.0)
     rows = chebyshev_sum(jnp.moveaxis(here.pieces.values, 1, 0), x[:, None])
     return (
         phase.begun + jnp.cumsum(taken),
