@@ -44,7 +44,7 @@ class MeniscusWithoutPowers(Meniscus):
         return None
 
 
-class Sampled(Heights):
+class Points(Heights):
     """A finite set of asperities, each with its own height: means are sums over them."""
 
     heights: jax.Array
@@ -53,13 +53,24 @@ class Sampled(Heights):
     def rms(self):
         return jnp.sqrt(jnp.mean(self.heights**2))
 
-    def tail(self, order, height):
+    @property
+    def top(self):
+        return jnp.max(self.heights)
+
+    @property
+    def bottom(self):
+        return jnp.min(self.heights)
+
+    def highest_beside(self, height):
+        return jnp.maximum(height, self.top)
+
+    def tail(self, order, height, size=0.0):
         if order == 0:
             raise ValueError("a set of points has no density")
         above = jnp.maximum(self.heights - height[..., None], 0.0)
         return jnp.mean(jnp.where(above > 0.0, above ** (order - 1), 0.0), axis=-1)
 
-    def mean_powers(self, terms, order, separation):
+    def mean_powers(self, terms, order, separation, sizes=None):
         assert order == 0
         gap = separation[..., None] - self.heights
         return jnp.stack([jnp.mean(jnp.broadcast_to(t(gap), gap.shape), axis=-1) for t in terms])
@@ -209,7 +220,7 @@ BRUTE = HERTZ + DMT + MENISCUS
 @cache
 def brute_tools():
     """Compiled: the memory's step on the sampled heights, and each asperity's branches."""
-    interface = means(BRUTE, Sampled(jnp.asarray(HEIGHTS)))
+    interface = means(BRUTE, Points(jnp.asarray(HEIGHTS)))
 
     @jax.jit
     def step(memory, h):

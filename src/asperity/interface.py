@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import enum
 from typing import NamedTuple
 
 import equinox as eqx
-import numpy as np
 
 from ._jax import jax, jnp
 from .laws.base import Law, Powers, Real, TruncatedPower, quantity, terms
+from .quadrature import Asked, means, means_near
 from .roughness.heights import Heights
 
 Memory = tuple[jax.Array, ...]
 """One threshold height b [m] per hysteretic law: the asperities higher than b are bonded."""
 
-_WINDOW = 8.6  # heights beyond this many rms weigh less than 1e-16
-_PIECES = 12  # quadrature pieces, besides those that a law's kinks and range ask for
-_NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))
+
+class Near(enum.Enum):
+    """How the separations at which means are taken lie to one another."""
+
+    NOT = "anywhere"
+    BY = "a vector within a few rms"
+    LEVEL = "the same, bonded up to the same gap"
 
 
 class Means(NamedTuple):
@@ -29,7 +34,7 @@ class Means(NamedTuple):
     energy
         Stored energy [J/m^2].
     bonds
-        Bonds by law [1/m^2].
+        Bonds by law [1/m^2]; where tip radii differ, in bonds of the law's own radius.
     touching
         Asperities with a negative gap [1/m^2].
     """
@@ -41,7 +46,7 @@ class Means(NamedTuple):
 
 
 class Interface(eqx.Module):
-    """Many asperities of one radius and random height between two planes.
+    """Many asperities of random height between two planes.
 
     Parameters
     ----------
@@ -85,9 +90,24 @@ class Interface(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
+    def grain(self) -> float:
+        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
+        return self.heights.grain
+
+    @property
+    def blur(self) -> float:
+        """Relative error of curves below which nothing is gained. Without values."""
+        return self.heights.blur
+
+    @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
         return jnp.max(jnp.stack([law.reach for law in terms(self.law)]))
+
+    @property
+    def last_kink(self) -> jax.Array:
+        """Gap [m] beyond which all laws are smooth."""
+        return jnp.max(jnp.stack([law.last_kink for law in terms(self.law)]))
 
     def fresh(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""
@@ -104,7 +124,14 @@ class Interface(eqx.Module):
             for law, b in zip(self.hysteretic, memory, strict=True)
         )
 
-    def measure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> Means:
+    @property
+    def only_bonded(self) -> bool:
+        """Whether every law without truncated powers ends with its bonds. Without values."""
+        return all(law.only_bonded for law in terms(self.law) if not law.in_powers)
+
+    def measure(
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+    ) -> Means:
         """All means over the heights at a separation reached monotonically from ``memory``.
 
         Parameters
@@ -115,28 +142,31 @@ class Interface(eqx.Module):
             Thresholds at the last reversal, each of that shape or a scalar.
         lift
             0 for a plane, 1 for a rigid paraboloid (times 2 pi R).
+        near
+            Whether the separations are a vector of places near one another (static).
         """
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         laws = dict(enumerate(terms(self.law)))
-        requests: list[tuple[str, Powers]] = [("touching", (TruncatedPower(1.0, 0.0, 0.0),))]
+        requests: list[tuple[str, TruncatedPower, float]] = [
+            ("touching", TruncatedPower(1.0, 0.0, 0.0), 0.0)
+        ]
         for k, law in laws.items():
+            size = law.radius_power
             if law.hysteretic:
-                requests.append((f"bonds {k}", (TruncatedPower(1.0, 0.0, edges[k]),)))
-            powers = law.powers(edges[k])
-            if powers is not None:
-                requests.append((law.mechanism, powers[0]))
-                requests.append(("energy", powers[1]))
-        flat = tuple(term for _, terms_ in requests for term in terms_)
-        values = self.heights.mean_powers(flat, lift, separation)
+                requests.append((f"bonds {k}", TruncatedPower(1.0, 0.0, edges[k]), size))
+            force, energy = law.powers(edges[k]) or ((), ())
+            requests += [(law.mechanism, term, size) for term in force]
+            requests += [("energy", term, size) for term in energy]
+        names, flat, sizes = zip(*requests, strict=True)
+        values = self.heights.mean_powers(flat, lift, separation, sizes)
         sums: dict[str, jax.Array] = {}
-        for (name, _), value in zip(
-            [(name, t) for name, terms_ in requests for t in terms_], values, strict=True
-        ):
+        for name, value in zip(names, values, strict=True):
             sums[name] = sums.get(name, 0.0) + self.density * value
         for k, law in laws.items():
             if law.powers(edges[k]) is None:
-                for name in (*self._force_names(law), "energy"):
-                    mean = self._quadrature(law, edges[k], separation, lift, name)
+                asked = Asked((*self._force_names(law), "energy"), lift)
+                rows = self._quadrature(law, edges[k], separation, asked, near)
+                for name, mean in zip(asked.names, rows, strict=True):
                     target = law.mechanism if name == "force" else name
                     sums[target] = sums.get(target, 0.0) + self.density * mean
         zero = jnp.zeros_like(separation)
@@ -157,14 +187,18 @@ class Interface(eqx.Module):
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         total = jnp.zeros_like(separation)
         flat: Powers = ()
+        sizes: tuple[float, ...] = ()
         for k, law in enumerate(terms(self.law)):
             powers = law.powers(edges[k])
             if powers is None:
-                total = total + self._quadrature(law, edges[k], separation, lift, name)
+                asked = Asked((name,), lift)
+                total = total + self._quadrature(law, edges[k], separation, asked, Near.NOT)[0]
             else:
                 flat += powers[0 if name == "force" else 1]
+                sizes += (law.radius_power,) * (len(flat) - len(sizes))
         if flat:
-            total = total + jnp.sum(self.heights.mean_powers(flat, lift, separation), axis=0)
+            means = self.heights.mean_powers(flat, lift, separation, sizes)
+            total = total + jnp.sum(means, axis=0)
         return self.density * total
 
     def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
@@ -192,6 +226,15 @@ class Interface(eqx.Module):
             return jnp.full_like(separation, -jnp.inf)
         return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)
 
+    def _quadrature(
+        self, law: Law, edge: jax.Array, separation: jax.Array, asked: Asked, near: Near
+    ) -> jax.Array:
+        """Means of a law without truncated powers, one row a name."""
+        if near is Near.NOT:
+            return means(law, self.heights, edge, separation, asked)
+        level = near is Near.LEVEL
+        return means_near(law, self.heights, edge, separation, asked, level=level)
+
     @staticmethod
     def _force_names(law: Law) -> tuple[str, ...]:
         """The parts into which a law without powers takes its force apart."""
@@ -199,90 +242,6 @@ class Interface(eqx.Module):
             return ("force",)
         zero = jnp.zeros(())
         return tuple(law.components(zero, zero > 1.0))
-
-    def _quadrature(
-        self, law: Law, edge: jax.Array, separation: jax.Array, lift: int, name: str
-    ) -> jax.Array:
-        """Mean of a law without truncated powers, by Gauss-Legendre between its kinks."""
-
-        def one(e: jax.Array, h: jax.Array) -> jax.Array:
-            return self._one_quadrature(law, e, h, lift, name)
-
-        flat = jax.vmap(one)
-        shape = jnp.shape(separation)
-        value: jax.Array = flat(jnp.ravel(jnp.broadcast_to(edge, shape)), jnp.ravel(separation))
-        return value.reshape(shape)
-
-    def _one_quadrature(
-        self, law: Law, edge: jax.Array, separation: jax.Array, lift: int, name: str
-    ) -> jax.Array:
-        sigma = self.heights.rms
-        lowest = jnp.minimum(separation, 0.0) - _reach(separation / sigma) * sigma
-        highest = separation + _WINDOW * sigma
-        bounds = _pieces(lowest, highest, (*law.kinks, edge), law.length, sigma)
-        gap, weight = _points(bounds)
-        value = _branch_value(law, gap, gap < edge, name)
-        inner = jnp.sum(weight * value * self.heights.tail(lift, separation - gap))
-        if lift == 0:
-            return inner
-        return inner + _beyond(law, highest, sigma, name)
-
-
-def _branch_value(law: Law, gap: jax.Array, bonded: jax.Array, name: str) -> jax.Array:
-    if name == "energy":
-        if not law.hysteretic:
-            return law.energy(gap)
-        return jnp.where(bonded, law.bonded_energy(gap), law.energy(gap))
-    if name == "force":
-        if not law.hysteretic:
-            return law.force(gap)
-        return jnp.where(bonded, law.bonded_force(gap), law.force(gap))
-    return law.components(gap, bonded)[name]
-
-
-def _reach(reduced: jax.Array) -> jax.Array:
-    """How far above h, in rms, heights still weigh 1e-16 of those at h."""
-    inside = jnp.maximum(reduced, 0.0)
-    return jnp.sqrt(inside**2 + _WINDOW**2) - inside
-
-
-def _pieces(
-    lowest: jax.Array,
-    highest: jax.Array,
-    kinks: tuple[jax.Array | float, ...],
-    length: jax.Array | float,
-    sigma: jax.Array | float,
-) -> jax.Array:
-    """Sorted ends of the pieces: the kinks, and a ladder from them to both ends."""
-    kink = jnp.sort(jnp.clip(jnp.stack([jnp.asarray(k, float) for k in kinks]), lowest, highest))
-    uniform = lowest + (highest - lowest) * np.linspace(0.0, 1.0, _PIECES + 1)
-    ladder = jnp.minimum(length, sigma) * 4.0 ** np.arange(-1.0, 7.0)
-    ladder = jnp.concatenate([kink[0] - ladder, kink[-1] + ladder])
-    return jnp.sort(jnp.clip(jnp.concatenate([uniform, kink, ladder]), lowest, highest))
-
-
-def _points(bounds: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Nodes and weights on all pieces, gathered at both ends of each (square-root ends)."""
-    t = 0.5 * (_NODES + 1.0)
-    inner = t * t * (3.0 - 2.0 * t)
-    slope = 6.0 * t * (1.0 - t) * 0.5 * _WEIGHTS
-    width = jnp.diff(bounds)[:, None]
-    return (bounds[:-1, None] + width * inner).ravel(), (width * slope).ravel()
-
-
-def _beyond(law: Law, start: jax.Array, sigma: jax.Array | float, name: str) -> jax.Array:
-    """Integral of a free branch over all gaps beyond ``start``, where T_1 is 1.
-
-    An energy that falls like 1/gap has none: it is cut at a gap fixed by the law, which
-    shifts the zero of energy and nothing else.
-    """
-    if name != "energy":
-        whole = law.energy(start)
-        return jnp.where(name == "force" or name == law.mechanism, whole, 0.0)
-    ladder = jnp.minimum(law.length, sigma) * 2.0 ** np.arange(-2.0, 34.0)
-    kink = jnp.stack([jnp.asarray(k, float) for k in law.kinks])
-    gap, weight = _points(jnp.sort(jnp.maximum(jnp.concatenate([kink, ladder]), start)))
-    return jnp.sum(weight * law.energy(gap))
 
 
 def _stack(rows: list[jax.Array]) -> jax.Array:

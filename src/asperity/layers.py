@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import equinox as eqx
 
 from ._jax import jax, jnp
 from .errors import InputError
-from .interface import Interface, Means, Memory
+from .interface import Interface, Means, Memory, Near
 from .laws.base import Law, terms
-
-
-class Scale(NamedTuple):
-    """How rough several interfaces are together."""
-
-    rms: jax.Array
+from .radius_classes import RadiusClasses, Scale, scale_of
 
 
 class Layers(eqx.Module):
@@ -37,9 +31,9 @@ class Layers(eqx.Module):
     Pressures, energies and bonds add up; the memory is that of the parts in a row.
     """
 
-    parts: tuple[Interface, ...]
+    parts: tuple[Interface | RadiusClasses, ...]
 
-    def __init__(self, parts: Sequence[Interface]) -> None:
+    def __init__(self, parts: Sequence[Interface | RadiusClasses]) -> None:
         counted = [name for part in parts for law in terms(part.law) for name in law.counts]
         twice = sorted({name for name in counted if counted.count(name) > 1})
         if twice:
@@ -63,14 +57,29 @@ class Layers(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
+    def grain(self) -> float:
+        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
+        return min(part.grain for part in self.parts)
+
+    @property
+    def blur(self) -> float:
+        """Relative error of curves below which nothing is gained. Without values."""
+        return max(part.blur for part in self.parts)
+
+    @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
         return jnp.max(jnp.stack([part.reach for part in self.parts]))
 
     @property
+    def last_kink(self) -> jax.Array:
+        """Gap [m] beyond which all laws are smooth."""
+        return jnp.max(jnp.stack([part.last_kink for part in self.parts]))
+
+    @property
     def heights(self) -> Scale:
-        """The largest rms height among them."""
-        return Scale(jnp.max(jnp.stack([jnp.asarray(part.heights.rms) for part in self.parts])))
+        """What their heights are on the whole."""
+        return scale_of([part.heights for part in self.parts])
 
     def fresh(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""
@@ -86,9 +95,16 @@ class Layers(eqx.Module):
             b for part, own in self._shares(memory) for b in part.remember(own, separation)
         )
 
-    def measure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> Means:
+    @property
+    def only_bonded(self) -> bool:
+        """Whether every law without truncated powers ends with its bonds. Without values."""
+        return all(part.only_bonded for part in self.parts)
+
+    def measure(
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+    ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`."""
-        each = [part.measure(separation, own, lift) for part, own in self._shares(memory)]
+        each = [part.measure(separation, own, lift, near) for part, own in self._shares(memory)]
         zero = jnp.zeros_like(separation)
         sums = dict.fromkeys(self.components, zero)
         touching = zero
@@ -119,7 +135,7 @@ class Layers(eqx.Module):
         formation, rupture = zip(*(part.losses() for part in self.parts), strict=True)
         return jnp.concatenate(formation), jnp.concatenate(rupture)
 
-    def _shares(self, memory: Memory) -> list[tuple[Interface, Memory]]:
+    def _shares(self, memory: Memory) -> list[tuple[Interface | RadiusClasses, Memory]]:
         """Each interface with its own part of the memory."""
         out, first = [], 0
         for part in self.parts:
@@ -129,5 +145,5 @@ class Layers(eqx.Module):
         return out
 
 
-Surfaces = Interface | Layers
+Surfaces = Interface | Layers | RadiusClasses
 """What a rough contact presses."""

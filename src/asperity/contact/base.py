@@ -122,6 +122,11 @@ class Contact(eqx.Module):
             return jnp.zeros_like(parts[0])
         return parts[self.components.index("elastic")]
 
+    @property
+    def blur(self) -> float:
+        """Relative error of its curves below which nothing is gained. Without values."""
+        return 0.0
+
     @abc.abstractmethod
     def refined(self, factor: int) -> Contact:
         """The same contact with ``factor`` times as many panels on its curves."""

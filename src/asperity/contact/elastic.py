@@ -98,6 +98,10 @@ class ElasticContact(Contact):
         """The same contact without bulk deformation."""
         return RigidContact(self.interface, self.shape, self.resolved)
 
+    @property
+    def blur(self) -> float:
+        return self.interface.blur
+
     def refined(self, factor: int) -> ElasticContact:
         finer = self.resolved._replace(panels=factor * self.resolved.panels)
         return dataclasses.replace(self, resolved=finer)

@@ -10,9 +10,11 @@ from typing import Any
 import equinox as eqx
 
 from .._jax import jax, jnp
+from ..errors import InputError
 from ..interface import Interface
 from ..laws.base import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
 from ..layers import Layers, Surfaces
+from ..radius_classes import RadiusClasses
 from .base import Contact, Memory, State
 from .rigid import RigidContact
 from .smooth import SmoothContact
@@ -44,8 +46,20 @@ class Told(Law):
         return self.law.counts
 
     @property
+    def radius_power(self) -> float:  # type: ignore[override]
+        return self.law.radius_power
+
+    @property
     def hysteretic(self) -> bool:
         return True
+
+    @property
+    def in_powers(self) -> bool:
+        return self.law.in_powers
+
+    @property
+    def only_bonded(self) -> bool:
+        return self.mechanism == LATE or self.law.only_bonded
 
     @property
     def forming_gap(self) -> jax.Array | float:
@@ -175,8 +189,20 @@ def _told_rough(contact: Any) -> RigidContact:
 
 def _told_surfaces(surfaces: Surfaces) -> Surfaces:
     if isinstance(surfaces, Layers):
-        return Layers([_told_interface(part) for part in surfaces.parts])
-    return _told_interface(surfaces)
+        return Layers([_told_part(part) for part in surfaces.parts])
+    return _told_part(surfaces)
+
+
+def _told_part(part: Interface | RadiusClasses) -> Interface | RadiusClasses:
+    if isinstance(part, Interface):
+        return _told_interface(part)
+    if LATE in part.mechanisms:
+        raise InputError(
+            "`formation_time` must be absent where the bridges of each class of tip radius would "
+            "need a history of their own; take model = 'equilibrium' or source = 'gaussian'",
+            key="capillary.formation_time",
+        )
+    return part
 
 
 def _told_interface(interface: Interface) -> Interface:

@@ -9,6 +9,9 @@ from .._jax import jax, jnp
 from ..layers import Surfaces
 from ..program import Program
 
+LINEAR = 8.0
+"""Panels are even in asinh(separation / (LINEAR rms))."""
+
 
 class Resolution(NamedTuple):
     """Numbers that are fixed before anything is traced.
@@ -35,30 +38,35 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     enough for a few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
-        return Resolution(10, 16, 2)
-    share, beyond, bends = (float(length) for length in _lengths(interface))
-    reach = 9.0 + beyond
+        return Resolution(ceil(10 / interface.grain**0.5), 16, 2)
+    grain = interface.grain
+    share, kinked, smooth, bends = (float(length) for length in _lengths(interface))
     nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
     pieces = ceil(share / 4.5) or 1
     if bends > 1.5:
         nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
     if not deforms:
-        return Resolution(ceil(reach / 2.2), max(nodes, 8), pieces)
+        return Resolution(ceil((kinked + smooth) / (2.2 * grain)), max(nodes, 8), pieces)
     # Rings that lag behind have a piece of their own.
-    return Resolution(ceil(reach / 1.7), nodes, pieces + (share > 0.1))
+    panels = ceil((kinked + smooth) / (1.7 * grain))
+    return Resolution(panels, nodes, pieces + (share > 0.1))
 
 
-def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """How far a bond stretches and a force reaches, over the rms height.
+def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+    """How far a bond stretches, and how far forces have kinks and then reach, over the rms height.
 
-    And how far a bond stretches over the length on which its force changes.
+    What is smooth counts as the panels do, which widen with the separation. And how far a bond
+    stretches over the length on which its force changes.
     """
     widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
     widest = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
     rms = interface.heights.rms
     bends = [width / law.length for width, law in zip(widths, interface.hysteretic, strict=True)]
     most = jnp.max(jnp.stack([jnp.zeros(()), *bends]))
-    return widest / rms, jnp.maximum(interface.reach, 0.0) / rms, most
+    kinked = (interface.heights.top + interface.last_kink) / rms
+    reach = (interface.heights.top + jnp.maximum(interface.reach, 0.0)) / rms
+    smooth = LINEAR * (jnp.arcsinh(reach / LINEAR) - jnp.arcsinh(kinked / LINEAR))
+    return widest / rms, kinked, jnp.maximum(smooth, 0.0), most
 
 
 _lengths = Program(_in_rms)

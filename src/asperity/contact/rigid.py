@@ -10,13 +10,13 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..interface import Means, Near
 from ..interface import Memory as Thresholds
 from ..layers import Surfaces
 from ..shapes import Sphere
 from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
-from .resolution import Resolution, resolution
+from .resolution import LINEAR, Resolution, resolution
 
-_LINEAR = 8.0  # panels are even in asinh(separation / (_LINEAR rms))
 FAR = 2
 """Panels beyond the reach of the forces, in geometric progression."""
 
@@ -63,6 +63,10 @@ class RigidContact(Contact):
     def _measure(self) -> jax.Array:
         return jnp.asarray(2.0 * pi * self.shape.radius)
 
+    @property
+    def blur(self) -> float:
+        return self.interface.blur
+
     def refined(self, factor: int) -> RigidContact:
         finer = self.resolved._replace(panels=factor * self.resolved.panels)
         return dataclasses.replace(self, resolved=finer)
@@ -74,7 +78,27 @@ class RigidContact(Contact):
         return tuple(jnp.asarray(-jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded)
 
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
-        means = self.interface.measure(separation, memory, lift=1)
+        return self._state(separation, self.interface.measure(separation, memory, lift=1))
+
+    def branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
+        """Places of one panel share their quadrature; far out only where all forces have ended."""
+        count = places.shape[0] - (0 if self.interface.only_bonded else FAR)
+        states = [self._states(Near.LEVEL, places[:count], memory)]
+        if count < places.shape[0]:
+            states.append(super().branch(ends, places[count:], memory))
+        return jax.tree_util.tree_map(lambda *rows: jnp.concatenate(rows), *states)
+
+    def _states(self, near: Near, places: jax.Array, memory: Thresholds) -> State:
+        """The contact at rows of places [m], those of a row near one another."""
+
+        def row(places: jax.Array) -> State:
+            means = self.interface.measure(places, memory, 1, near)
+            parts, bonds = means.parts.T, means.bonds.T
+            return jax.vmap(self._state)(places, means._replace(parts=parts, bonds=bonds))
+
+        return jax.vmap(row)(places)
+
+    def _state(self, separation: jax.Array, means: Means) -> State:
         parts = self._measure * means.parts
         return State(
             force=jnp.sum(parts),
@@ -108,7 +132,7 @@ class RigidContact(Contact):
         ]
         enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
         places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
-        return Way(enter, leave, jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places))
+        return Way(enter, leave, self._states(Near.BY, places, memory))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
@@ -125,7 +149,7 @@ class RigidContact(Contact):
 
     @property
     def reach(self) -> jax.Array:
-        return 9.0 * self.interface.heights.rms + self.interface.reach
+        return self.interface.heights.top + self.interface.reach
 
 
 _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 50.0)])
@@ -136,7 +160,7 @@ def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: 
 
     Even over a few rms around 0 and in proportion to |d| far from it.
     """
-    scale = _LINEAR * contact.interface.heights.rms
+    scale = LINEAR * contact.interface.heights.rms
     top = jnp.clip(contact.reach, low, high)
     ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(top / scale), count + 1)
     near = (scale * jnp.sinh(ends)).at[0].set(low).at[-1].set(top)

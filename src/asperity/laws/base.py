@@ -64,6 +64,10 @@ class Law(eqx.Module):
     """The forces it contains ("elastic", "adhesion", "capillary"): no two laws of a sum
     may contain the same one."""
 
+    radius_power: ClassVar[float] = 0.0
+    """At equal gaps it grows with this power of the tip radius: 0, 0.5 or 1; 0 also where with
+    none, so that asperities of different radii need a law each."""
+
     @abc.abstractmethod
     def force(self, gap: jax.Array) -> jax.Array:
         """Force of the free branch [N]."""
@@ -103,6 +107,11 @@ class Law(eqx.Module):
     @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which the force is below 1e-6 of its largest pull."""
+        return self.last_kink
+
+    @property
+    def last_kink(self) -> jax.Array:
+        """The largest of the kinks [m], or 0."""
         ends = [jnp.asarray(gap, dtype=jnp.float64) for gap in self.kinks]
         return jnp.max(jnp.maximum(jnp.stack([*ends, jnp.zeros(())]), 0.0))
 
@@ -117,6 +126,24 @@ class Law(eqx.Module):
         None where the law has no such form; then its mean over heights is a quadrature.
         """
         return None
+
+    def energy_beyond(self, gap: jax.Array) -> jax.Array | None:
+        """Integral of the free energy over all gaps beyond one [J m]; None where by quadrature.
+
+        An energy that falls like 1/gap has none: it is cut at a gap fixed by the law, which
+        shifts the zero of energy of a rough body and nothing else.
+        """
+        return None
+
+    @property
+    def in_powers(self) -> bool:
+        """Whether :meth:`powers` has the form. Known without values."""
+        return type(self).powers is not Law.powers
+
+    @property
+    def only_bonded(self) -> bool:
+        """Whether its free branch is nothing at all. Known without values."""
+        return False
 
     def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
         """The force [N] taken apart by mechanism, for pictures and records."""

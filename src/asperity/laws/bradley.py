@@ -8,6 +8,8 @@ from typing import ClassVar
 from .._jax import jax, jnp
 from .base import Law, Real, quantity
 
+_FAR = 2.0**33
+
 
 class Bradley(Law):
     """Adhesive part of the rigid-body model: the 3-9 potential between two planes.
@@ -34,6 +36,7 @@ class Bradley(Law):
     spacing: Real = quantity()
 
     counts: ClassVar[frozenset[str]] = frozenset({"adhesion"})
+    radius_power: ClassVar[float] = 1.0
 
     def force(self, gap: jax.Array) -> jax.Array:
         y = self.spacing / (jnp.maximum(gap, 0.0) + self.spacing)
@@ -43,6 +46,14 @@ class Bradley(Law):
         y = self.spacing / (jnp.maximum(gap, 0.0) + self.spacing)
         outside = self._pull * self.spacing * (4.0 * y - y**7 / 7.0) / 3.0
         return outside + self._pull * jnp.maximum(-gap, 0.0)
+
+    def energy_beyond(self, gap: jax.Array) -> jax.Array:
+        """Up to a gap of 2^33 spacings, far outside everything, since it grows with log(gap)."""
+        y = self.spacing / (jnp.maximum(gap, 0.0) + self.spacing)
+        inside = jnp.maximum(-gap, 0.0)
+        outside = self._pull * self.spacing**2 * (4.0 * jnp.log(_FAR * y) - y**6 / 42.0) / 3.0
+        at_touch = self._pull * self.spacing * (4.0 - 1.0 / 7.0) / 3.0
+        return outside + inside * (at_touch + 0.5 * self._pull * inside)
 
     @property
     def _pull(self) -> jax.Array | float:

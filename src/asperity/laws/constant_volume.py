@@ -99,6 +99,10 @@ class ConstantVolume(Law):
     def length(self) -> jax.Array:
         return jnp.minimum(self.height, self.breaking_gap)
 
+    @property
+    def only_bonded(self) -> bool:
+        return self._touches
+
     def force(self, gap: jax.Array) -> jax.Array:
         return jnp.zeros_like(gap) if self._touches else self._before.force(gap)
 

@@ -30,6 +30,7 @@ class Dmt(Law):
     work_of_adhesion: Real = quantity()
 
     counts: ClassVar[frozenset[str]] = frozenset({"adhesion"})
+    radius_power: ClassVar[float] = 1.0
 
     def force(self, gap: jax.Array) -> jax.Array:
         return self.powers(jnp.zeros(()))[0][0](gap)

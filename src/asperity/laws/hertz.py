@@ -28,6 +28,7 @@ class Hertz(Law):
 
     mechanism: ClassVar[str] = "elastic"
     counts: ClassVar[frozenset[str]] = frozenset({"elastic"})
+    radius_power: ClassVar[float] = 0.5
 
     def force(self, gap: jax.Array) -> jax.Array:
         return self.powers(jnp.zeros(()))[0][0](gap)

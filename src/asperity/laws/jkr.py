@@ -70,6 +70,10 @@ class Jkr(Law):
         w, r, e = self.work_of_adhesion, self.radius, self.modulus
         return jnp.cbrt(2.0 * pi * w * r**2 / e)
 
+    @property
+    def only_bonded(self) -> bool:
+        return True
+
     def force(self, gap: jax.Array) -> jax.Array:
         return jnp.zeros_like(gap)
 
@@ -110,16 +114,14 @@ _FOLD = 2.0 ** (-2.0 / 3.0)  # where d(u^4 - u)/du = 0
 def _branch(overlap: jax.Array) -> jax.Array:
     """Larger real root u of u^4 - u = overlap, for overlap not below the fold's."""
     excess = jnp.maximum(overlap + 3.0 * 2.0 ** (-8.0 / 3.0), 0.0)
-    # excess = 6 f^2 s^2 + 4 f s^3 + s^4 in s = u - f, f the fold: both starts lie above s,
-    # and from above Newton descends on this convex function without overshooting.
-    u = _FOLD + jnp.minimum(jnp.sqrt(excess / (6.0 * _FOLD**2)), jnp.sqrt(jnp.sqrt(excess)))
-
-    def newton(_: int, u: jax.Array) -> jax.Array:
-        slope = 4.0 * u**3 - 1.0
-        step = (u**4 - u - overlap) / jnp.where(slope > 1e-14, slope, 1.0)
-        return jnp.maximum(u - jnp.where(slope > 1e-14, step, 0.0), _FOLD)
-
-    return jax.lax.fori_loop(0, 12, newton, u)
+    # excess = 6 f^2 s^2 + 4 f s^3 + s^4 in s = u - f, f the fold: both starts lie above s, and
+    # from above Newton descends on this convex function. Six steps reach rounding from there.
+    s = jnp.minimum(jnp.sqrt(excess / (6.0 * _FOLD**2)), jnp.sqrt(jnp.sqrt(excess)))
+    for _ in range(6):
+        value = s * s * (6.0 * _FOLD**2 + s * (4.0 * _FOLD + s)) - excess
+        slope = s * (12.0 * _FOLD**2 + s * (12.0 * _FOLD + 4.0 * s))
+        s = jnp.maximum(s - value / jnp.where(slope > 0.0, slope, 1.0), 0.0)
+    return _FOLD + s
 
 
 @_branch.defjvp

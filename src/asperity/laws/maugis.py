@@ -85,6 +85,10 @@ class Maugis(Law):
         """Unit of force [N]."""
         return pi * self.work_of_adhesion * self.radius
 
+    @property
+    def only_bonded(self) -> bool:
+        return True
+
     def force(self, gap: jax.Array) -> jax.Array:
         return jnp.zeros_like(gap)
 

@@ -103,6 +103,8 @@ class Meniscus(Condensed):
     kelvin_radius: Real = quantity()
     formation: Formation = ByContact()
 
+    radius_power: ClassVar[float] = 1.0
+
     @property
     def pull(self) -> jax.Array:
         """Its largest force [N], at contact."""

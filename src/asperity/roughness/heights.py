@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import abc
+from math import sqrt
+from typing import ClassVar
 
 import equinox as eqx
 
@@ -19,21 +21,55 @@ class Heights(eqx.Module):
     rigid paraboloid T_1.
     """
 
+    grain: ClassVar[float] = 1.0
+    """How fine the curves are that it makes, beside those of Gaussian heights of its rms."""
+
+    blur: ClassVar[float] = 0.0
+    """Relative error of curves below which nothing is gained: of what is known of the heights."""
+
     @property
     @abc.abstractmethod
     def rms(self) -> jax.Array | float:
         """Root mean square height [m]."""
 
+    @property
     @abc.abstractmethod
-    def tail(self, order: int, height: jax.Array) -> jax.Array:
-        """T_order at ``height`` [m], in m^(order-1); ``order`` 0, 1, 2, ... is static."""
+    def top(self) -> jax.Array | float:
+        """Height [m] above which next to none is."""
+
+    @property
+    @abc.abstractmethod
+    def bottom(self) -> jax.Array | float:
+        """Height [m] below which next to none is."""
 
     @abc.abstractmethod
-    def mean_powers(self, terms: Powers, order: int, separation: jax.Array) -> jax.Array:
+    def highest_beside(self, height: jax.Array) -> jax.Array:
+        """Height [m] above which all together weigh nothing against those above ``height``."""
+
+    @abc.abstractmethod
+    def tail(self, order: int, height: jax.Array, size: float = 0.0) -> jax.Array:
+        """T_order at ``height`` [m], in m^(order-1); ``order`` 0, 1, 2, ... is static.
+
+        Where asperities differ in tip radius too, each counts by the power ``size`` (static) of
+        its radius over that of the law.
+        """
+
+    @abc.abstractmethod
+    def mean_powers(
+        self,
+        terms: Powers,
+        order: int,
+        separation: jax.Array,
+        sizes: tuple[float, ...] | None = None,
+    ) -> jax.Array:
         """Integrals of ``term(g) T_order(separation - g)`` over all gaps g.
 
-        One row a term, each of the shape of ``separation``.
+        One row a term, each of the shape of ``separation``; ``sizes`` as in :meth:`tail`, one a
+        term, 0 by default.
         """
+
+
+_WINDOW = 8.6  # heights beyond this many rms weigh less than 1e-16
 
 
 class Gaussian(Heights):
@@ -43,26 +79,47 @@ class Gaussian(Heights):
     ----------
     rms_height
         Standard deviation sigma of the heights [m].
+    mean_height
+        Their mean above the plane that separations count from [m].
     """
 
     rms_height: Real = quantity()
+    mean_height: Real = quantity(0.0)
 
     @property
     def rms(self) -> jax.Array | float:
         return self.rms_height
 
-    def tail(self, order: int, height: jax.Array) -> jax.Array:
-        x = height / self.rms_height
+    @property
+    def top(self) -> jax.Array | float:
+        return self.mean_height + 9.0 * self.rms_height
+
+    @property
+    def bottom(self) -> jax.Array | float:
+        return self.mean_height - _WINDOW * self.rms_height
+
+    def highest_beside(self, height: jax.Array) -> jax.Array:
+        above = jnp.maximum(height - self.mean_height, 0.0)
+        return self.mean_height + jnp.hypot(above, _WINDOW * self.rms_height)
+
+    def tail(self, order: int, height: jax.Array, size: float = 0.0) -> jax.Array:
+        x = (height - self.mean_height) / self.rms_height
         if order == 0:
             return normal_density(x) / self.rms_height
+        if order == 1:
+            return 0.5 * jax.lax.erfc(x / sqrt(2.0))
         scale = self.rms_height ** (order - 1) * order_ratio(0.0, order - 1)
         return scale * height_integral(order - 1.0, x)
 
-    def mean_powers(self, terms: Powers, order: int, separation: jax.Array) -> jax.Array:
-        sigma = self.rms_height
-        reduced = jnp.stack(
-            [jnp.broadcast_to(separation - t.edge, separation.shape) for t in terms]
-        )
+    def mean_powers(
+        self,
+        terms: Powers,
+        order: int,
+        separation: jax.Array,
+        sizes: tuple[float, ...] | None = None,
+    ) -> jax.Array:
+        sigma, above = self.rms_height, separation - self.mean_height
+        reduced = jnp.stack([jnp.broadcast_to(above - t.edge, separation.shape) for t in terms])
         values = height_integrals(tuple(t.exponent + order for t in terms), reduced / sigma)
         scale = [
             t.coefficient * sigma ** (t.exponent + order) * order_ratio(t.exponent, order)

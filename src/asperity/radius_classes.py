@@ -1,0 +1,165 @@
+"""Asperities of several tip radii, in classes that each have a memory of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import numpy as np
+
+from ._jax import jax, jnp
+from .interface import Interface, Means, Memory, Near
+from .laws.base import Law
+
+CLASSES = 6
+"""Classes of tip radius, where a law needs them."""
+
+
+class Scale(NamedTuple):
+    """How rough several interfaces are together: largest rms height and highest height [m]."""
+
+    rms: jax.Array
+    top: jax.Array
+
+
+class RadiusClasses(eqx.Module):
+    """Asperities of several tip radii: an interface for each class of radius, side by side.
+
+    For laws whose gaps depend on the radius, so that bonds of different radii need a memory
+    each. Every asperity belongs to one class.
+
+    Parameters
+    ----------
+    parts
+        The interfaces, with the same kinds of laws and of heights.
+    """
+
+    stacked: Interface
+    count: int = eqx.field(static=True)
+
+    def __init__(self, parts: Sequence[Interface]) -> None:
+        self.stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *parts)
+        self.count = len(parts)
+
+    @property
+    def law(self) -> Law:
+        """Their laws, a number for each class in each."""
+        return self.stacked.law
+
+    @property
+    def parts(self) -> tuple[Interface, ...]:
+        """The classes one by one."""
+        return tuple(
+            jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], self.stacked)
+            for k in range(self.count)
+        )
+
+    @property
+    def hysteretic(self) -> tuple[Law, ...]:
+        """The laws that remember, class after class."""
+        return tuple(law for part in self.parts for law in part.hysteretic)
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names under which losses are booked."""
+        return self.stacked.mechanisms * self.count
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Mechanisms of the forces, elastic first."""
+        return self.stacked.components
+
+    @property
+    def grain(self) -> float:
+        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
+        return self.stacked.grain
+
+    @property
+    def blur(self) -> float:
+        """Relative error of curves below which nothing is gained. Without values."""
+        return self.stacked.blur
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
+        return jnp.max(jax.vmap(lambda part: part.reach)(self.stacked))
+
+    @property
+    def last_kink(self) -> jax.Array:
+        """Gap [m] beyond which all laws are smooth."""
+        return jnp.max(jax.vmap(lambda part: part.last_kink)(self.stacked))
+
+    @property
+    def heights(self) -> Scale:
+        """What their heights are on the whole."""
+        return scale_of([part.heights for part in self.parts])
+
+    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory of surfaces that have never touched, one threshold per ``place``."""
+        return self.stacked.fresh(place) * self.count
+
+    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory on the outermost parting branch: all bonds that can hold do."""
+        return self.stacked.torn(place) * self.count
+
+    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
+        """The memory after the separation moved monotonically to ``separation`` [m]."""
+        shares = zip(self.parts, self._shares(memory), strict=True)
+        return tuple(b for part, own in shares for b in part.remember(own, separation))
+
+    @property
+    def only_bonded(self) -> bool:
+        """Whether every law without truncated powers ends with its bonds. Without values."""
+        return self.stacked.only_bonded
+
+    def measure(
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+    ) -> Means:
+        """All means over the heights; see :meth:`Interface.measure`."""
+        each = self._each(lambda part, own: part.measure(separation, own, lift, near), memory)
+        sums = jax.tree_util.tree_map(lambda leaf: jnp.sum(leaf, axis=0), each)
+        bonds = each.bonds.reshape(-1, *each.bonds.shape[2:])
+        return Means(sums.parts, sums.energy, bonds, sums.touching)
+
+    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+        each = self._each(lambda part, own: part.pressure(separation, own, lift), memory)
+        return jnp.sum(each, axis=0)
+
+    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
+        each = self._each(lambda part, own: part.energy(separation, own, lift), memory)
+        return jnp.sum(each, axis=0)
+
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""
+        formation, rupture = jax.vmap(lambda part: part.losses())(self.stacked)
+        return formation.ravel(), rupture.ravel()
+
+    def _each(self, value: Callable[[Interface, Memory], Any], memory: Memory) -> Any:
+        """A value of all classes, their axis first."""
+        shares = self._shares(memory)
+        rows = tuple(jnp.stack(each) for each in zip(*shares, strict=True))
+        return jax.vmap(value)(self.stacked, rows)
+
+    def _shares(self, memory: Memory) -> list[Memory]:
+        """The memory of each class."""
+        laws = len(memory) // self.count
+        return [memory[k * laws : (k + 1) * laws] for k in range(self.count)]
+
+
+def scale_of(heights: Sequence[Any]) -> Scale:
+    """The largest rms height and the highest height among several distributions."""
+    return Scale(
+        jnp.max(jnp.stack([jnp.asarray(each.rms) for each in heights])),
+        jnp.max(jnp.stack([jnp.asarray(each.top) for each in heights])),
+    )
+
+
+def members(radii: np.ndarray, classes: int = CLASSES) -> list[np.ndarray]:
+    """Indices of the summits of each class of tip radius, the smallest radii first."""
+    order = np.argsort(radii, kind="stable")
+    share = np.cumsum(radii[order] ** (2.0 / 3.0))
+    number = np.minimum((classes * share / share[-1]).astype(int), classes - 1)
+    return [order[number == k] for k in range(classes) if np.any(number == k)]

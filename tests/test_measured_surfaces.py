@@ -1,0 +1,343 @@
+"""Measured summits, each with its own height and radius: forces, bonds, motions, gradients."""
+
+import itertools
+from functools import cache
+from math import pi, radians
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from asperity._jax import jax, jnp
+from asperity.contact import RigidContact
+from asperity.errors import Tolerance
+from asperity.impact import Body, simulate
+from asperity.interface import Interface
+from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Maugis, Meniscus
+from asperity.layers import Layers
+from asperity.measures import measure
+from asperity.radius_classes import RadiusClasses, members
+from asperity.roughness import Gaussian, Sampled, spread_of
+from asperity.shapes import Sphere
+from asperity.summits import loss_error, measured_surface
+
+E, W, SIGMA, N = 5e9, 0.05, 4e-9, 1e14
+ANGLE = radians(40.0)
+COUNT = 1000
+_RANDOM = np.random.default_rng(5)
+HEIGHTS = SIGMA * (_RANDOM.gamma(8.0, size=COUNT) - 8.0) / np.sqrt(8.0)
+RADII = 2.5e-7 * np.exp(0.4 * _RANDOM.standard_normal(COUNT) - 0.1 * HEIGHTS / SIGMA)
+RADIUS = float(1.0 / np.mean(1.0 / RADII))
+PATH = np.array([4.0, 1.0, 2.5, -1.0, 3.0, 0.5, 1.2, 0.0, 4.5, -0.5, 2.0, 9.0]) * SIGMA
+
+
+def JKR(radius):
+    """Soft summits."""
+    return Jkr(radius, E, W)
+
+
+# --- the force of each radius ------------------------------------------------------------------
+
+POWERED = {
+    "hertz": lambda radius: Hertz(radius, E),
+    "dmt": lambda radius: Dmt(radius, W),
+    "bradley": lambda radius: Bradley(radius, W, 3e-10),
+    "meniscus": lambda radius: Meniscus(radius, 0.0728, ANGLE, 1.3e-9),
+    "kelvin meniscus": lambda radius: Meniscus(radius, 0.0728, ANGLE, 1.3e-9, ByKelvinGap()),
+}
+
+
+@pytest.mark.parametrize("make", POWERED.values(), ids=POWERED)
+def test_a_law_grows_with_its_power_of_the_radius_and_keeps_its_gaps(make):
+    """What lets one law, weighted, stand for all radii."""
+    one, other = make(1e-7), make(3.7e-7)
+    scale = 3.7**one.radius_power
+    gap = jnp.linspace(-5e-9, 5e-9, 21)
+    for branch in ("force", "energy", "bonded_force", "bonded_energy"):
+        here, there = getattr(one, branch)(gap), getattr(other, branch)(gap)
+        np.testing.assert_allclose(there, scale * here, rtol=1e-13)
+    for name in ("forming_gap", "breaking_gap", "reach"):
+        assert float(getattr(one, name)) == float(getattr(other, name))
+
+
+@pytest.mark.parametrize("make", [lambda r: Jkr(r, E, W), lambda r: Maugis(r, E, W, 1e-9)])
+def test_jkr_and_maugis_have_gaps_of_their_own_for_each_radius(make):
+    assert make(1e-7).radius_power == 0.0
+    assert float(make(4e-7).breaking_gap) > 1.01 * float(make(1e-7).breaking_gap)
+
+
+class Relays:
+    """Brute force: every summit with its own law, its own gap and its own bond."""
+
+    def __init__(self, make, heights, radii):
+        self.heights, self.laws = heights, make(jnp.asarray(radii))
+        self.losses = [np.asarray(self.laws.formation_loss), np.asarray(self.laws.rupture_loss)]
+        self.gaps = [np.asarray(self.laws.forming_gap), np.asarray(self.laws.breaking_gap)]
+        self.bonded, self.lost = np.zeros(heights.size, bool), 0.0
+
+    def step(self, separation):
+        """Pressure, energy, loss and bonds per area after a move to a separation [m]."""
+        gap = separation - self.heights
+        now = (gap <= self.gaps[0]) | (self.bonded & (gap < self.gaps[1]))
+        formed, broken = now & ~self.bonded, self.bonded & ~now
+        self.lost += np.mean(formed * self.losses[0] + broken * self.losses[1])
+        self.bonded = now
+        pressure, energy = _single(self.laws, jnp.asarray(gap), jnp.asarray(now))
+        return N * np.array([float(pressure), float(energy), self.lost, np.mean(now)])
+
+
+@jax.jit
+def _single(laws, gap, bonded):
+    force = jnp.where(bonded, laws.bonded_force(gap), laws.force(gap))
+    energy = jnp.where(bonded, laws.bonded_energy(gap), laws.energy(gap))
+    return jnp.mean(force), jnp.mean(energy)
+
+
+@eqx.filter_jit
+def _step(surface, memory, separation):
+    return surface.measure(separation, memory), surface.remember(memory, separation)
+
+
+def followed(surface, path):
+    """Pressure, energy, loss and bonds along a path, a row a step; the memory at its end."""
+    memory, bonds, lost, rows = surface.fresh(), 0.0, 0.0, []
+    formation, rupture = (np.asarray(each) for each in surface.losses())
+    for separation in path:
+        means, memory = _step(surface, memory, jnp.asarray(separation))
+        change, bonds = np.asarray(means.bonds) - bonds, np.asarray(means.bonds)
+        lost += np.maximum(change, 0.0) @ formation + np.maximum(-change, 0.0) @ rupture
+        rows.append([float(jnp.sum(means.parts)), float(means.energy), lost, bonds.sum()])
+    return np.array(rows), memory
+
+
+def test_one_memory_weighted_by_radii_is_the_bonds_of_all_summits_over_reversals():
+    """Hertz + DMT + meniscus of 1000 radii against a relay each, along twelve reversals.
+
+    To the sampling error's twentieth, the kernel's: the meniscus by its counted bonds.
+    """
+    conservative = lambda radius: Hertz(radius, E) + Dmt(radius, W)  # noqa: E731
+    meniscus = POWERED["meniscus"]
+    surface = measured_surface(
+        lambda radius: conservative(radius) + meniscus(radius), HEIGHTS, RADII, N, radius=RADIUS
+    )
+    assert isinstance(surface, Interface)
+    relays = Relays(meniscus, HEIGHTS, RADII)
+    law = [Relays(POWERED[name], HEIGHTS, RADII) for name in ("hertz", "dmt")]
+    exact = np.array(
+        [relays.step(h) + sum(each.step(h) for each in law)[[0, 1, 2, 2]] for h in PATH]
+    )
+    ours, _ = followed(surface, PATH)
+    scale = np.max(abs(exact), axis=0)
+    off = np.max(abs(ours - exact), axis=0)[:3] / scale[:3]
+    assert max(off) < 5e-3
+
+
+# --- classes of radius -------------------------------------------------------------------------
+
+
+def test_every_summit_belongs_to_one_class_and_classes_to_separate_ranges():
+    for classes in (1, 2, 6, 64):
+        parts = members(RADII, classes)
+        np.testing.assert_array_equal(np.sort(np.concatenate(parts)), np.arange(COUNT))
+        ends = [(RADII[part].min(), RADII[part].max()) for part in parts]
+        assert all(low[1] <= high[0] for low, high in itertools.pairwise(ends))
+
+
+def test_the_error_of_classes_falls_with_the_square_of_their_number():
+    errors = [loss_error(JKR, RADII, classes) for classes in (1, 2, 4, 8, 16)]
+    assert max(errors) < 0.0
+    assert all(2.0 < a / b < 6.0 for a, b in itertools.pairwise(errors))
+    assert loss_error(JKR, np.full(50, 1e-7), 6) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_laws_weighted_summit_by_summit_have_no_error_of_classes():
+    for make in POWERED.values():
+        assert loss_error(make, RADII, 1) == 0.0
+
+
+def test_quantiles_stand_for_many_radii():
+    many = np.concatenate([RADII] * 9)
+    assert loss_error(JKR, many, 2) == pytest.approx(loss_error(JKR, RADII, 2), rel=0.02)
+
+
+CYCLE = np.array([30.0, -12.0, 30.0]) * SIGMA
+
+
+@pytest.fixture(scope="module")
+def jkr_path():
+    """What relays of 1000 JKR summits do along the path, and what classes of them do."""
+    relays = Relays(JKR, HEIGHTS, RADII)
+    exact = np.array([relays.step(h) for h in PATH])
+    classed = {}
+    for classes in (1, 4):
+        surface = measured_surface(JKR, HEIGHTS, RADII, N, radius=RADIUS, classes=classes)
+        classed[classes] = followed(surface, PATH)[0], followed(surface, CYCLE)[0]
+    return exact, classed
+
+
+def test_more_classes_come_closer_to_a_relay_for_each_jkr_summit(jkr_path):
+    """Pressure, energy and loss, over their largest; the loss by counted bonds, one by one."""
+    exact, classed = jkr_path
+    scale = np.max(abs(exact), axis=0)[:3]
+    off = {
+        classes: np.max(abs(rows - exact), axis=0)[:3] / scale
+        for classes, (rows, _) in classed.items()
+    }
+    assert max(off[1]) < 0.1
+    assert max(off[4]) < 0.02
+    assert (off[4] < np.array([0.25, 0.25, 0.75]) * off[1]).all()
+
+
+def test_the_stated_error_is_that_of_the_energy_which_jkr_bonds_lose(jkr_path):
+    """In until all touch and out until none does: R^(4/3) a summit, exactly."""
+    work = 7.092196 * np.mean((W**5 * RADII**4 / E**2) ** (1.0 / 3.0)) * N
+    for classes, (_, rows) in jkr_path[1].items():
+        assert rows[-1, 2] / work == pytest.approx(1.0 + loss_error(JKR, RADII, classes), rel=1e-6)
+
+
+def test_where_each_class_holds_one_radius_its_threshold_is_that_of_its_relays():
+    """Exact: three radii, three classes, random reversals; also their counts and elastic laws."""
+    radii = np.array([1e-7, 2e-7, 4e-7])[np.arange(COUNT) % 3]
+    cut = [np.flatnonzero(radii == radius) for radius in (1e-7, 2e-7, 4e-7)]
+    surface = measured_surface(
+        lambda radius: Jkr(radius, E, W), HEIGHTS, radii, N, radius=2e-7, classes=cut
+    )
+    assert isinstance(surface, RadiusClasses)
+    relays, memory = Relays(lambda radius: Jkr(radius, E, W), HEIGHTS, radii), surface.fresh()
+    remember = eqx.filter_jit(surface.remember)
+    for separation in SIGMA * np.random.default_rng(1).uniform(-3.0, 4.0, 200):
+        relays.step(separation)
+        memory = remember(memory, jnp.asarray(separation))
+        for part, threshold in zip(cut, memory, strict=True):
+            np.testing.assert_array_equal(relays.bonded[part], HEIGHTS[part] > float(threshold))
+
+
+def test_classes_of_one_radius_add_up_to_the_surface_without_classes():
+    """To 1e-8: pressure, energy and bonds do not know how equal summits are cut."""
+    radii, law = np.full(COUNT, 2e-7), Jkr(2e-7, E, W)
+    spread = spread_of(HEIGHTS)
+    cut = [np.arange(0, COUNT, 2), np.arange(1, COUNT, 2)]
+    kept = [
+        Interface(law, Sampled(HEIGHTS[part], radii[part], 2e-7, spread), 0.5 * N) for part in cut
+    ]
+    surface = RadiusClasses(kept)
+    ours, _ = followed(surface, PATH)
+    apart = [followed(part, PATH)[0] for part in kept]
+    np.testing.assert_allclose(ours, sum(apart), rtol=1e-8, atol=1e-12 * np.max(abs(ours)))
+
+
+@pytest.mark.long
+def test_more_classes_come_closer_to_a_relay_for_each_maugis_summit():
+    """Where its hysteresis is small it grows steeply with the radius: the loss is the worst."""
+    make = lambda radius: Maugis(radius, E, W, 2e-9)  # noqa: E731
+    relays = Relays(jax.vmap(make), HEIGHTS, RADII)
+    exact = np.array([relays.step(h) for h in PATH])
+    scale = np.max(abs(exact), axis=0)[:3]
+    off = []
+    for classes in (2, 4, 8):
+        surface = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=classes)
+        off.append(np.max(abs(followed(surface, PATH)[0] - exact), axis=0)[:3] / scale)
+    assert (off[1] < 0.75 * off[0]).all()
+    assert (off[2] < off[1]).all()
+    assert max(off[2][:2]) < 5e-3
+    assert off[2][2] < 0.08
+
+
+def test_jkr_with_menisci_is_classes_beside_an_exact_layer():
+    """The touching are counted once, and the parts have the names of one interface."""
+    make = lambda radius: Jkr(radius, E, W) + POWERED["meniscus"](radius)  # noqa: E731
+    surface = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=3)
+    assert isinstance(surface, Layers)
+    assert surface.components == Interface(make(RADIUS), Gaussian(SIGMA), N).components
+    means, _ = _step(surface, surface.fresh(), jnp.asarray(0.5 * SIGMA))
+    touching = N * np.mean(HEIGHTS > 0.5 * SIGMA)
+    assert float(means.touching) == pytest.approx(touching, rel=0.02)
+
+
+# --- motions and their gradients ---------------------------------------------------------------
+
+BALL = 20e-6
+MASS = 2200.0 * 4.0 / 3.0 * pi * BALL**3
+BODY = Body(MASS, 9.81, 200e-9, 1e-3)
+STIFF = 50e9
+
+
+def wet(radius):
+    return Hertz(radius, STIFF) + Dmt(radius, 0.03) + Meniscus(radius, 0.0728, 0.9, 0.8e-9)
+
+
+def decrement(surface):
+    contact = RigidContact(surface, Sphere(BALL))
+    motion = simulate(contact, BODY, tolerance=Tolerance(max_impacts=1))
+    return measure(motion, BODY).log_decrement[0]
+
+
+def fourth_order(value, step):
+    """Central difference of a function of one number at 0."""
+    at = {k: float(value(k * step)) for k in (-2, -1, 1, 2)}
+    return (8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12.0 * step)
+
+
+def test_decrement_of_gaussian_summits_has_a_gradient_by_their_rms_height():
+    """And by their mean height; against central differences to 1e-7."""
+
+    def first(rms_height, mean_height):
+        return decrement(Interface(wet(RADIUS), Gaussian(rms_height, mean_height), N))
+
+    both = jax.jit(lambda *at: jax.jvp(first, at, (jnp.asarray(0.6), jnp.asarray(0.4))))
+    value, slope = both(jnp.asarray(SIGMA), jnp.asarray(5e-9))
+    assert float(value) > 0.0
+    along = lambda x: both(jnp.asarray(SIGMA + 0.6 * x), jnp.asarray(5e-9 + 0.4 * x))[0]  # noqa: E731
+    assert float(slope) == pytest.approx(fourth_order(along, 1e-12), rel=1e-7)
+
+
+@cache
+def along_heights_and_radii():
+    """Decrement of 1000 summits and its slope, where both vectors change at once."""
+    spread = spread_of(HEIGHTS)
+    ways = np.random.default_rng(2).standard_normal((2, COUNT)) * [[1.0], [RADIUS / SIGMA]]
+
+    def first(heights, radii):
+        return decrement(measured_surface(wet, heights, radii, N, radius=RADIUS, spread=spread))
+
+    @jax.jit
+    def both(x):
+        moved = (HEIGHTS + x * ways[0], RADII + x * ways[1])
+        return jax.jvp(first, moved, tuple(jnp.asarray(way) for way in ways))
+
+    return both, first, ways
+
+
+def test_decrement_of_summits_has_a_derivative_along_their_heights_and_radii():
+    """Forward, 1000 heights and 1000 radii at once, against central differences to 1e-7."""
+    both, *_ = along_heights_and_radii()
+    value, slope = both(jnp.zeros(()))
+    assert float(value) > 0.0
+    found = fourth_order(lambda x: both(jnp.asarray(x))[0], 1e-13)
+    assert float(slope) == pytest.approx(found, rel=1e-7)
+
+
+@pytest.mark.long
+def test_decrement_of_summits_has_a_gradient_over_a_thousand_heights():
+    """In reverse: its product with a direction is the derivative along it, to 1e-9."""
+    both, first, ways = along_heights_and_radii()
+    slopes = jax.jit(jax.grad(first, (0, 1)))(jnp.asarray(HEIGHTS), jnp.asarray(RADII))
+    slope = float(both(jnp.zeros(()))[1])
+    product = sum(float(each @ way) for each, way in zip(slopes, ways, strict=True))
+    assert product == pytest.approx(slope, rel=1e-9)
+
+
+@pytest.mark.long
+def test_decrement_of_jkr_classes_has_a_derivative_along_heights_and_radii():
+    spread, cut = spread_of(HEIGHTS), members(RADII, 3)
+    ways = along_heights_and_radii()[2]
+
+    def first(heights, radii):
+        make = lambda radius: Jkr(radius, STIFF, W)  # noqa: E731
+        return decrement(
+            measured_surface(make, heights, radii, N, radius=RADIUS, classes=cut, spread=spread)
+        )
+
+    both = jax.jit(lambda x: jax.jvp(first, (HEIGHTS + x * ways[0], RADII + x * ways[1]), (*ways,)))
+    slope = float(both(jnp.zeros(()))[1])
+    assert slope == pytest.approx(fourth_order(lambda x: both(jnp.asarray(x))[0], 1e-12), rel=1e-6)
