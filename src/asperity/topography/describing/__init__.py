@@ -1,0 +1,1 @@
+"""What a surface is: summits, spectrum, distribution, and two as one."""

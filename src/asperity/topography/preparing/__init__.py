@@ -1,0 +1,1 @@
+"""A surface made ready: gaps, scan lines, form, wavelengths."""
