@@ -17,6 +17,7 @@ from pydantic import BaseModel, ValidationError
 from asperity import case as case_room
 from asperity.case import BUILTINS, Body, Case, builtin, load, load_file, template
 from asperity.case.problems import tables_of
+from asperity.case.roughness import NUMBERS
 from asperity.errors import InputError, Tolerance
 from asperity.materials import LIQUIDS, SOLIDS, kelvin_radius
 from asperity.units import quantity
@@ -178,6 +179,8 @@ def test_the_example_of_every_key_is_read(place, name, field):
             "asperity_radius": "1 nm",
             "rms_height": "1 nm",
         }
+    if place[0] == "roughness" and name not in NUMBERS:
+        table["roughness"] = {"files": ["surface.csv"], "source": "summits"}
     if place[0] in ("adhesion", "capillary"):
         table[place[0]] = {"model": "none"}
         if name == "model":

@@ -35,6 +35,7 @@ def test_there_is_an_example_for_each_question():
         "fast-impact",
         "jkr-bounce",
         "jkr-stick",
+        "measured-surface",
         "published-exact",
         "wet-drop",
         "wet-surface",
@@ -95,6 +96,17 @@ def test_water_between_asperities_is_said_and_takes_most_energy(solved):
     assert result.measures["restitution"][0] == pytest.approx(0.99681, abs=1e-5)
     share = result.ledger["lost"]["capillary"] / result.ledger["initial"]
     assert share == pytest.approx(0.714, abs=1e-3)
+
+
+def test_sphere_is_held_by_measured_summits(solved):
+    result = solved("measured-surface")
+    measures = result.measures
+    assert result.outcome is Outcome.REST
+    assert measures["captured"]
+    assert len(measures["rebound_height"]) == 12
+    assert measures["restitution"][0] == pytest.approx(0.90914, abs=1e-4)
+    assert measures["stiction_time"] == pytest.approx(3.219e-3, rel=1e-3)
+    assert result.surface["summits"] == 100
 
 
 def test_dry_drop_loses_nothing(solved):

@@ -20,7 +20,7 @@ from .impact.trajectory import Trajectory
 from .measures import Measures, measure
 from .program import Program
 from .result import Result
-from .validity import AtDepth, slow_menisci, warnings_of
+from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 
 _measure = Program(measure)
@@ -82,6 +82,7 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
     measures = _padded(flight, body)
     series, lost = _sampled(case, flight, body)
     at_depth = AtDepth.of(flight.contact, motion)
+    check_surface(case, problem, at_depth)
     regime = _regime(case, problem, at_depth)
     forces, energies = _histories(flight.contact, motion, body, series, lost)
     impacts = motion.impacts
@@ -98,9 +99,10 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
         regime=regime._asdict(),
         measures=_plain(measures, made),
         ledger=_ledger(flight.contact, motion, body, made),
+        surface=None if case.asperities is None else case.asperities.facts,
         warnings=[
             *warnings_of(case, problem, regime, at_depth, motion),
-            *slow_menisci(problem, series),
+            *slow_menisci(problem, motion, flight.trajectory),
         ],
         events={
             name: np.asarray(values)[:made]
@@ -150,8 +152,9 @@ def assessment_of(
         The contact that was flown with, and the motion.
     """
     at_depth = AtDepth.of(contact, motion)
+    check_surface(case, problem, at_depth)
     regime = _regime(case, problem, at_depth)
-    rough, liquid = case.roughness, case.liquid
+    rough, liquid = case.asperities, case.liquid
     situation = regimes.Situation(
         regime=regime,
         rough=rough is not None,
@@ -164,11 +167,12 @@ def assessment_of(
         on_tips=case.capillary.model != "kelvin-filling" or rough is None,
     )
     warnings = warnings_of(case, problem, regime, at_depth, motion)
+    warnings += slow_menisci(problem, motion)
     return Assessment(name, regime, regimes.verdicts(situation), warnings)
 
 
 def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
-    adhesion, rough = case.adhesion, case.roughness
+    adhesion, rough = case.adhesion, case.asperities
     work, spacing = adhesion.work, adhesion.range
     tabor = plasticity = load = None
     if work and spacing:
@@ -192,8 +196,8 @@ def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
 
 
 def _wetting(case: Case, problem: Problem, at_depth: AtDepth) -> Wetting:
-    rough = case.roughness
-    rms = 0.0 if rough is None else case.capillary.surface_rms_height or rough.rms_height
+    rough, given = case.asperities, case.capillary.surface_rms_height
+    rms = 0.0 if rough is None else given or rough.surface_rms_height or rough.rms_height
     return wetting_regime(
         radius=case.liquid_radius,
         span=case.liquid_span,

@@ -53,6 +53,9 @@ class Result:
         "deepest_time", "apex_time" [s], "deepest_separation", "apex_separation" [m], per impact.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
+    surface : dict, optional
+        Measured surfaces: files with their SHA-256, what was done to them, and what was found,
+        in SI; None for a case of numbers.
     """
 
     case: Case
@@ -70,6 +73,7 @@ class Result:
     warnings: list[str]
     events: Arrays
     input_sha256: str | None = None
+    surface: dict[str, Any] | None = None
 
     def dataset(self) -> xarray.Dataset:
         """Everything as a dataset with units; the case and the measures are its attributes."""

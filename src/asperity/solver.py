@@ -24,6 +24,7 @@ from .impact.table import FORCE, read_row
 from .program import Program
 from .result import Curve, Result
 from .trace import trace
+from .validity import AtDepth, check_surface
 
 Report = Callable[[float, str], None]
 
@@ -104,7 +105,9 @@ def curve(
     """
     tell = progress or (lambda fraction, text: None)
     tell(0.1, "force curves")
-    contact, motion = _first_impact(case, build(case))
+    problem = build(case)
+    contact, motion = _first_impact(case, problem)
+    check_surface(case, problem, AtDepth.of(contact, motion))
     tell(0.6, "parting")
     drawn = trace(contact, motion.table, motion.impacts)
     tell(1.0, "done")
@@ -162,7 +165,7 @@ def _prepared(
         if problem.late is None or not drawn:
             _compile(contact, problem.body, limits, drawn=drawn)
         table, datum = _prepare(contact, problem.body)
-        if float(table.error) <= tolerance:
+        if float(table.error) <= max(tolerance, contact.blur):
             break
     else:
         raise SimulationError(

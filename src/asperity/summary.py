@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.regimes import LAW_NAMES
@@ -79,6 +80,7 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
             *_heading(result.name, result.outcome.message),
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
+            *_section("Surface", _surface(result.surface)),
             *_section("Regime", _regime(result.regime)),
             *_chosen(result.regime),
             *_impacts(result.measures, None),
@@ -154,6 +156,23 @@ def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:
             text = amount(value)
         rows.append((name.replace("_", " ").replace("tabor", "Tabor"), text))
     return rows
+
+
+def _surface(found: dict[str, Any] | None) -> list[tuple[str, str]]:
+    """What the files of a case were found to be."""
+    if found is None:
+        return []
+    rows = [("file", Path(each["file"]).name) for each in found["files"]]
+    rows += [("prepared", step) for each in found["files"] for step in each["prepared"]]
+    return [
+        *rows,
+        ("summits", f"{found['summits']} (source = '{found['source']}')"),
+        ("density", amount(found["asperity_density"], "1/m^2")),
+        ("tip radius", amount(found["asperity_radius"], "m")),
+        ("rms height of summits", amount(found["rms_height"], "m")),
+        ("their mean height", amount(found["mean_height"], "m")),
+        ("rms height of surface", amount(found["surface_rms_height"], "m")),
+    ]
 
 
 def _chosen(regime: dict[str, Any]) -> list[str]:

@@ -94,6 +94,33 @@ def quantity(text: object, unit: str, name: str = "value") -> float:
     return result
 
 
+def lengths(text: object, count: int, name: str = "value") -> tuple[float, ...]:
+    """Positive lengths [m] of a text such as ``"10 um x 5 um"``.
+
+    Parameters
+    ----------
+    text : str
+        The lengths, with an ``x`` between them.
+    count : int
+        How many there must be.
+    name : str
+        What to call the value in messages.
+
+    Raises
+    ------
+    InputError
+        Where the text is something else.
+    """
+    sample = " x ".join(["10 um"] * count)
+    parts = re.split(r"\s+[x×]\s+", text.strip()) if isinstance(text, str) else []
+    if len(parts) != count:
+        raise _refusal(name, f"must be {count} lengths, such as '{sample}'", text)
+    values = tuple(quantity(part, "m", name) for part in parts)
+    if not all(value > 0.0 for value in values):
+        raise _refusal(name, "must be positive", text)
+    return values
+
+
 _CONTEXT = decimal.Context(prec=50)
 
 

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtr
 
-from .case import Case, Roughness
+from .case import Case
 from .case.build import Problem
 from .contact import Contact
-from .film import slip_factor
+from .errors import InputError
 from .impact import Motion
-from .impact.sampling import Series
+from .impact.sampling import sample
 from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, read_row
-from .laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
+from .impact.trajectory import Trajectory
+from .radius_classes import CLASSES
 from .regimes import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime
-
-SLIP_HOLDS = 0.1
-"""Knudsen number below which first-order slip holds."""
-
-_COMPRESSED = 0.1  # of the gas's own pressure
-_CLOSE = 0.004  # of the radius: a gap at which the film is 1 % off (Brenner 1961)
+from .surroundings import gas_warnings, liquid_warnings
 
 APART = 1e-6
-"""Share of its peak below which a contact force counts as none."""
+"""Share of its value at closest approach below which a contact force counts as none."""
+
+CLASSED = 5e-3
+"""Relative error of bonds' work from which classes of tip radius are too few."""
 
 CLOSED = 1e-6
 """Share of the impact energy to which a ledger that can be trusted closes."""
@@ -74,18 +71,62 @@ def warnings_of(
         The motion.
     """
     return [
+        *_surface(case, problem),
         *_asperities(case, at_depth),
         *_publication(case),
         *_adhesion(regime, problem.adhesion.near_borders),
-        *_menisci(case, regime),
-        *_gas(case, at_depth, motion),
+        *liquid_warnings(case, regime),
+        *gas_warnings(case, at_depth.central, motion),
         *_shape(case, motion),
         *_ledger(motion),
     ]
 
 
+def _surface(case: Case, problem: Problem) -> list[str]:
+    """What the reading of measured surfaces says, and what classes of radius cost."""
+    rough, table = case.asperities, case.roughness
+    if rough is None or table is None:
+        return []
+    out = list(rough.warnings)
+    off, classes = problem.class_error, table.radius_classes or CLASSES
+    if abs(off) > CLASSED:
+        out.append(
+            f"{classes} classes of tip radius make the work of bonds {100 * abs(off):.2g} % too "
+            f"{'small' if off < 0.0 else 'large'}: raise `radius_classes`"
+        )
+    return out
+
+
+def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
+    """Refuse a measured surface that is smaller than the contact.
+
+    The contact is as wide as where the highest summit still touches at closest approach, or as
+    Hertz's.
+
+    Raises
+    ------
+    InputError
+        If it is.
+    """
+    rough, radius = case.asperities, case.body.radius
+    if rough is None or rough.surface is None or rough.summits is None:
+        return
+    rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
+    hertz = 0.0
+    if case.counterface.deformation != "rigid":
+        hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / problem.modulus)
+    width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
+    if width > side:
+        raise InputError(
+            "`files` must hold surfaces larger than the contact, which is "
+            f"{width * 1e6:.3g} um wide at closest approach, or what is rough on its scale was "
+            f"not measured; got {side * 1e6:.3g} um ({rough.surface.source})",
+            key="roughness.files",
+        )
+
+
 def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
-    rough = case.roughness
+    rough = case.asperities
     if rough is None:
         return []
     out = []
@@ -97,21 +138,13 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
             f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
             "in that number (Poisson)"
         )
-    central = at_depth.central
-    share = rough.asperity_density * pi * rough.asperity_radius * _mean_overlap(rough, central)
+    share = rough.covered(at_depth.central)
     if share > 0.1:
         out.append(
             f"touching asperities cover {100 * share:.0f} % of the area at the axis at closest "
             "approach: neighbours interact, which the sum over single asperities leaves out"
         )
     return out
-
-
-def _mean_overlap(rough: Roughness, central: float) -> float:
-    """Mean overlap per asperity [m], sigma F_1(h/sigma), in closed form."""
-    reduced = central / rough.rms_height
-    density = np.exp(-0.5 * reduced**2) / np.sqrt(2.0 * pi)
-    return float(rough.rms_height * (density - reduced * ndtr(-reduced)))
 
 
 def _publication(case: Case) -> list[str]:
@@ -153,155 +186,35 @@ def _adhesion(regime: Regime, near_borders: Sequence[str]) -> list[str]:
     return out
 
 
-def _menisci(case: Case, regime: Regime) -> list[str]:
-    liquid, kelvin_radius = case.liquid, case.kelvin_radius
-    if liquid is None or kelvin_radius == 0.0:
-        return []
-    out = []
-    on_asperities = case.capillary.model != "kelvin-filling" and case.roughness is not None
-    molecule = f"less than a molecule of {liquid.name} ({liquid.molecule_size * 1e9:.2g} nm)"
-    if case.liquid_radius < liquid.molecule_size:
-        whose = "Kelvin radius" if case.liquid_radius == kelvin_radius else "liquid's radius"
-        out.append(
-            f"the {whose} is {case.liquid_radius * 1e9:.2g} nm, {molecule}: no meniscus of "
-            "continuum liquid"
-        )
-    elif case.liquid_span < liquid.molecule_size:
-        out.append(
-            f"menisci span gaps up to {case.liquid_span * 1e9:.2g} nm, {molecule}: no meniscus of "
-            "continuum liquid"
-        )
-    if np.isinf(case.liquid_span):
-        out.append(
-            "the Kelvin radius is infinite: menisci of any height, which would have coalesced long "
-            "before, are kept isolated"
-        )
-    elif on_asperities and regime.wetting in ("coalesced", "flooded"):
-        out.append(
-            f"{regime.wetting}: {regime.wetting_reason}: menisci merge, and this model keeps them "
-            "isolated ('kelvin-filling' is meant for this)"
-        )
-    elif regime.wetting == "flooded":
-        out.append(f"flooded: {regime.wetting_reason}: the drag of the liquid itself is left out")
-    return out + _wide(case)
-
-
-def _wide(case: Case) -> list[str]:
-    """Menisci that see more than the cap of their asperity."""
-    rough, span = case.roughness, case.liquid_span
-    tip = case.body.radius if rough is None else rough.asperity_radius
-    filled = case.capillary.model == "kelvin-filling" and rough is not None
-    if filled or np.isinf(span):
-        return []
-    what = "asperity" if rough is not None else "body"
-    out = []
-    if span > 0.5 * tip:
-        out.append(
-            f"menisci are wider than their {what}: the gap at their edge is {span * 1e9:.3g} nm, "
-            f"and only up to {0.5 * tip * 1e9:.3g} nm, half its radius, does the edge lie on it"
-        )
-    angle = case.capillary.contact_angle
-    if case.capillary.model == "constant-volume" and angle is not None and angle > EDGE_ANGLE:
-        out.append(
-            f"the contact angle is {np.degrees(angle):.4g} deg: menisci of constant volume are "
-            f"tested up to {np.degrees(EDGE_ANGLE):.0f} deg, and taken for thin beyond that"
-        )
-    volume = pi * (span / tip) ** 2
-    if case.capillary.model == "constant-volume" and volume > EDGE_HOLDS:
-        out.append(
-            f"the volume of a meniscus is {volume:.3g} radius^3: its law is tested up to "
-            f"{EDGE_HOLDS:g} radius^3, and takes it for thin beyond that"
-        )
-    return out
-
-
-def _gas(case: Case, at_depth: AtDepth, motion: Motion) -> list[str]:
-    """A film outside first-order slip, or one whose gas is compressed."""
-    gas = case.gas
-    if gas is None:
-        return []
-    thinnest = max(at_depth.central, _film_stops(case))
-    out = [*_far(case), *_two_temperatures(case)]
-    knudsen = gas.free_path / thinnest
-    if knudsen == 0.0:
-        out.append(
-            "the gas film has no slip (`slip_length` is 0): it holds where the gap is more than "
-            "ten mean free paths, which in air at ambient pressure is 0.65 um"
-        )
-    if knudsen > SLIP_HOLDS:
-        out.append(
-            f"the Knudsen number of the gas film is {knudsen:.2g} at closest approach: first-order "
-            f"slip holds below {SLIP_HOLDS:g}"
-        )
-    mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    speed = np.sqrt(2.0 * float(motion.impacts.fastest[0]) / mass)
-    slip = float(slip_factor(thinnest, gas.film_slip_length))
-    pressure = 3.0 * gas.film_viscosity * case.body.radius * speed * slip / thinnest**2
-    if gas.pressure is not None and pressure > _COMPRESSED * gas.pressure:
-        out.append(
-            f"the pressure in the gas film may reach {pressure:.2g} Pa (impact speed at closest "
-            f"approach), above {_COMPRESSED:g} of the gas's {gas.pressure:.3g} Pa: it is "
-            "compressed then, and this film is not"
-        )
-    if not float(motion.impacts.apex[0]) > float(motion.impacts.deepest[0]):
-        out.append("the gas film damps the fall so strongly that the body creeps to rest")
-    return out
-
-
-def _far(case: Case) -> list[str]:
-    """A film so thick that the sphere is not close to the wall."""
-    release, radius = case.impact.release_gap, case.body.radius
-    if release is None or release <= _CLOSE * radius:
-        return []
-    return [
-        f"the body is released at {release / radius:.2g} of its radius: the gas film is that of a "
-        f"sphere close to the wall, 1 % off at {_CLOSE:g}, and Stokes's drag far from it is left "
-        "out"
-    ]
-
-
-def _two_temperatures(case: Case) -> list[str]:
-    gas, liquid = case.gas, case.capillary.temperature
-    if gas is None or gas.temperature is None or case.liquid is None or liquid is None:
-        return []
-    if abs(gas.temperature - liquid) <= 1.0:
-        return []
-    return [
-        f"gas.temperature is {gas.temperature:.4g} K and capillary.temperature {liquid:.4g} K: the "
-        "vapour of the menisci is part of the gas"
-    ]
-
-
-def _film_stops(case: Case) -> float:
-    """Separation below which the film does not thin [m]."""
-    assert case.gas is not None
-    if case.gas.closest_gap is not None:
-        return case.gas.closest_gap
-    assert case.roughness is not None
-    return case.roughness.rms_height
-
-
-def slow_menisci(problem: Problem, series: Series) -> list[str]:
+def slow_menisci(
+    problem: Problem, motion: Motion, trajectory: Trajectory | None = None
+) -> list[str]:
     """A line where menisci take longer to form than the first contact lasts.
 
     Parameters
     ----------
     problem
         What was built from a case.
-    series
-        Its motion in time.
+    motion
+        Its motion.
+    trajectory
+        The same in time; without it all menisci formed at once.
     """
     if problem.late is None:
         return []
+    time = float(problem.late.time)
+    if trajectory is None:
+        series = sample(problem.body, motion.table, motion.impacts)
+    else:
+        series = trajectory.series
     force = np.abs(series.rows[:, FORCE])
-    held = np.flatnonzero((series.phase < 2) & (force > APART * np.max(force)))
-    lasts = float(series.time[held[-1]] - series.time[held[0]])
-    takes = float(problem.late.time)
-    if takes <= lasts:
+    there = force > APART * np.abs(motion.impacts.force[0])
+    held = series.time[(series.phase < 2) & there]
+    if held.size == 0 or time <= held[-1] - held[0]:
         return []
     return [
-        f"menisci take {takes:.3g} s to form and the first contact lasts {lasts:.3g} s: few form, "
-        "and more energy may go into those few than if all had formed at once"
+        f"menisci take {time:.3g} s to form and the first contact lasts {held[-1] - held[0]:.3g} "
+        "s: few form, and more energy may go into those few than if all had formed at once"
     ]
 
 

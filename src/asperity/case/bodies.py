@@ -1,4 +1,4 @@
-"""The tables of what meets: [body], [counterface], [roughness], [materials.NAME]."""
+"""The tables of what meets: [body], [counterface], [materials.NAME]."""
 
 from __future__ import annotations
 
@@ -113,14 +113,4 @@ class Counterface(Made):
         "Bulk deformation of both bodies: 'half-space' (elastic) or 'rigid' (asperities only).",
         "half-space",
         default="half-space",
-    )
-
-
-class Roughness(Table):
-    """Composite roughness of both surfaces; without this table the body is smooth."""
-
-    asperity_density: fields.AreaDensity = entry("1/m^2", "Asperities per area.", "1.69e16 1/m^2")
-    asperity_radius: fields.Length = entry("m", "Radius of the asperities' tips.", "0.25 nm")
-    rms_height: fields.Length = entry(
-        "m", "Standard deviation of the asperities' heights, Gaussian.", "10.5 nm"
     )

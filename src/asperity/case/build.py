@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..contact import (
     Contact,
@@ -38,12 +39,16 @@ from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..laws.meniscus import Formation
 from ..layers import Layers, Surfaces
 from ..materials import contact_modulus
+from ..radius_classes import CLASSES
 from ..regimes import AdhesionChoice, choose_adhesion, tabor_number
 from ..roughness import Gaussian
 from ..shapes import Sphere
+from ..summits import loss_error, measured_surface
 
 if TYPE_CHECKING:
-    from .bodies import Roughness
+    import numpy as np
+
+    from .asperities import Asperities
     from .publication import Publication
     from .schema import Case
 
@@ -68,6 +73,8 @@ class Problem(NamedTuple):
         The law of adhesion in use, and why where the program chose it.
     late
         The contact with menisci that take time to form; None where they form at once.
+    class_error
+        Relative error that classes of tip radius make in the work of bonds; 0 without classes.
     """
 
     contact: Contact
@@ -76,6 +83,7 @@ class Problem(NamedTuple):
     tip_radius: float
     adhesion: AdhesionChoice
     late: LateContact | None = None
+    class_error: float = 0.0
 
 
 def build(case: Case) -> Problem:
@@ -87,7 +95,7 @@ def build(case: Case) -> Problem:
         If two laws contain the same force.
     """
     modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    rough = case.roughness
+    rough = case.asperities
     tip = case.body.radius if rough is None else rough.asperity_radius
     adhesion = _adhesion(case, tip, modulus)
     contact: Contact
@@ -108,7 +116,26 @@ def build(case: Case) -> Problem:
         release = float(contact.reach) + CLEARANCE
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case))
-    return Problem(contact, body, modulus, tip, adhesion, _late(case, contact))
+    late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
+    return Problem(contact, body, modulus, tip, adhesion, late, off)
+
+
+def _class_error(case: Case, adhesion: str, modulus: float) -> float:
+    """Relative error of classes of tip radius in the work of bonds; 0 without classes."""
+    rough, table = case.asperities, case.roughness
+    if rough is None or rough.summits is None or table is None or table.source != "summits":
+        return 0.0
+    radii = rough.summits.radii
+    make = _law_of_radius(case, adhesion, modulus, radii)
+    return loss_error(make, radii, table.radius_classes or CLASSES)
+
+
+def _law_of_radius(
+    case: Case, adhesion: str, modulus: float, radii: np.ndarray
+) -> Callable[[Any], Law]:
+    """The laws of one asperity of any of the radii [m]."""
+    smallest = float(radii.min())
+    return lambda radius: _law(case, adhesion, radius, modulus, smallest)
 
 
 def _late(case: Case, contact: Contact) -> LateContact | None:
@@ -120,16 +147,37 @@ def _late(case: Case, contact: Contact) -> LateContact | None:
     return LateContact(contact, time)
 
 
-def _interface(case: Case, rough: Roughness, adhesion: str, modulus: float) -> Surfaces:
+def _interface(case: Case, rough: Asperities, adhesion: str, modulus: float) -> Surfaces:
     """Asperities between two planes, and liquid on the surface if it is not on them."""
-    law = _law(case, adhesion, rough.asperity_radius, modulus)
-    asperities = Interface(law, Gaussian(rough.rms_height), rough.asperity_density)
+    asperities = _asperities(case, rough, adhesion, modulus)
     air, liquid = case.capillary, case.liquid
     if air.model != "kelvin-filling" or liquid is None or case.liquid_radius == 0.0:
         return asperities
     angle = _given(air.contact_angle)
     filling = KelvinFilling(liquid.tension, angle, case.liquid_radius, _formation(case))
-    return Layers((asperities, Interface(filling, Gaussian(_given(air.surface_rms_height)), 1.0)))
+    rms = rough.surface_rms_height or _given(air.surface_rms_height)
+    liquid_layer = Interface(filling, Gaussian(rms), 1.0)
+    if isinstance(asperities, Layers):
+        return Layers((*asperities.parts, liquid_layer))
+    return Layers((asperities, liquid_layer))
+
+
+def _asperities(case: Case, rough: Asperities, adhesion: str, modulus: float) -> Surfaces:
+    """The asperities: of one radius and Gaussian heights, or those that were measured."""
+    table, summits = case.roughness, rough.summits
+    assert table is not None
+    if summits is None or table.source != "summits":
+        law = _law(case, adhesion, rough.asperity_radius, modulus)
+        heights = Gaussian(rough.rms_height, rough.mean_height)
+        return Interface(law, heights, rough.asperity_density)
+    return measured_surface(
+        _law_of_radius(case, adhesion, modulus, summits.radii),
+        summits.heights,
+        summits.radii,
+        rough.asperity_density,
+        radius=rough.asperity_radius,
+        classes=table.radius_classes or CLASSES,
+    )
 
 
 def _adhesion(case: Case, tip: float, modulus: float) -> AdhesionChoice:
@@ -147,13 +195,13 @@ def _film(case: Case) -> SqueezeFilm | None:
         return None
     closest = gas.closest_gap
     if closest is None:
-        assert case.roughness is not None
-        closest = case.roughness.rms_height
+        assert case.asperities is not None
+        closest = case.asperities.rms_height
     return SqueezeFilm(case.body.radius, gas.film_viscosity, gas.film_slip_length, closest)
 
 
 def _published(
-    case: Case, rough: Roughness, assumed: Publication, modulus: float
+    case: Case, rough: Asperities, assumed: Publication, modulus: float
 ) -> PublishedContact:
     """The contact that the publication assumes."""
     liquid, kelvin_radius = case.liquid, case.kelvin_radius
@@ -180,8 +228,8 @@ def _published(
     )
 
 
-def _law(case: Case, model: str, tip: float, modulus: float) -> Law:
-    """The laws of one asperity, side by side."""
+def _law(case: Case, model: str, tip: float, modulus: float, smallest: float | None = None) -> Law:
+    """The laws of one asperity, side by side; ``smallest`` is the least radius [m] among all."""
     laws: list[Law] = []
     adhesion = case.adhesion
     if model == "jkr":
@@ -194,11 +242,11 @@ def _law(case: Case, model: str, tip: float, modulus: float) -> Law:
             laws.append(Dmt(tip, _given(adhesion.work)))
         elif model == "bradley":
             laws.append(Bradley(tip, _given(adhesion.work), _given(adhesion.range)))
-    laws += _menisci(case, tip)
+    laws += _menisci(case, tip, smallest or tip)
     return laws[0] if len(laws) == 1 else Sum(laws)
 
 
-def _menisci(case: Case, tip: float) -> list[Law]:
+def _menisci(case: Case, tip: float, smallest: float) -> list[Law]:
     """The meniscus of one asperity, or of the smooth body; none where liquid is on the surface."""
     air, liquid, liquid_radius = case.capillary, case.liquid, case.liquid_radius
     if liquid is None or liquid_radius == 0.0:
@@ -207,7 +255,8 @@ def _menisci(case: Case, tip: float) -> list[Law]:
     if air.model == "constant-volume":
         formation = _formation(case)
         bridge = ConstantVolume(tip, liquid.tension, angle, liquid_radius, formation)
-        tested = float(bridge.volume) <= EDGE_HOLDS * tip**3 and angle <= EDGE_ANGLE
+        volume = pi * smallest * case.liquid_span**2
+        tested = volume <= EDGE_HOLDS * smallest**3 and angle <= EDGE_ANGLE
         edge = tested and isinstance(formation, ByContact)
         return [dataclasses.replace(bridge, edge=edge)]
     if air.model == "kelvin-filling" and case.roughness is not None:

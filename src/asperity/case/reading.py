@@ -77,10 +77,19 @@ def load_file(path: str | os.PathLike[str]) -> Case:
     name = os.fspath(path)
     content = _content(name)
     try:
-        return load(content.decode("utf-8-sig"), file=name)
+        return _beside(load(content.decode("utf-8-sig"), file=name), Path(name).parent)
     except UnicodeDecodeError as error:
         rule = f"a case must be UTF-8 text; got a binary file (byte {error.start + 1})"
         raise _unusable(name, rule) from None
+
+
+def _beside(case: Case, folder: Path) -> Case:
+    """The case with its surface files looked for in its own folder."""
+    rough = case.roughness
+    if rough is None or rough.files is None:
+        return case
+    files = [os.fspath(folder / file) for file in rough.files]
+    return case.model_copy(update={"roughness": rough.model_copy(update={"files": files})})
 
 
 def _content(name: str) -> bytes:

@@ -10,10 +10,12 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from asperity import materials as catalogue
 from asperity.case import problems, writing
-from asperity.case.bodies import Body, Counterface, Material, Roughness
+from asperity.case.asperities import Asperities, asperities_of
+from asperity.case.bodies import Body, Counterface, Material
 from asperity.case.forces import Adhesion, Capillary
 from asperity.case.gas import Gas
 from asperity.case.publication import Publication
+from asperity.case.roughness import Roughness
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
 from asperity.errors import InputError, Tolerance
@@ -126,15 +128,15 @@ class Case(Table):
                 key="capillary.humidity",
             )
         if air.model == "kelvin-filling":
-            rough, given = self.roughness is not None, air.surface_rms_height is not None
-            if rough != given:
-                rule = (
-                    "must be given with a [roughness] table"
-                    if rough
-                    else ("must not be given for a smooth body, which has none")
-                )
+            given, table = air.surface_rms_height is not None, self.roughness
+            if (table is not None and table.files is None) != given:
+                rule = "must be given with a [roughness] table of numbers"
+                if table is None:
+                    rule = "must not be given for a smooth body, which has none"
+                elif table.files is not None:
+                    rule = "must not be given beside `roughness.files`, which it is taken from"
                 raise InputError(
-                    f"`surface_rms_height` {rule}; got {'nothing' if rough else 'a value'}",
+                    f"`surface_rms_height` {rule}; got {'a value' if given else 'nothing'}",
                     key="capillary.surface_rms_height",
                 )
 
@@ -143,6 +145,12 @@ class Case(Table):
         if self.roughness is None:
             raise InputError(
                 "a [roughness] table must be given with [publication]; got none", key="publication"
+            )
+        if self.roughness.files is not None:
+            raise InputError(
+                "`files` must be absent with a [publication] table, which knows Gaussian heights "
+                "and one radius alone",
+                key="roughness.files",
             )
         if self.gas is not None:
             raise InputError(
@@ -183,6 +191,17 @@ class Case(Table):
         density = self.body_solid.density
         assert density is not None
         return density
+
+    @property
+    def asperities(self) -> Asperities | None:
+        """The asperities, read from the files if there are any; None for a smooth body.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be used.
+        """
+        return None if self.roughness is None else asperities_of(self.roughness)
 
     @property
     def liquid(self) -> catalogue.Liquid | None:

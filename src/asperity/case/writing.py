@@ -64,6 +64,8 @@ def _literal(value: object) -> str:
     """A value in TOML's notation."""
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, list):
+        return f"[{', '.join(_literal(each) for each in value)}]"
     if isinstance(value, str):
         return '"' + "".join(_escaped(character) for character in value) + '"'
     return repr(value)

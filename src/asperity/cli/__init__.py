@@ -10,6 +10,40 @@ from typing import Annotated, Any
 
 import typer
 
+from asperity.cli.arguments import (
+    Align,
+    CaseName,
+    Channel,
+    CutOff,
+    Degree,
+    Direction,
+    Folder,
+    Force,
+    ForceFile,
+    Heights,
+    Hurst,
+    Json,
+    Kurtosis,
+    Long,
+    MadeFile,
+    MadeSize,
+    Missing,
+    Points,
+    Quiet,
+    Refit,
+    Remove,
+    RmsHeight,
+    RmsSlope,
+    RollOff,
+    Seed,
+    Short,
+    Size,
+    Skewness,
+    SurfaceFiles,
+    Tables,
+    TwoSurfaces,
+    Unit,
+)
 from asperity.cli.terminal import Commands
 
 app = typer.Typer(
@@ -21,28 +55,6 @@ app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
 )
-
-CaseName = Annotated[
-    str,
-    typer.Argument(
-        help="Name of a built-in case (published-exact), a FILE.toml, or a record.nc to repeat.",
-        show_default=False,
-    ),
-]
-Folder = Annotated[
-    str | None,
-    typer.Option("-o", "--output", metavar="DIR", help="Folder for the files.", show_default=False),
-]
-Force = Annotated[
-    bool, typer.Option("--force", help="Replace earlier results in DIR; other files stay.")
-]
-Json = Annotated[
-    bool,
-    typer.Option(
-        "--json", help="Print one JSON object, in SI units; write files only if -o is given."
-    ),
-]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
 
 
 def _print_version(wanted: bool) -> None:
@@ -144,21 +156,78 @@ def adhesion_map(
 
 
 @app.command()
+def surface(
+    files: SurfaceFiles,
+    output: Folder = None,
+    size: Size = None,
+    unit: Unit = None,
+    channel: Channel = None,
+    missing: Missing = None,
+    remove: Remove = None,
+    align: Align = None,
+    direction: Direction = None,
+    degree: Degree = None,
+    short: Short = None,
+    long: Long = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Describe a measured surface, or two as one.
+
+    With two files the options hold for both. Writes a one-page picture, surface.txt and
+    surface.json to DIR, ./NAME-out unless given.
+    """
+    from asperity.cli.surfaces import describe
+
+    describe(
+        files, output=output, force=force, as_json=as_json, quiet=quiet,
+        size=size, unit=unit, channel=channel, missing=missing, remove=remove, align=align,
+        direction=direction, degree=degree, short=short, long=long,
+    )  # fmt: skip
+
+
+@app.command()
+def generate(
+    file: MadeFile,
+    size: MadeSize = None,
+    points: Points = "512",
+    hurst: Hurst = 0.8,
+    roll_off: RollOff = None,
+    cut_off: CutOff = None,
+    rms_height: RmsHeight = None,
+    rms_slope: RmsSlope = None,
+    seed: Seed = 0,
+    skewness: Skewness = None,
+    kurtosis: Kurtosis = None,
+    heights: Heights = None,
+    force: ForceFile = False,
+    quiet: Quiet = False,
+) -> None:
+    """Make a self-affine random surface.
+
+    Periodic, with Gaussian heights unless another distribution is asked for. An existing file is
+    not overwritten unless --force is given.
+    """
+    from asperity.cli.generating import generate as make
+
+    make(
+        file, force=force, quiet=quiet, size=size, points=points, hurst=hurst, roll_off=roll_off,
+        cut_off=cut_off, rms_height=rms_height, rms_slope=rms_slope, seed=seed,
+        skewness=skewness, kurtosis=kurtosis, heights=heights,
+    )  # fmt: skip
+
+
+@app.command()
 def reproduce(
     output: Folder = None,
     force: Force = False,
-    refit: Annotated[
-        bool, typer.Option("--refit", help="Find the unknown inputs again from the tables.")
-    ] = False,
-    tables: Annotated[
-        str | None,
-        typer.Option(
-            "--tables",
-            metavar="FILE.csv",
-            help="Tables to compare with, in place of the publication's.",
-            show_default=False,
-        ),
-    ] = None,
+    refit: Refit = False,
+    tables: Tables = None,
+    surfaces: TwoSurfaces = None,
+    size: Size = None,
+    unit: Unit = None,
+    missing: Missing = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -169,7 +238,10 @@ def reproduce(
     """
     from asperity.cli.reproducing import compute
 
-    compute(output=output, force=force, refit=refit, tables=tables, as_json=as_json, quiet=quiet)
+    compute(
+        output=output, force=force, refit=refit, tables=tables, as_json=as_json, quiet=quiet,
+        surfaces=surfaces, size=size, unit=unit, missing=missing,
+    )  # fmt: skip
 
 
 @app.command()

@@ -5,23 +5,36 @@ from __future__ import annotations
 import json
 import threading
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from asperity.cli.terminal import say, tell
 from asperity.cli.working import Progress, Work, progress_bar
-from asperity.errors import Outcome, SimulationError
+from asperity.errors import InputError, Outcome, SimulationError
 from asperity.records import REPRODUCTION_FILES, check_folder, write_folder
 from asperity.studies import report
 from asperity.studies.reproduce import Reproduction, reproduce
 from asperity.studies.tables import read_tables
+from asperity.summary import amount
+
+if TYPE_CHECKING:
+    from asperity.studies.surfaces import Pair
 
 FOLDER = "reproduce-out"
 """Folder of the files unless another is named."""
 
 
 def compute(
-    *, output: str | None, force: bool, refit: bool, tables: str | None, as_json: bool, quiet: bool
+    *,
+    output: str | None,
+    force: bool,
+    refit: bool,
+    tables: str | None,
+    as_json: bool,
+    quiet: bool,
+    surfaces: tuple[str, str] | None = None,
+    **options: Any,
 ) -> None:
     """Compute, keep the result, and say what came out.
 
@@ -33,22 +46,20 @@ def compute(
         CSV of tables to compare with.
     refit, force, as_json, quiet : bool
         The options of these names.
+    surfaces : tuple of str or None
+        Files of the two surfaces of Figures 2 and 3.
+    options
+        ``size``, ``unit`` and ``missing`` of these files, None where not given.
     """
     read_tables(tables)  # before anything is computed
+    _refuse_loose(surfaces, options)
     folder = None
     if output is not None or not as_json:
         folder = Path(output or FOLDER)
         check_folder(folder, REPRODUCTION_FILES, force=force)
-    kept: list[Reproduction] = []
-
-    def task(stop: threading.Event, progress: Progress | None) -> Reproduction:
-        return reproduce(
-            tables=tables, refitted=refit, progress=progress, stop=stop, keep=kept.append
-        )
-
-    with progress_bar(not (quiet or as_json)) as progress:
-        done, code = Work(lambda stop: task(stop, progress)).wait()
-    done = done or (kept[-1] if kept else None)
+    done, code = _computed(
+        tables, refit, None if surfaces is None else (surfaces, options), quiet or as_json
+    )
     if done is None:
         say("asperity: interrupted before there was anything to keep")
         raise typer.Exit(code)
@@ -62,18 +73,65 @@ def compute(
         raise SimulationError("; ".join(done.problems), done)
 
 
+def _refuse_loose(surfaces: tuple[str, str] | None, options: dict[str, Any]) -> None:
+    """Refuse options of measured surfaces where there are none."""
+    given = [name for name, value in options.items() if value is not None]
+    if given and surfaces is None:
+        raise InputError(f"`--{given[0]}` must go with `--surfaces`, whose files it is for")
+
+
+def _computed(
+    tables: str | None,
+    refit: bool,
+    measured: tuple[tuple[str, str], dict[str, Any]] | None,
+    quiet: bool,
+) -> tuple[Reproduction | None, int]:
+    """The reproduction, or what there is of it, and the exit code of an interruption."""
+    kept: list[Reproduction] = []
+
+    def task(stop: threading.Event, progress: Progress | None) -> Reproduction:
+        return reproduce(
+            tables=tables,
+            refitted=refit,
+            measured=None if measured is None else _pair(*measured),
+            progress=progress,
+            stop=stop,
+            keep=kept.append,
+        )
+
+    with progress_bar(not quiet) as progress:
+        done, code = Work(lambda stop: task(stop, progress)).wait()
+    return done or (kept[-1] if kept else None), code
+
+
+def _pair(surfaces: tuple[str, str], options: dict[str, Any]) -> Pair:
+    """The measured surfaces, read before anything is computed."""
+    from asperity.cli.surfaces import pair_of, treatment
+
+    return pair_of(surfaces, treatment(options))
+
+
 def _tell(done: Reproduction, written: list[Path], *, as_json: bool, quiet: bool) -> None:
     """The answer on standard output, and where the files are."""
     if as_json:
         tell(json.dumps(done.json_object(), allow_nan=False))
     elif not quiet:
-        tell(report.brief(done))
+        tell("\n".join([report.brief(done), *_about_surfaces(done)]))
     if written and not quiet:
         where = _written(written, done)
         if as_json:
             say(where)
         else:
             tell("\n" + where)
+
+
+def _about_surfaces(done: Reproduction) -> list[str]:
+    """The composite of the measured surfaces of Figures 2 and 3, where there are any."""
+    if done.surfaces is None:
+        return []
+    both = done.surfaces["composite"]
+    shape = f"skewness {amount(both['skewness'])}, kurtosis {amount(both['kurtosis'])}"
+    return ["", f"Figures 2 and 3: composite rms height {amount(both['rms_height'], 'm')}, {shape}"]
 
 
 def _keep(

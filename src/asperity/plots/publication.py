@@ -8,12 +8,15 @@ from functools import partial
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from asperity.plots import adhesion_map, style
+from asperity.plots.height_map import legible
 from asperity.plots.style import Panel, colour
 from asperity.regimes import Frame
 from asperity.studies.drawing import Drawing
 
+_SHORT = 12
 _ORDER = ("approach", "parting", "capillary", "apex", "central")
 
 
@@ -96,13 +99,16 @@ def _near_the_plane(axes: Axes, drawing: Drawing) -> None:
 
 
 def _heights(axes: Axes, drawing: Drawing) -> None:
-    x, y, z = drawing.series["composite"]
+    ((name, (x, y, z)),) = drawing.series.items()
+    if name != "composite":
+        axes.set_title(legible(name), parse_math=False)
     shape = int(drawing.about["rows"]), int(drawing.about["columns"])
     metres, _ = _scaled(axes, drawing.columns[:2], [x], [x])
     nano, unit = style.scale_of(z, unit="m")
     image = axes.imshow(
-        z.reshape(shape) / nano, origin="lower", cmap="cividis", interpolation="nearest",
-        extent=(0.0, x.max() / metres, 0.0, y.max() / metres), aspect="equal",
+        np.ma.masked_invalid(z.reshape(shape) / nano), origin="lower", cmap="cividis",
+        interpolation="nearest", aspect="equal",
+        extent=(0.0, x.max() / metres, 0.0, y.max() / metres),
     )  # fmt: skip
     figure = axes.figure
     assert isinstance(figure, Figure)
@@ -119,17 +125,20 @@ def _heights(axes: Axes, drawing: Drawing) -> None:
 def _distribution(axes: Axes, drawing: Drawing) -> None:
     columns = [list(side) for side in zip(*drawing.series.values(), strict=True)]
     wide, _ = _scaled(axes, drawing.columns, *columns)
-    # A density over nanometres, whatever the prefix that its own size would suggest.
-    axes.set_ylabel("probability density [1/nm]")
-    for name, mark in (("surface", "o"), ("summits", "^")):
+    # A density over the heights' unit, whatever the prefix that its own size would suggest.
+    _, unit = style.scale_of(*columns[0], unit="m")
+    axes.set_ylabel(style.label("probability density", f"1/{unit}"))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    names = [name for name in drawing.series if name != "Gaussian"]
+    for name, mark, tint in zip(names, "o^", ("approach", "parting"), strict=False):
         x, y = drawing.series[name]
-        tint = colour("approach" if name == "surface" else "parting")
-        axes.plot(x / wide, y * 1e-9, mark, ms=2.5, mew=0.0, color=tint, label=name)
+        axes.plot(x / wide, y * wide, mark, ms=2.5, mew=0.0, color=colour(tint),
+                  label=legible(name, 30))  # fmt: skip
     x, y = drawing.series["Gaussian"]
-    axes.plot(x / wide, y * 1e-9, color=colour("contact"), lw=0.8, label="Gaussian")
+    axes.plot(x / wide, y * wide, color=colour("contact"), lw=0.8, label="Gaussian")
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.0)
-    style.legend_above(axes)
+    style.legend_above(axes, 1 if len(names[0]) <= _SHORT else 2)
 
 
 def _map(axes: Axes, drawing: Drawing) -> None:

@@ -4,6 +4,7 @@ from asperity.records.folder import (
     CURVE_FILES,
     REPRODUCTION_FILES,
     RUN_FILES,
+    SURFACE_FILES,
     check_folder,
     write_folder,
 )
@@ -14,6 +15,7 @@ __all__ = [
     "CURVE_FILES",
     "REPRODUCTION_FILES",
     "RUN_FILES",
+    "SURFACE_FILES",
     "attributes",
     "check_folder",
     "dataset",

@@ -17,6 +17,12 @@ RUN_FILES = ("record.nc", "motion.png", "forces.png", "energy.png", "summary.txt
 CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
 """Names that a curve may write. They stand beside those of a run without touching them."""
 
+SURFACE_FILES = (
+    *(f"{name}.{kind}" for name in ("surface", "surface-1", "surface-2", "composite")
+      for kind in ("png", "svg")),
+    "surface.json", "surface.txt",
+)  # fmt: skip
+"""Names that `asperity surface` may write, beside the others too."""
 
 REPRODUCTION_FILES = (
     *(f"figure-{number}.{kind}" for number in ("1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9")
@@ -43,8 +49,8 @@ def check_folder(
     Raises
     ------
     InputError
-        Where the folder is not empty and ``force`` is not set. A curve's files do not count for a
-        run, nor a run's for a curve.
+        Where the folder is not empty and ``force`` is not set. The files of a run, of a curve and
+        of a surface do not count for each other.
     OutputError
         Where nothing can be written there.
     """
@@ -123,7 +129,7 @@ def _refuse_occupied(target: Path, own: Collection[str], *, force: bool) -> None
         return
     found = {entry.name: entry for entry in target.iterdir()}
     if not force:
-        other = {*RUN_FILES, *CURVE_FILES} - set(own)
+        other = {*RUN_FILES, *CURVE_FILES, *SURFACE_FILES} - set(own)
         kept = sorted(name for name in found if name not in other)
         if kept:
             raise InputError(

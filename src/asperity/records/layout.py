@@ -89,6 +89,8 @@ def attributes(result: Result | Curve) -> dict[str, str | int]:
         found["outcome"] = result.outcome.value
         for part in ("regime", "measures", "ledger", "warnings"):
             found[part] = json.dumps(plain(getattr(result, part)), allow_nan=False)
+        if result.surface is not None:
+            found["surface"] = json.dumps(plain(result.surface), allow_nan=False)
     return found
 
 
@@ -107,6 +109,8 @@ def json_object(result: Result | Curve) -> dict[str, Any]:
         return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE)}
     parts = ("regime", "measures", "ledger", "warnings")
     found = {name: plain(getattr(result, name)) for name in parts}
+    if result.surface is not None:
+        found["surface"] = plain(result.surface)
     return {"outcome": result.outcome.value, **found}
 
 

@@ -140,6 +140,7 @@ def _result(
         energies={key: values for key, values in _below(arrays, "energy_").items() if values.ndim},
         events={key: arrays.get(key, nothing) for key in _EVENTS},
         **{key: json.loads(said[key]) for key in ("regime", "measures", "ledger", "warnings")},
+        surface=json.loads(said["surface"]) if "surface" in said else None,
     )
 
 

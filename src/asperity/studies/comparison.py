@@ -18,7 +18,7 @@ from .tables import QUANTITIES, Entry
 
 def table_1(case: Case) -> list[dict[str, Any]]:
     """Table 1 and the numbers derived from it, as published and as a case has them."""
-    body, flat, rough = case.body_solid, case.counterface_solid, case.roughness
+    body, flat, rough = case.body_solid, case.counterface_solid, case.asperities
     liquid, adhesion = case.liquid, case.adhesion
     assert rough is not None
     assert liquid is not None

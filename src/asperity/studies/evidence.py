@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import regimes
 from .._jax import jax, jnp
-from ..case import Case, Roughness, builtin
+from ..case import Asperities, Case, builtin
 from ..case.build import build
 from ..contact import Contact, PublishedContact, RigidContact
 from ..halfspace import ring_mesh
@@ -97,7 +97,7 @@ class Evidence:
             }
             off = pool.submit(_printed_off, stop)
         own = {entry.surface: entry for entry in read_tables()}
-        rough = builtin("published").roughness
+        rough = builtin("published").asperities
         assert rough is not None
         return cls(
             case=case,
@@ -110,10 +110,10 @@ class Evidence:
         )
 
     @property
-    def rough(self) -> Roughness:
-        """The case's roughness."""
-        assert self.case.roughness is not None
-        return self.case.roughness
+    def rough(self) -> Asperities:
+        """The case's asperities."""
+        assert self.case.asperities is not None
+        return self.case.asperities
 
     @property
     def work(self) -> float:
@@ -225,8 +225,8 @@ def _variants(case: Case) -> dict[str, Case]:
     """The cases to compute, those that compile longest first."""
     few = {"numerics.max_impacts": _FEW}
     exact = builtin("published-exact").replace({"counterface.deformation": "rigid", **few})
-    assert exact.roughness is not None
-    spacing = exact.roughness.asperity_density**-0.5
+    assert exact.asperities is not None
+    spacing = exact.asperities.asperity_density**-0.5
     # The Kelvin radius goes with 1/ln(1/humidity).
     damp = exp(-_kelvin_radius(exact, exp(-1.0)) / spacing)
     return {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from ..result import Result
 from ..roughness.synthetic import gaussian_surface, length_for_density, summits
 from .drawing import Drawing
 from .evidence import Evidence
+
+if TYPE_CHECKING:
+    from .surfaces import Pair
 
 Columns = tuple[np.ndarray, ...]
 
@@ -22,8 +26,16 @@ _SHOWN_HUMIDITY = 0.6
 _SUMMITS = 9
 
 
-def drawings(evidence: Evidence) -> dict[str, Drawing]:
-    """Data of Figures 1 to 9, by file name without its ending."""
+def drawings(evidence: Evidence, measured: Pair | None = None) -> dict[str, Drawing]:
+    """Data of Figures 1 to 9, by file name without its ending.
+
+    Parameters
+    ----------
+    evidence
+        What the figures stand on.
+    measured
+        The surfaces of Figures 2 and 3; a synthetic pair where there is none.
+    """
     makers: dict[str, Callable[[Evidence], Drawing]] = {
         "figure-1": _bodies,
         "figure-2": _heights,
@@ -36,7 +48,14 @@ def drawings(evidence: Evidence) -> dict[str, Drawing]:
         "figure-8": _by_radius,
         "figure-9": _by_height,
     }
-    return {name: make(evidence) for name, make in makers.items()}
+    drawn = {name: make(evidence) for name, make in makers.items()}
+    if measured is not None:
+        # Here, since SciPy's signal processing takes a second to import and is needed for no other.
+        from . import surface_figures
+
+        drawn["figure-2"] = surface_figures.heights(measured)
+        drawn["figure-3"] = surface_figures.distribution(measured)
+    return drawn
 
 
 def _bodies(evidence: Evidence) -> Drawing:
@@ -73,7 +92,7 @@ def _heights(evidence: Evidence) -> Drawing:
     y, x = np.meshgrid(np.arange(rows) * spacing, np.arange(columns) * spacing, indexing="ij")
     piece = heights[:rows, :columns]
     return Drawing(
-        "Figure 2: heights of a composite surface (synthetic, until the program reads files)",
+        "Figure 2: heights of a synthetic composite surface (measured ones with --surfaces)",
         ("x [m]", "y [m]", "height [m]"),
         {"composite": (x.ravel(), y.ravel(), piece.ravel())},
         {"rows": rows, "columns": columns, "rms height [m]": float(heights.std())},
@@ -93,7 +112,8 @@ def _distribution(evidence: Evidence) -> Drawing:
     fine = np.linspace(edges[0], edges[-1], 301)
     series["Gaussian"] = (fine, np.exp(-0.5 * (fine / rms) ** 2) / (rms * sqrt(2.0 * pi)))
     return Drawing(
-        "Figure 3: heights of the synthetic composite surface and of its summits",
+        "Figure 3: heights of the synthetic composite surface and of its summits (measured ones "
+        "with --surfaces)",
         ("height [m]", "probability density [1/m]"),
         series,
         {"summits' mean [m]": float(tops.mean()), "summits' rms [m]": float(tops.std())},

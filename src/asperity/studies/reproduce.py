@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..case import Case, builtin
 from ..errors import InputError, SimulationError
@@ -17,6 +17,9 @@ from .drawing import Drawing
 from .evidence import Evidence
 from .refit import Inputs, Refit, refit
 from .tables import Entry, read_tables
+
+if TYPE_CHECKING:
+    from .surfaces import Pair
 
 Report = Callable[[float, str], None]
 Motions = dict[tuple[float, float], Result]
@@ -43,6 +46,8 @@ class Reproduction:
         Data of the figures by name; empty where it was interrupted.
     problems
         What a refit could not do, a line each.
+    surfaces
+        Figures of the measured surfaces of Figures 2 and 3; None where they are synthetic.
     """
 
     rows: list[dict[str, Any]]
@@ -52,17 +57,20 @@ class Reproduction:
     audit: list[dict[str, str]]
     drawings: dict[str, Drawing]
     problems: list[str] = field(default_factory=list)
+    surfaces: dict[str, Any] | None = None
 
     def json_object(self) -> dict[str, Any]:
         """What ``--json`` prints."""
         names = ("rows", "table_1", "found", "power", "audit", "problems")
-        return {name: getattr(self, name) for name in names}
+        found = {name: getattr(self, name) for name in names}
+        return found if self.surfaces is None else {**found, "surfaces": self.surfaces}
 
 
 def reproduce(
     *,
     tables: str | None = None,
     refitted: bool = False,
+    measured: Pair | None = None,
     progress: Report | None = None,
     stop: threading.Event | None = None,
     keep: Callable[[Reproduction], None] | None = None,
@@ -77,6 +85,8 @@ def reproduce(
     refitted
         Whether to find the unknown inputs again from the tables, instead of taking those of
         the built-in case ``published``.
+    measured
+        The surfaces of Figures 2 and 3; a synthetic pair where there is none.
     progress, stop
         As for :func:`asperity.solve`. What is there when it stops is returned: the tables as
         far as they were computed, no figures.
@@ -106,16 +116,23 @@ def reproduce(
     partial, results = _compared(case, entries, fit, stop)
     if refitted and not stop.is_set():
         partial = replace(partial, problems=problems_of(fit, entries, partial.rows))
+    if measured is not None:
+        partial = replace(partial, surfaces=measured.json_object())
     if keep is not None:
         keep(partial)
     if stop.is_set():
         return partial
     tell(0.2 + 0.4 * refitted, "what the exact model says")
-    return _audited(partial, case, results, tell, stop)
+    return _audited(partial, case, results, tell, stop, measured)
 
 
 def _audited(
-    partial: Reproduction, case: Case, results: Motions, tell: Report, stop: threading.Event
+    partial: Reproduction,
+    case: Case,
+    results: Motions,
+    tell: Report,
+    stop: threading.Event,
+    measured: Pair | None,
 ) -> Reproduction:
     """The tables with audit and figures; alone where it was stopped."""
     usable = _usable(case)
@@ -128,7 +145,7 @@ def _audited(
         return partial
     tell(0.9, "figures")
     claims = [claim._asdict() for claim in audit.claims(evidence)]
-    drawings = figures.drawings(evidence)
+    drawings = figures.drawings(evidence, measured)
     tell(1.0, "done")
     problems = [*partial.problems, *([_ELSEWHERE] if usable != case else [])]
     return replace(partial, audit=claims, drawings=drawings, problems=problems)
@@ -143,8 +160,8 @@ _ELSEWHERE = (
 def _usable(case: Case) -> Case:
     """The case; the built-in one where its release lies within its own conjunction."""
     edge, gap, _ = Inputs.of(case)
-    assert case.roughness is not None
-    return case if gap > edge * case.roughness.rms_height else builtin("published")
+    assert case.asperities is not None
+    return case if gap > edge * case.asperities.rms_height else builtin("published")
 
 
 def _before(case: Case, entries: list[Entry], stop: threading.Event) -> Reproduction | None:

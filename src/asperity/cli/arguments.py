@@ -1,0 +1,122 @@
+"""Arguments and options of the commands, as typer shows them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+CaseName = Annotated[
+    str,
+    typer.Argument(
+        help="Name of a built-in case (published-exact), a FILE.toml, or a record.nc to repeat.",
+        show_default=False,
+    ),
+]
+Folder = Annotated[
+    str | None,
+    typer.Option("-o", "--output", metavar="DIR", help="Folder for the files.", show_default=False),
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Replace earlier results in DIR; other files stay.")
+]
+Json = Annotated[
+    bool,
+    typer.Option(
+        "--json", help="Print one JSON object, in SI units; write files only if -o is given."
+    ),
+]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
+
+
+def _text(name: str, metavar: str, words: str, note: str | None = None) -> Any:
+    """An option that takes a text and has no default of its own."""
+    shown = f"{words}{f'  [default: {note}]' if note else ''}"
+    return typer.Option(f"--{name}", metavar=metavar, help=shown, show_default=False)
+
+
+Size = Annotated[
+    str | None, _text("size", "'X x Y'", "Size of the map where the file does not state it.")
+]
+Unit = Annotated[
+    str | None, _text("unit", "UNIT", "Unit of the heights where the file does not state it.")
+]
+Missing = Annotated[str | None, _text("missing", "refuse|keep|fill", "Missing pixels.", "refuse")]
+
+SurfaceFiles = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="FILE [FILE2]",
+        help="A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
+        "instrument's.",
+        show_default=False,
+    ),
+]
+Channel = Annotated[str | None, _text("channel", "NAME|N", "Channel of an instrument's file.")]
+Remove = Annotated[str | None, _text("remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt")]
+Align = Annotated[
+    str | None,
+    _text("align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none"),
+]
+Direction = Annotated[
+    str | None, _text("direction", "rows|columns", "What a scan line is.", "rows")
+]
+Degree = Annotated[int | None, _text("degree", "N", "Degree of a scan line's polynomial.", "1")]
+Short = Annotated[
+    str | None, _text("short", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
+]
+Long = Annotated[str | None, _text("long", "LENGTH", "Cut wavelengths above this, such as '5 um'.")]
+MadeFile = Annotated[
+    str,
+    typer.Argument(
+        metavar="FILE", help="File to write: .npy .csv .xyz .nc, each also .gz.", show_default=False
+    ),
+]
+MadeSize = Annotated[
+    str | None, _text("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")
+]
+Points = Annotated[str, typer.Option("--points", metavar="N|NxM", help="Pixels along x and y.")]
+Hurst = Annotated[float, typer.Option("--hurst", metavar="H", help="Hurst exponent.")]
+RollOff = Annotated[
+    str | None,
+    _text("roll-off", "LENGTH", "Wavelength above which the spectrum is flat.", "none"),
+]
+CutOff = Annotated[str | None, _text("cut-off", "LENGTH", "Shortest wavelength.", "two pixels")]
+RmsHeight = Annotated[str | None, _text("rms-height", "LENGTH", "Rms height; this or --rms-slope.")]
+RmsSlope = Annotated[float | None, _text("rms-slope", "NUMBER", "Rms of the gradient.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of the random numbers.")]
+Skewness = Annotated[float | None, _text("skewness", "S", "Skewness of the heights.", "0")]
+Kurtosis = Annotated[
+    float | None, _text("kurtosis", "K", "Kurtosis of the heights.", "3, a Gaussian's")
+]
+Heights = Annotated[
+    str | None,
+    _text(
+        "heights",
+        "FILE",
+        "Take the distribution of these heights: an .npy of numbers, or "
+        "a surface, whose tilt is removed.",
+    ),
+]
+ForceFile = Annotated[bool, typer.Option("--force", help="Replace FILE.")]
+Refit = Annotated[
+    bool, typer.Option("--refit", help="Find the unknown inputs again from the tables.")
+]
+Tables = Annotated[
+    str | None,
+    typer.Option(
+        "--tables",
+        metavar="FILE.csv",
+        help="Tables to compare with, in place of the publication's.",
+        show_default=False,
+    ),
+]
+TwoSurfaces = Annotated[
+    tuple[str, str] | None,
+    typer.Option(
+        "--surfaces",
+        metavar="FILE FILE",
+        help="Two measured surfaces for Figures 2 and 3; their tilt is removed.",
+        show_default=False,
+    ),
+]

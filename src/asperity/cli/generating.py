@@ -1,0 +1,228 @@
+"""``asperity generate``: a self-affine random surface to a file."""
+
+from __future__ import annotations
+
+import io
+import re
+import shlex
+from math import sqrt
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import typer
+
+from asperity.cli.options import in_options
+from asperity.cli.terminal import say, tell
+from asperity.cli.working import Progress, Work, progress_bar
+from asperity.errors import InputError, OutputError, one_line
+from asperity.records import check_folder
+from asperity.studies.surface_report import pixel_in_words, rows
+from asperity.summary import amount
+from asperity.topography import Topography
+from asperity.topography.describing.description import Description, describe
+from asperity.topography.files.content import MOST_PIXELS, content_of, cut_short, refusal, suffix_of
+from asperity.topography.files.reading import read_topography
+from asperity.topography.files.writing import check_target, write_topography
+from asperity.topography.making.generation import self_affine
+from asperity.topography.making.selfaffine import SpectrumError, spectrum_error
+from asperity.topography.preparing.form import levelled
+from asperity.units import lengths, quantity, shown
+
+_POINTS = re.compile(r"([0-9]{1,9})(?:\s*[x×]\s*([0-9]{1,9}))?")
+_GAUSSIAN = (0.0, 3.0)
+
+Spectrum = dict[str, Any]
+"""Hurst exponent, roll-off and cut-off as `self_affine` takes them."""
+
+
+class _Wanted(NamedTuple):
+    """What to make: the arguments of `self_affine`, and how the heights are called."""
+
+    points: tuple[int, int]
+    pixel_size: tuple[float, float]
+    spectrum: Spectrum
+    rest: dict[str, Any]
+    words: str
+
+
+class _Made(NamedTuple):
+    """What was made."""
+
+    topography: Topography
+    description: Description
+    error: SpectrumError | None
+
+
+def generate(file: str, *, force: bool, quiet: bool, **options: Any) -> None:
+    """Make a surface, write it, and say what it is.
+
+    Parameters
+    ----------
+    file : str
+        The file.
+    force, quiet : bool
+        The options of these names.
+    options
+        ``size``, ``points``, ``roll_off``, ``cut_off``, ``rms_height`` as text; ``hurst``,
+        ``rms_slope``, ``seed``, ``skewness``, ``kurtosis`` as numbers; ``heights``, a file; None
+        where one is not given.
+    """
+    target = check_target(file, force=force)
+    if not target.parent.is_dir():
+        raise OutputError(f"{file}: cannot be written: no folder {target.parent}", path=file)
+    check_folder(target.parent, [target.name], force=True)
+    distribution = "kurtosis" if options["heights"] is None else "heights"
+    with in_options(heights=distribution):
+        wanted = _wanted(options)
+        with progress_bar(not quiet) as progress:
+            made, code = Work(lambda stop: _make(wanted, progress)).wait()
+    if code or made is None:
+        say("asperity: interrupted; nothing was written")
+        raise typer.Exit(code)
+    write_topography(made.topography, file, force=force)
+    if not quiet:
+        tell("\n".join(_lines(file, wanted, made)))
+
+
+def _wanted(options: dict[str, Any]) -> _Wanted:
+    """The options as numbers, checked as far as one alone can be wrong."""
+    points = _points(options["points"])
+    if options["size"] is None:
+        raise InputError("`size` must be given, such as '10 um x 10 um'; got nothing")
+    width, length = lengths(options["size"], 2, "size")
+    heights, words = _heights(options["heights"], options["skewness"], options["kurtosis"])
+    measures = {
+        name: None if options[name] is None else quantity(options[name], "m", name)
+        for name in ("roll_off", "cut_off", "rms_height")
+    }
+    return _Wanted(
+        points,
+        (width / points[0], length / points[1]),
+        {
+            "hurst": options["hurst"],
+            "rolloff": measures["roll_off"],
+            "cutoff": measures["cut_off"],
+        },
+        {
+            "rms_height": measures["rms_height"],
+            "rms_slope": options["rms_slope"],
+            "seed": options["seed"],
+            "heights": heights,
+        },
+        words,
+    )
+
+
+def _points(text: str) -> tuple[int, int]:
+    """Pixels along x and y."""
+    match = _POINTS.fullmatch(text.strip())
+    if match is None:
+        raise InputError(f"`points` must be N or NxM, such as 512 or 512x256; got {shown(text)}")
+    columns, rows = int(match[1]), int(match[2] or match[1])
+    if columns * rows > MOST_PIXELS:
+        raise InputError(f"`points` must be at most {MOST_PIXELS} in all; got {shown(text)}")
+    return columns, rows
+
+
+def _heights(
+    file: str | None, skewness: float | None, kurtosis: float | None
+) -> tuple[tuple[float, float] | np.ndarray | None, str]:
+    """The distribution of heights, and its name."""
+    moments = (skewness, kurtosis)
+    if file is None:
+        if moments == (None, None):
+            return None, "Gaussian"
+        pair = tuple(
+            usual if one is None else one for one, usual in zip(moments, _GAUSSIAN, strict=True)
+        )
+        return (pair[0], pair[1]), f"of skewness {pair[0]:g} and kurtosis {pair[1]:g}"
+    if moments != (None, None):
+        raise InputError("`heights` and `skewness` or `kurtosis` exclude each other; got both")
+    name = one_line(Path(file).name)
+    if suffix_of(file) == ".npy":
+        return _numbers(file), f"distributed as the numbers of {name}"
+    flat, step = levelled(read_topography(file), "tilt")
+    known = flat.heights[~flat.missing]
+    return known, f"distributed as those of {name} ({step.words})"
+
+
+def _numbers(file: str) -> np.ndarray:
+    """The numbers of an .npy file of any shape."""
+    try:
+        values = np.load(io.BytesIO(content_of(file)), allow_pickle=False)
+    except InputError:
+        raise
+    except Exception as error:  # a damaged header makes NumPy's parser raise many kinds
+        raise cut_short(file, "an .npy file that cannot be read") from error
+    if not isinstance(values, np.ndarray) or values.dtype.kind not in "iuf":
+        raise refusal(file, "must hold real numbers; save the heights as float64")
+    return np.asarray(values, dtype=np.float64).ravel()
+
+
+def _make(wanted: _Wanted, progress: Progress | None) -> _Made:
+    """The surface and what it is; in a thread of its own."""
+    if progress is not None:
+        progress(0.1, "waves")
+    made = self_affine(wanted.points, wanted.pixel_size, **wanted.spectrum, **wanted.rest)
+    if progress is not None:
+        progress(0.7, "description")
+    shaped = wanted.rest["heights"] is not None
+    error = spectrum_error(made, **wanted.spectrum) if shaped else None
+    return _Made(made, describe(made), error)
+
+
+def _lines(file: str, wanted: _Wanted, made: _Made) -> list[str]:
+    """What was made, and how to describe it."""
+    surface, found = made.topography, made.description
+    across, down = wanted.points
+    width, length = surface.physical_size
+    roll_off, cut_off = wanted.spectrum["rolloff"], wanted.spectrum["cutoff"]
+    shape = found.heights
+    table = [
+        ("map", f"{across} x {down} pixels of {pixel_in_words(wanted.pixel_size)}, "
+                f"{amount(width, 'm')} x {amount(length, 'm')}"),
+        ("Hurst exponent", amount(wanted.spectrum["hurst"])),
+        ("roll-off", "none" if roll_off is None else amount(roll_off, "m")),
+        ("cut-off", amount(cut_off or 2.0 * max(wanted.pixel_size), "m")),
+        ("seed", str(wanted.rest["seed"])),
+        ("heights", wanted.words),
+        ("rms height", amount(found.rms_height, "m")),
+        ("rms slope", _slope(wanted.rest["rms_slope"], found)),
+        ("skewness, kurtosis", f"{amount(shape.skewness if shape else None)}, "
+                               f"{amount(shape.kurtosis if shape else None)}"),
+        ("m0, m2, m4", f"{amount(found.spectral.m0)} m^2, {amount(found.spectral.m2)}, "
+                       f"{amount(found.spectral.m4)} 1/m^2"),
+    ]  # fmt: skip
+    return [
+        f"{file}: a self-affine surface",
+        *rows([*table, *_of_error(made.error)]),
+        "describe it with:",
+        f"  {_command(file, surface)}",
+    ]
+
+
+def _slope(asked: float | None, found: Description) -> str:
+    """The rms slope that was asked for, and that which a description will find."""
+    over = f"{amount(sqrt(2.0 * found.spectral.m2))} over neighbouring pixels"
+    return over if asked is None else f"{amount(asked)} of the Fourier series, {over}"
+
+
+def _of_error(error: SpectrumError | None) -> list[tuple[str, str]]:
+    """How far the spectrum is from the one asked for, where the heights are imposed."""
+    if error is None:
+        return []
+    return [
+        ("spectrum's rms error", f"{error.rms:.2g} of its power within the cut-off"),
+        ("beyond the cut-off", f"{error.beyond:.2g} of the mean square height, "
+                               f"{error.curvature_beyond:.2g} of the mean square curvature"),
+    ]  # fmt: skip
+
+
+def _command(file: str, surface: Topography) -> str:
+    """The command that reads the file back; an .npy holds heights alone."""
+    command = f"asperity surface {shlex.quote(file)}"
+    if suffix_of(file) != ".npy":
+        return command
+    width, length = surface.physical_size
+    return f'{command} --size "{width!r} m x {length!r} m" --unit m'

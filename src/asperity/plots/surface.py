@@ -1,0 +1,155 @@
+"""A surface on one page: map, heights, spectrum, summits, quantiles."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from asperity.plots import style
+from asperity.plots.height_map import draw_map, legible
+from asperity.plots.surface_panels import (
+    draw_heights,
+    draw_quantiles,
+    draw_radii,
+    draw_spectrum,
+    draw_summit_heights,
+)
+from asperity.studies.surface_report import size_in_words
+from asperity.studies.surfaces import Pair, Surface
+from asperity.summary import amount
+from asperity.topography import Topography
+from asperity.topography.describing.composite import Composite
+from asperity.topography.describing.description import Description
+
+_TALL = 230.0
+_INCH = 25.4
+_SHORTEST = 10
+
+
+class Box(NamedTuple):
+    """Where axes stand on the page: from its left and its top, width and height [mm]."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+
+
+MAP = Box(7.0, 24.0, 58.0, 58.0)
+_HEIGHTS = Box(101.0, 32.0, 65.0, 50.0)
+_SPECTRUM, _QUANTILES = Box(17.0, 110.0, 64.0, 42.0), Box(101.0, 110.0, 65.0, 42.0)
+_SUMMITS, _RADII = Box(17.0, 177.0, 64.0, 42.0), Box(101.0, 177.0, 65.0, 42.0)
+_LINES = ((8.0, 10.0, 75), (12.5, 7.5, 118), (16.5, 7.5, 118))
+"""Place from the top [mm], size of the letters [pt] and longest length of the page's head."""
+
+
+def files(found: Surface | Pair) -> dict[str, bytes]:
+    """The page of a surface, or those of a pair and of its composite, by file name."""
+    pages = {"surface": of_surface(found)} if isinstance(found, Surface) else _of_pair(found)
+    out: dict[str, bytes] = {}
+    for name, page in pages.items():
+        out[f"{name}.png"] = style.png(page)
+        out[f"{name}.svg"] = style.svg(page)
+    return out
+
+
+def _of_pair(found: Pair) -> dict[str, Figure]:
+    pages = {f"surface-{k}": of_surface(one) for k, one in enumerate(found.surfaces, 1)}
+    return pages | {"composite": of_composite(found)}
+
+
+def of_surface(found: Surface) -> Figure:
+    """The page of one surface."""
+    done = "; ".join(step.words for step in found.prepared.steps) or "not prepared"
+    return page(found.topography, found.description, found.name, done)
+
+
+def of_composite(found: Pair) -> Figure:
+    """The page of two surfaces as one: of the added maps, with the distributions convolved."""
+    convolved = f"by convolution Sq {amount(found.composite.rms_height, 'm')}"
+    return page(
+        found.composite.added,
+        found.description,
+        f"Composite of {found.name}",
+        f"maps added; {convolved}",
+        found.composite,
+    )
+
+
+def page(
+    topography: Topography,
+    description: Description,
+    title: str,
+    done: str,
+    both: Composite | None = None,
+) -> Figure:
+    """One page on a map.
+
+    Parameters
+    ----------
+    topography
+        The map.
+    description
+        What it says.
+    title
+        Name of the surface.
+    done
+        How the map was made ready.
+    both
+        Where the map is a sum of two: their composite, whose distributions are drawn too.
+    """
+    with style.look():
+        figure = style.Picture(
+            figsize=(style.PAGE / _INCH, _TALL / _INCH), dpi=style.RESOLUTION, facecolor="white"
+        )
+        FigureCanvasAgg(figure)
+        size = f"{size_in_words(topography)}; Sq {amount(description.rms_height, 'm')}"
+        for (top, letters, longest), line in zip(_LINES, (title, size, done), strict=True):
+            text = figure.text(
+                MAP.left / style.PAGE, 1.0 - top / _TALL, "", fontsize=letters, parse_math=False
+            )
+            _write(text, _micro(line), longest)
+        draw_map(figure, topography, MAP, (style.PAGE, _TALL))
+        draw_heights(_axes(figure, _HEIGHTS), topography.heights, description, both)
+        for box, draw in _panels(description, both):
+            draw(_axes(figure, box))
+    return figure
+
+
+def _panels(
+    description: Description, both: Composite | None
+) -> list[tuple[Box, Callable[[Axes], None]]]:
+    """What draws each panel, and where."""
+    return [
+        (_SPECTRUM, lambda axes: draw_spectrum(axes, description)),
+        (_QUANTILES, lambda axes: draw_quantiles(axes, description, both)),
+        (_SUMMITS, lambda axes: draw_summit_heights(axes, description, both)),
+        (_RADII, lambda axes: draw_radii(axes, description)),
+    ]
+
+
+def _write(text: Text, words: str, longest: int) -> None:
+    """Write as much of a line as the page is wide."""
+    room = (style.PAGE - 2.0 * MAP.left) / _INCH * style.RESOLUTION
+    text.set_text(legible(words, longest))
+    while longest > _SHORTEST and text.get_window_extent().width > room:
+        longest -= 3
+        text.set_text(legible(words, longest))
+
+
+def _micro(words: str) -> str:
+    """Micrometres as print has them."""
+    return re.sub(r"(?<= )um\b", "µm", words)
+
+
+def _axes(figure: Figure, box: Box) -> Axes:
+    bottom = _TALL - box.top - box.height
+    return figure.add_axes(
+        (box.left / style.PAGE, bottom / _TALL, box.width / style.PAGE, box.height / _TALL)
+    )

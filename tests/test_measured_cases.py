@@ -1,0 +1,325 @@
+"""Cases whose roughness is measured: what they take from files, refuse, record and compute."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import asperity
+from asperity import records
+from asperity.case import load, load_file, template
+from asperity.case.build import build
+from asperity.cli import app
+from asperity.errors import InputError, Outcome
+from asperity.roughness import Gaussian
+from asperity.topography import Topography
+from asperity.topography.describing.adding import added
+from asperity.topography.describing.summits import find_summits
+from asperity.topography.files.writing import write_topography
+from asperity.topography.making.generation import self_affine
+from asperity.topography.preparing.preparation import Preparation, prepared
+from asperity.validity import CLASSED
+
+MADE = self_affine(
+    (128, 128), (10e-9, 10e-9), hurst=0.8, rolloff=240e-9, cutoff=50e-9, rms_height=2e-9, seed=4
+)
+CASE = """
+[body]
+radius = "20 um"
+material = "silica"
+[counterface]
+material = "silicon"
+deformation = "rigid"
+[roughness]
+files = ["surface.nc"]
+source = "summits"
+[adhesion]
+model = "dmt"
+work = "30 mJ/m^2"
+range = "0.2 nm"
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.5
+temperature = "20 degC"
+contact_angle = "50 deg"
+[impact]
+speed = "10 mm/s"
+[numerics]
+max_impacts = 3
+"""
+FILES = "roughness.files"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A case beside the surface that it names."""
+    place = tmp_path_factory.mktemp("measured")
+    write_topography(MADE, place / "surface.nc")
+    (place / "case.toml").write_text(CASE, encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def case(folder):
+    return load_file(folder / "case.toml")
+
+
+@pytest.fixture(scope="module")
+def solved(case):
+    return asperity.solve(case, name="measured")
+
+
+def refused(action, *parts):
+    """The one line with which an action refuses its input."""
+    with pytest.raises(InputError) as caught:
+        action()
+    message = str(caught.value)
+    assert len(message.splitlines()) == 1
+    for part in parts:
+        assert part in message
+    return message
+
+
+def changed(case, **changes):
+    return case.replace({f"roughness.{key}": value for key, value in changes.items()})
+
+
+def test_files_of_a_case_are_looked_for_in_its_folder(folder, case, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert case.roughness.files == [str(folder / "surface.nc")]
+    assert load_file(folder / "case.toml").asperities.summits.count == case.asperities.summits.count
+
+
+def test_a_case_has_the_summits_of_its_levelled_map(case):
+    found, rough = find_summits(prepared(MADE, Preparation()).topography), case.asperities
+    assert rough.asperity_density == pytest.approx(found.density)
+    assert rough.asperity_radius == pytest.approx(found.radius)
+    assert rough.rms_height == pytest.approx(found.heights.std())
+    assert rough.mean_height == pytest.approx(found.heights.mean())
+    np.testing.assert_allclose(rough.summits.heights, found.heights)
+
+
+def test_gaussian_takes_rms_mean_height_density_and_radius_of_the_summits(case):
+    built = build(changed(case, source="gaussian")).contact.interface
+    rough = case.asperities
+    assert isinstance(built.heights, Gaussian)
+    assert float(built.heights.rms_height) == pytest.approx(rough.rms_height)
+    assert float(built.heights.mean_height) == pytest.approx(rough.mean_height)
+    assert float(built.density) == pytest.approx(rough.asperity_density)
+    assert float(built.law.parts[0].radius) == pytest.approx(rough.asperity_radius)
+
+
+def test_the_ledger_of_measured_summits_closes(solved):
+    assert solved.outcome is Outcome.MAX_IMPACTS
+    assert solved.ledger["closure"] < 1e-6
+    assert solved.ledger["lost"]["capillary"] > 0.0
+    assert solved.measures["restitution"][0] < 1.0
+
+
+DRY = {"adhesion": None, "capillary": None, "numerics.max_impacts": 1}
+
+
+def test_hertz_alone_on_measured_summits_returns_all_energy(case):
+    result = asperity.solve(case.replace(DRY))
+    assert result.measures["restitution"][0] == pytest.approx(1.0, abs=1e-8)
+    assert result.ledger["closure"] < 1e-6
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("source", "changes", "limit"),
+    [
+        ("gaussian", {}, 1e-6),
+        ("gaussian", {"adhesion.model": "jkr", "capillary": None}, 1e-6),
+        ("summits", {"adhesion.model": "jkr", "capillary": None}, 1e-6),
+        ("gaussian", {"counterface.deformation": "half-space"}, 1e-6),
+        ("summits", {"counterface.deformation": "half-space", "numerics.rings": 200}, 1e-6),
+    ],
+)
+def test_the_ledger_closes_with_either_source_on_either_body(case, source, changes, limit):
+    """Few summits make a coarse law: with 80 rings the last closes to 2.5e-6, and says so."""
+    changes = {"numerics.max_impacts": 2, **changes}
+    result = asperity.solve(changed(case, source=source).replace(changes))
+    assert result.ledger["closure"] < limit
+
+
+def test_record_and_json_hold_the_surface_and_come_back(solved, folder, tmp_path):
+    path = tmp_path / "record.nc"
+    path.write_bytes(records.encode(solved))
+    surface = records.read(path).surface
+    assert surface == records.plain(solved.surface)
+    assert surface["source"] == "summits"
+    assert surface["summits"] == solved.case.asperities.summits.count
+    (file,) = surface["files"]
+    assert file["file"] == str(folder / "surface.nc")
+    assert len(file["sha256"]) == 64
+    found = json.loads(json.dumps(records.json_object(solved), allow_nan=False))
+    assert found["surface"] == surface
+    assert "Surface" in solved.summary()
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, [str(each) for each in arguments])
+
+
+def test_a_surface_file_that_has_gone_is_one_line(solved, tmp_path):
+    """Of a case, and of a record, which names the file and does not hold it."""
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    there = asperity.load(str(tmp_path / "case.toml"))
+    record = tmp_path / "record.nc"
+    record.write_bytes(records.encode(dataclasses.replace(solved, case=there)))
+    for file in (tmp_path / "case.toml", record):
+        found = call("run", file, "-o", tmp_path / "out")
+        assert found.exit_code == 2
+        assert found.stderr.count("\n") == 1
+        assert "surface.nc" in found.stderr
+
+
+def test_a_changed_file_is_read_anew(tmp_path):
+    path = tmp_path / "surface.nc"
+    write_topography(MADE, path)
+    case = load(CASE).replace({FILES: [str(path)]})
+    before = case.asperities.rms_height
+    write_topography(MADE.with_heights(2.0 * MADE.heights), path, force=True)
+    assert case.asperities.rms_height == pytest.approx(2.0 * before)
+
+
+def test_two_files_are_the_sum_of_their_maps(folder, case, tmp_path):
+    other = self_affine(
+        (128, 128), (10e-9, 10e-9), hurst=0.5, rolloff=300e-9, cutoff=60e-9, rms_height=1e-9, seed=9
+    )
+    write_topography(other, tmp_path / "other.nc")
+    both = changed(case, files=[str(folder / "surface.nc"), str(tmp_path / "other.nc")])
+    maps = [prepared(each, Preparation()).topography for each in (MADE, other)]
+    whole = added(*maps)
+    assert both.asperities.surface_rms_height == pytest.approx(whole.rms_height)
+    assert both.asperities.summits.count == find_summits(whole).count
+    assert both.asperities.facts["added"]
+    refused(lambda: changed(case, files=["a", "b", "c"]), "roughness.files")
+
+
+def holed(tmp_path):
+    heights = np.array(MADE.heights)
+    heights[40:44, 50:53] = np.nan
+    path = tmp_path / "holed.nc"
+    write_topography(Topography(heights, MADE.pixel_size), path)
+    return str(path)
+
+
+def test_missing_pixels_are_refused_kept_or_filled_and_counted(case, tmp_path):
+    file = holed(tmp_path)
+    refused(lambda: changed(case, files=[file]).asperities, "holed.nc", "12", "missing")
+    for choice in ("keep", "fill"):
+        rough = changed(case, files=[file], missing=choice).asperities
+        assert rough.facts["files"][0]["missing_pixels"] == 12
+        assert any("12 of 16384 pixels" in line for line in rough.warnings)
+
+
+def test_missing_area_has_the_density_of_what_was_measured(case, tmp_path):
+    kept = changed(case, files=[holed(tmp_path)], missing="keep").asperities
+    found = find_summits(kept.surface)
+    assert found.searched < 1.0
+    assert kept.asperity_density == pytest.approx(found.density / found.searched)
+
+
+REFUSED = [
+    ({"rms_height": "1 nm"}, "`rms_height` and `files` exclude each other"),
+    ({"asperity_density": "1e14 1/m^2"}, "`asperity_density` and `files` exclude each other"),
+    ({"source": "summit"}, "did you mean 'summits'"),
+    ({"source": "gaussian", "radius_classes": 4}, "must be absent without source = 'summits'"),
+    ({"radius_classes": 0}, "[1, 64]"),
+    ({"size": "10 kg"}, "`size`"),
+    ({"files": []}, "`files`"),
+    ({"files": None, "source": None}, "is missing; give it, or `files` of measured surfaces"),
+    ({"short": "2 um", "long": "1 um"}, "`short`"),
+]
+
+
+@pytest.mark.parametrize(("changes", "rule"), REFUSED, ids=range(len(REFUSED)))
+def test_a_table_that_contradicts_itself_is_refused(case, changes, rule):
+    refused(lambda: changed(case, **changes), rule)
+
+
+@pytest.mark.parametrize("key", ["size", "unit", "source", "missing", "remove", "short"])
+def test_what_is_for_files_is_refused_without_them(key):
+    given = {"size": "1 um x 1 um", "unit": "nm", "source": "gaussian", "missing": "keep"}
+    value = {**given, "remove": "tilt", "short": "10 nm"}[key]
+    numbers = '[roughness]\nasperity_density = "1e14 1/m^2"\nasperity_radius = "1 nm"\n'
+    text = CASE.split("[roughness]")[0] + numbers + f'rms_height = "1 nm"\n{key} = "{value}"\n'
+    whole = f"{text}[adhesion]{CASE.split('[adhesion]')[1]}"
+    refused(lambda: load(whole), f"`{key}` must be absent")
+
+
+def test_too_few_summits_are_refused_with_file_and_number(case, tmp_path):
+    smooth = self_affine(
+        (48, 48), (10e-9, 10e-9), hurst=0.8, cutoff=240e-9, rms_height=1e-9, seed=1
+    )
+    write_topography(smooth, tmp_path / "smooth.nc")
+    few = changed(case, files=[str(tmp_path / "smooth.nc")])
+    refused(lambda: few.asperities, "smooth.nc", "at least 10; got", "measure a larger area")
+
+
+def test_a_surface_smaller_than_the_contact_is_refused_by_run(folder, tmp_path):
+    """A fast and large sphere sinks in until the contact is wider than the map."""
+    text = CASE.replace('"20 um"', '"2 mm"').replace('"10 mm/s"', '"1 m/s"')
+    text = text.replace('["surface.nc"]', f'["{folder}/surface.nc"]')
+    path = tmp_path / "large.toml"
+    path.write_text(text, encoding="utf-8")
+    found = call("run", path, "-o", tmp_path / "out")
+    assert found.exit_code == 2
+    assert found.stderr.count("\n") == 1
+    for part in ("large.toml", "roughness.files", "larger than the contact", "um wide"):
+        assert part in found.stderr
+
+
+FILLED = {"capillary.model": "kelvin-filling", "capillary.humidity": 0.9}
+
+
+@pytest.mark.parametrize("source", ["gaussian", "summits"])
+def test_liquid_on_the_surface_sees_its_rms_height_not_that_of_the_summits(case, source):
+    filled = changed(case, source=source).replace(FILLED)
+    layers = build(filled).contact.interface
+    surface = prepared(MADE, Preparation()).topography.rms_height
+    assert float(layers.parts[-1].heights.rms_height) == pytest.approx(surface)
+    assert surface > 1.02 * filled.asperities.rms_height
+    rule = "`surface_rms_height`"
+    refused(lambda: filled.replace({"capillary.surface_rms_height": "3 nm"}), rule)
+
+
+def test_menisci_that_take_time_go_with_weighted_summits_and_not_with_classes(case):
+    late = case.replace({"capillary.formation_time": "1 us"})
+    assert build(late).late is not None
+    changes = {"adhesion.model": "jkr", "capillary.model": "constant-volume"}
+    classed = changed(late, radius_classes=1).replace(changes)
+    refused(lambda: build(classed), "formation_time")
+
+
+def test_a_case_with_files_comes_back_from_its_text(case):
+    given = changed(case, radius_classes=4, missing="fill", long="1 um", size="1.28 um x 1.28 um")
+    assert load(given.toml()) == given
+    assert load(case.toml()) == case
+
+
+def test_the_template_names_the_keys_of_files_and_loads():
+    text = template()
+    for key in ("files", "source", "size", "unit", "channel", "missing", "remove", "align"):
+        assert f"# {key} = " in text
+    assert load(text).roughness.files is None
+
+
+def test_radius_classes_are_in_use_where_a_law_needs_them(case):
+    """One class would leave out more of the bonds' work than passes without a warning."""
+    assert build(case).class_error == 0.0
+    jkr = case.replace({"adhesion.model": "jkr", "capillary": None})
+    coarse, fine = (build(changed(jkr, radius_classes=count)) for count in (1, 6))
+    assert coarse.class_error < -CLASSED < fine.class_error < 0.0
+    assert (coarse.contact.interface.count, fine.contact.interface.count) == (1, 6)
+
+
+def test_too_few_classes_of_radius_are_warned_about(case):
+    jkr = case.replace({"adhesion.model": "jkr", "capillary": None, "numerics.max_impacts": 1})
+    lines = asperity.solve(changed(jkr, radius_classes=1)).warnings
+    assert any("1 classes of tip radius" in line and "too small" in line for line in lines)

@@ -1,0 +1,465 @@
+"""The commands `surface` and `generate`, and measured surfaces in `reproduce`."""
+
+from __future__ import annotations
+
+import json
+import math
+import resource
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from asperity.cli import app
+from asperity.topography import Topography
+from asperity.topography.files.reading import read_topography
+from asperity.topography.files.writing import write_topography
+from asperity.topography.making.generation import self_affine
+
+KEYS = {
+    "rms_height", "skewness", "kurtosis", "summit_density", "summit_radius", "summit_rms_height",
+    "bandwidth", "moments", "gaussian", "missing_pixels", "pixel_size", "physical_size",
+}  # fmt: skip
+FILES = ["surface.json", "surface.png", "surface.svg", "surface.txt"]
+PIXEL = (20e-9, 20e-9)
+SIZE = ["--size", "1 um x 1 um"]
+HEIGHT = ["--rms-height", "5 nm"]
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty current folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def call(*arguments: str) -> Any:
+    return CliRunner().invoke(app, list(arguments))
+
+
+def names(folder: str = ".") -> list[str]:
+    return sorted(path.name for path in Path(folder).iterdir())
+
+
+def strict(text: str) -> Any:
+    def refuse(constant: str) -> None:
+        raise AssertionError(constant)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def described(*arguments: str) -> Any:
+    ran = call("surface", *arguments, "--json")
+    assert ran.exit_code == 0, ran.output
+    return strict(ran.stdout)
+
+
+def refused(*arguments: str, code: int = 2) -> str:
+    """The one line of a refusal, which leaves nothing behind."""
+    before = names()
+    ran = call(*arguments)
+    assert ran.exit_code == code, ran.output
+    assert ran.stdout == ""
+    assert ran.stderr.count("\n") == 1, ran.stderr
+    assert names() == before
+    return str(ran.stderr)
+
+
+def rough(name: str = "rough.csv", seed: int = 1, rms: float = 10e-9, points: int = 64) -> str:
+    """A file with a Gaussian self-affine surface of pixels that resolve it."""
+    made = self_affine(
+        (points, points), PIXEL, hurst=0.8, rolloff=400e-9, cutoff=160e-9, rms_height=rms, seed=seed
+    )
+    write_topography(made, name)
+    return name
+
+
+def with_gaps(name: str = "gaps.csv", count: int = 7) -> str:
+    heights = read_topography(rough("whole.nc")).heights.copy()
+    heights[10, 5 : 5 + count] = np.nan
+    write_topography(Topography(heights, PIXEL), name)
+    return name
+
+
+def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "asperity", *arguments]
+    options = {"capture_output": True, "text": True, "timeout": 120, **options}
+    return subprocess.run(command, check=False, **options)
+
+
+def test_a_lattice_of_paraboloids_has_its_radius_and_density():
+    """Tops of one radius R on a square lattice: 1/R is the curvature, 1/pitch^2 the density."""
+    radius, pitch, count = 2e-6, 400e-9, 24
+    step = pitch / 16
+    place = (np.arange(count * 16) - 8) * step
+    about = (place + 0.5 * pitch) % pitch - 0.5 * pitch
+    heights = -(about**2 + about[:, None] ** 2) / (2.0 * radius)
+    write_topography(Topography(heights, (step, step)), "lattice.nc")
+    found = described("lattice.nc", "--remove", "none")
+    assert found["summit_radius"] == pytest.approx(radius, rel=1e-6)
+    assert found["summit_density"] == pytest.approx(1.0 / pitch**2, rel=0.02)
+
+
+def test_json_of_a_surface_has_the_figures_in_si_and_no_others(place: Path):
+    found = described(rough())
+    assert set(found) == KEYS
+    assert set(found["gaussian"]) == {"statistic", "p_value"}
+    assert found["physical_size"] == pytest.approx([64 * 20e-9] * 2)
+    assert found["pixel_size"] == pytest.approx([20e-9] * 2)
+    assert found["moments"][0] == pytest.approx(found["rms_height"] ** 2)
+    m0, m2, m4 = found["moments"]
+    assert found["bandwidth"] == pytest.approx(m0 * m4 / m2**2)
+    assert names() == ["rough.csv"]
+
+
+def test_json_of_two_surfaces_adds_their_variances():
+    """Whatever the distributions are, variances and third cumulants of a sum add up."""
+    files = [rough("a.csv", 1, 10e-9), rough("b.nc", 2, 20e-9)]
+    found = described(*files)
+    first, second = found["surfaces"]
+    both = found["composite"]
+    assert set(first) == set(second) == KEYS
+    assert set(both) == KEYS | {"by_convolution", "by_adding"}
+    assert both["rms_height"] == pytest.approx(
+        math.hypot(first["rms_height"], second["rms_height"]), rel=1e-3
+    )
+    third = sum(one["skewness"] * one["rms_height"] ** 3 for one in (first, second))
+    assert both["skewness"] == pytest.approx(third / both["rms_height"] ** 3, abs=2e-3)
+    alone = described(files[0])
+    assert first == alone
+    whole = {**both, **both["by_adding"]}
+    assert whole["rms_height"] ** 2 == pytest.approx(both["moments"][0])
+
+
+def test_a_surface_is_described_in_80_columns_with_its_steps_models_and_verdicts(place: Path):
+    ran = call("surface", rough())
+    assert ran.exit_code == 0, ran.output
+    assert max(map(len, ran.stdout.splitlines())) <= 80
+    for words in (
+        "missing pixels        0 of 4096", "tilt removed", "; Sq ", "McCool", "Nayak",
+        "Effect of the pixel size", "Verdicts", "rms height Sq", "bandwidth m0 m4/m2^2",
+    ):  # fmt: skip
+        assert words in ran.stdout
+    assert names("rough-out") == FILES
+    assert (place / "rough-out/surface.png").read_bytes().startswith(b"\x89PNG")
+    text = (place / "rough-out/surface.txt").read_text()
+    assert ran.stdout.split("written to")[0].strip() in text
+    record = strict((place / "rough-out/surface.json").read_text())
+    assert set(record) > KEYS
+    assert record["mccool"]["density"] > 0.0
+    assert record["preparation"]["steps"][0]["rms_before"] > 0.0
+
+
+def test_two_surfaces_have_a_page_each_and_one_for_both(place: Path):
+    ran = call("surface", rough("a.csv", 1), rough("b.csv", 2), "-q")
+    assert (ran.exit_code, ran.output) == (0, "")
+    pages = [f"{n}.{k}" for n in ("composite", "surface-1", "surface-2") for k in ("png", "svg")]
+    assert names("a-b-out") == sorted([*pages, "surface.json", "surface.txt"])
+    text = (place / "a-b-out/surface.txt").read_text()
+    assert "by convolution   by adding" in text
+    assert max(map(len, text.splitlines())) <= 80
+    # One surface in the place of two leaves no page of theirs.
+    assert call("surface", "a.csv", "-o", "a-b-out", "--force").exit_code == 0
+    assert names("a-b-out") == FILES
+
+
+def test_an_earlier_result_is_kept_unless_forced(place: Path):
+    rough()
+    (place / "rough-out").mkdir()
+    (place / "rough-out/surface.txt").write_text("mine")
+    assert "--force" in refused("surface", "rough.csv")
+    assert (place / "rough-out/surface.txt").read_text() == "mine"
+    (place / "rough-out/record.nc").touch()
+    (place / "rough-out/surface.txt").unlink()
+    assert call("surface", "rough.csv").exit_code == 0  # beside the files of a run
+
+
+def test_missing_pixels_are_refused_kept_or_filled_and_counted():
+    said = refused("surface", with_gaps())
+    assert "gaps.csv: 7 of 4096 pixels are missing" in said
+    assert "--missing fill" in said
+    for how in ("keep", "fill"):
+        found = described("gaps.csv", "--missing", how)
+        assert found["missing_pixels"] == 7
+        ran = call("surface", "gaps.csv", "--missing", how, "-o", how)
+        assert "missing pixels        7 of 4096 (0.1709 %)" in ran.stdout
+    filled = described("gaps.csv", "--missing", "fill")["rms_height"]
+    assert filled == pytest.approx(described("whole.nc")["rms_height"], rel=0.01)
+
+
+def test_a_tilt_does_not_change_what_is_described():
+    heights = read_topography(rough()).heights
+    slope = 0.3 * PIXEL[0] * np.arange(heights.shape[1])
+    write_topography(Topography(heights + slope, PIXEL), "tilted.nc")
+    level, tilted = described("rough.csv"), described("tilted.nc")
+    assert tilted["rms_height"] == pytest.approx(level["rms_height"], rel=1e-9)
+    assert described("tilted.nc", "--remove", "mean")["rms_height"] > 5.0 * level["rms_height"]
+
+
+def test_a_cut_of_short_waves_leaves_fewer_and_rounder_summits():
+    whole, cut = described(rough(points=128)), described("rough.csv", "--short", "300 nm")
+    assert cut["summit_density"] < whole["summit_density"]
+    assert cut["summit_radius"] > whole["summit_radius"]
+
+
+def test_an_array_takes_its_size_and_unit_from_the_options():
+    np.save("bare.npy", read_topography(rough()).heights * 1e9)
+    options = ["--size", "1.28 um x 1280 nm", "--unit", "nm"]
+    found, known = described("bare.npy", *options), described("rough.csv")
+    assert found["rms_height"] == pytest.approx(known["rms_height"], rel=1e-9)
+    assert found["pixel_size"] == pytest.approx(known["pixel_size"])
+    assert "--size" in refused("surface", "bare.npy", "--unit", "nm")
+    assert "--unit" in refused("surface", "bare.npy", *options[:2])
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--remove", "plane"], "`--remove` must be one of none, mean, tilt"),
+        (["--align", "x"], "`--align` must be one of"),
+        (["--align", "median", "--direction", "x"], "`--direction` must be"),
+        (["--degree", "9"], "`--degree` must be a whole number from 0 to 5; got 9"),
+        (["--missing", "maybe"], "`--missing` must be one of refuse, keep, fill"),
+        (["--short", "5"], "`--short` must have a unit"),
+        (["--short", "-5 nm"], "`--short` must be a positive length"),
+        (["--short", "1 nm"], "rough.csv: `--short` must lie between two pixels, 40 nm"),
+        (["--long", "1 m"], "rough.csv: `--long` must lie between two pixels"),
+        (["--short", "500 nm", "--long", "100 nm"], "`--short` must lie below `--long`"),
+        (["--size", "10 um"], "`--size` must be 2 lengths, such as '10 um x 10 um'"),
+        (["--size", "0 um x 1 um"], "`--size` must be positive"),
+        (["--size", "3 um x 3 um"], "rough.csv: the size must be the one in the file"),
+        (["--unit", "volt"], "rough.csv: the unit must be a length"),
+        (["--channel", "3"], "rough.csv: holds one map and no channels; got 3"),
+        (["rough.csv", "rough.csv"], "one or two files must be given; got 3"),
+    ],
+)
+def test_an_option_that_cannot_be_used_is_named(options: list[str], words: str):
+    assert words in refused("surface", rough(), *options)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.foo", "1 2 3", "SurfaceTopography"),
+        ("none.csv", None, "no such file"),
+        ("bare.csv", "1 2 3\n4 5 6\n7 8 9\n", "--unit nm"),
+        ("size.csv", "# unit nm\n1 2 3\n4 5 6\n7 8 9\n", "--size"),
+        ("dot.csv", "# size[um] 1 1\n# unit nm\n7\n", "at least 3 x 3 pixels; got 1 x 1"),
+        ("nan.csv", "# size[um] 1 1\n# unit nm\n" + "nan nan nan\n" * 3, "all pixels are missing"),
+        ("half.csv", "# size[um] 1 1\n# unit nm\n1 2 3\n4 5 6\n7 8", "line 5"),
+        ("half.npy", "\x93NUMPY", "must be a whole .npy file"),
+    ],
+)
+def test_a_file_that_is_no_surface_is_refused_with_its_name(
+    name: str, content: str | None, words: str
+):
+    if content is not None:
+        Path(name).write_text(content, encoding="latin-1")
+    said = refused("surface", name)
+    assert name in said
+    assert words in said
+
+
+def test_a_flat_map_and_one_with_few_summits_are_described_without_what_they_lack():
+    write_topography(Topography(np.ones((9, 9)), PIXEL), "flat.nc")
+    assert described("flat.nc")["skewness"] is None
+    write_topography(Topography(np.arange(25.0).reshape(5, 5) ** 2 * 1e-9, PIXEL), "few.nc")
+    assert described("few.nc")["summit_rms_height"] is None
+    ran = call("surface", "few.nc")
+    assert ran.exit_code == 0
+    assert "0 summits are too few" in " ".join(ran.stdout.split())
+
+
+def test_no_command_on_surfaces_waits_for_jax():
+    code = (
+        "import sys; from asperity.cli import app; from typer.testing import CliRunner; "
+        "ran = CliRunner().invoke(app, sys.argv[1:]); assert ran.exit_code == 0, ran.output; "
+        "assert 'jax' not in sys.modules"
+    )
+    made = ["generate", "made.nc", "--points", "16", *SIZE, *HEIGHT]
+    for arguments in (made, ["surface", "made.nc", "-o", "out"]):
+        subprocess.run([sys.executable, "-c", code, *arguments], check=True)
+
+
+def limit_files() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
+def test_a_full_disk_is_exit_4_and_leaves_nothing(place: Path):
+    rough()
+    ran = program("surface", "rough.csv", preexec_fn=limit_files)
+    assert ran.returncode == 4
+    assert "rough-out" in ran.stderr
+    ran = program("generate", "made.npy", *SIZE, *HEIGHT, preexec_fn=limit_files)
+    assert ran.returncode == 4
+    assert "made.npy: cannot be written: File too large" in ran.stderr
+    assert names() == ["rough.csv"]
+    with Path("/dev/full").open("w") as full:
+        ran = program("surface", "rough.csv", "--json", capture_output=False, stdout=full,
+                      stderr=subprocess.PIPE)  # fmt: skip
+    assert ran.returncode == 4
+    assert "standard output" in ran.stderr
+
+
+def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place: Path):
+    write_topography(self_affine((2048, 2048), PIXEL, hurst=0.8, rms_height=1e-8, seed=1), "b.nc")
+    for arguments in (
+        ["surface", "b.nc"],
+        ["generate", "made.csv", *SIZE, *HEIGHT, "--points", "4096"],
+    ):
+        command = [sys.executable, "-m", "asperity", *arguments]
+        running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        time.sleep(2.5)
+        running.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        _, said = running.communicate(timeout=20)
+        assert time.monotonic() - start < 5.0
+        assert running.returncode == 130
+        assert said == "asperity: interrupted; nothing was written\n"
+    assert names() == ["b.nc"]
+
+
+def test_ctrl_c_while_drawing_keeps_the_text(monkeypatch: pytest.MonkeyPatch):
+    from asperity.cli import working
+    from asperity.plots import surface
+
+    monkeypatch.setattr(working, "PATIENCE", 0.05)
+
+    def stopped(found: object) -> dict[str, bytes]:
+        signal.raise_signal(signal.SIGINT)
+        time.sleep(0.5)
+        return {"surface.png": b""}
+
+    monkeypatch.setattr(surface, "files", stopped)
+    ran = call("surface", rough(), "-q")
+    assert ran.exit_code == 130
+    assert names("rough-out") == ["surface.json", "surface.txt"]
+
+
+def test_a_folder_without_permission_is_exit_4(place: Path):
+    rough()
+    (place / "file").touch()
+    assert "Not a directory" in refused("surface", "rough.csv", "-o", "file", code=4)
+    assert "no folder none" in refused("generate", "none/a.npy", *SIZE, *HEIGHT, code=4)
+
+
+@pytest.mark.parametrize("name", ["made.npy", "made.csv", "made.xyz", "made.nc", "a b.csv.gz"])
+def test_a_made_surface_is_read_back_by_the_command_that_is_printed(name: str):
+    ran = call("generate", name, "--points", "48x32", "--size", "3 um x 2 um", *HEIGHT)
+    assert ran.exit_code == 0, ran.output
+    command = shlex.split(ran.stdout.splitlines()[-1].strip())
+    assert command[:3] == ["asperity", "surface", name]
+    found = described(*command[2:], "--remove", "none")
+    assert found["rms_height"] == pytest.approx(5e-9, rel=1e-9)
+    assert found["physical_size"] == pytest.approx([3e-6, 2e-6])
+    assert found["pixel_size"] == pytest.approx([62.5e-9, 62.5e-9])
+
+
+def test_the_seed_makes_the_surface():
+    for name, seed in (("a.npy", "1"), ("b.npy", "1"), ("c.npy", "2")):
+        call("generate", name, "--points", "16", *SIZE, *HEIGHT, "--seed", seed)
+    contents = [Path(f"{name}.npy").read_bytes() for name in "abc"]
+    assert contents[0] == contents[1] != contents[2]
+
+
+def test_a_made_surface_has_the_skewness_and_kurtosis_asked_for_and_says_what_it_cost():
+    ran = call("generate", "made.nc", "--points", "128", *SIZE, *HEIGHT, "--skewness", "-1",
+               "--kurtosis", "6")  # fmt: skip
+    assert ran.exit_code == 0, ran.output
+    assert "spectrum's rms error" in ran.stdout
+    found = described("made.nc", "--remove", "none")
+    assert found["skewness"] == pytest.approx(-1.0, abs=0.01)
+    assert found["kurtosis"] == pytest.approx(6.0, abs=0.02)
+
+
+def test_a_made_surface_takes_the_heights_of_an_array_or_of_a_surface():
+    heights = np.random.default_rng(3).exponential(size=16 * 16)
+    np.save("drawn.npy", heights)
+    for source in ("drawn.npy", rough("own.csv")):
+        ran = call("generate", "made.nc", "--points", "16", *SIZE, *HEIGHT, "--heights", source,
+                   "--force")  # fmt: skip
+        assert ran.exit_code == 0, ran.output
+        assert source in ran.stdout
+        got = np.sort(read_topography("made.nc").heights, axis=None) / 5e-9
+        if source == "drawn.npy":
+            wanted = np.sort((heights - heights.mean()) / heights.std())
+            np.testing.assert_allclose(got, wanted, atol=1e-9)
+
+
+def test_an_rms_slope_is_met():
+    """Of the Fourier series; neighbouring pixels give less."""
+    ran = call("generate", "made.nc", "--points", "64", *SIZE, "--rms-slope", "0.2",
+               "--cut-off", "300 nm", "--roll-off", "500 nm")  # fmt: skip
+    assert ran.exit_code == 0, ran.output
+    found = described("made.nc", "--remove", "none")
+    assert math.sqrt(2.0 * found["moments"][1]) == pytest.approx(0.2, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([], "`--size` must be given"),
+        ([*SIZE], "one of `--rms-height` and `--rms-slope` must be given; got neither"),
+        ([*SIZE, *HEIGHT, "--rms-slope", "1"], "got both"),
+        ([*SIZE, *HEIGHT, "--hurst", "2"], "`--hurst` must lie in (0, 1]; got 2.0"),
+        ([*SIZE, *HEIGHT, "--points", "2"], "`--points` must be whole, 3 or more; got 2, 2"),
+        ([*SIZE, *HEIGHT, "--points", "9e9"], "`--points` must be N or NxM"),
+        ([*SIZE, *HEIGHT, "--points", "999999999"], "`--points` must be at most"),
+        ([*SIZE, *HEIGHT, "--seed", "-1"], "`--seed` must be whole, 0 or more"),
+        ([*SIZE, *HEIGHT, "--roll-off", "2 um"], "`--roll-off` must lie between two pixels"),
+        ([*SIZE, *HEIGHT, "--cut-off", "1 pm"], "`--cut-off` must lie between two pixels"),
+        ([*SIZE, "--rms-height", "5"], "`--rms-height` must have a unit"),
+        ([*SIZE, "--rms-height", "-5 nm"], "`--rms-height` must be positive"),
+        ([*SIZE, "--rms-slope", "nan"], "`--rms-slope` must be positive; got nan"),
+        ([*SIZE, *HEIGHT, "--skewness", "2"], "kurtosis above skewness^2 + 1 = 5; got 3"),
+        ([*SIZE, *HEIGHT, "--heights", "none.npy"], "none.npy: no such file"),
+        ([*SIZE, *HEIGHT, "--heights", "x.npy", "--skewness", "1"], "exclude each other"),
+    ],
+)
+def test_a_surface_that_cannot_be_made_is_refused_with_the_option(options: list[str], words: str):
+    assert words in refused("generate", "made.npy", *options)
+
+
+def test_a_file_is_never_overwritten_without_force(place: Path):
+    (place / "made.csv").write_text("mine")
+    made = ["generate", "made.csv", "--points", "8", *SIZE, *HEIGHT]
+    assert "--force" in refused(*made)
+    assert (place / "made.csv").read_text() == "mine"
+    assert call(*made, "--force").exit_code == 0
+    assert ".foo" not in refused("generate", "made.foo", *SIZE, *HEIGHT).split("must end in")[1]
+
+
+def test_heights_of_a_damaged_or_pickled_array_are_refused():
+    Path("half.npy").write_bytes(b"\x93NUMPY\x01\x00")
+    assert "half.npy" in refused("generate", "m.nc", *SIZE, *HEIGHT, "--heights", "half.npy")
+    np.save("object.npy", np.array([{}, 1], dtype=object), allow_pickle=True)
+    said = refused("generate", "m.nc", *SIZE, *HEIGHT, "--heights", "object.npy")
+    assert "object.npy" in said
+
+
+def test_measured_surfaces_of_the_reproduction_are_read_before_anything_is_computed():
+    assert "none.csv" in refused("reproduce", "--surfaces", rough(), "none.csv")
+    assert "`--size` must go with `--surfaces`" in refused("reproduce", *SIZE)
+    assert "--missing fill" in refused("reproduce", "--surfaces", "rough.csv", with_gaps())
+
+
+def test_figures_2_and_3_of_the_reproduction_are_those_of_two_files(place: Path):
+    """Their variances add up, as in the publication's convolution."""
+    files = [rough("one.csv", 1, 10e-9), rough("two.nc", 2, 20e-9)]
+    ran = call("reproduce", "--surfaces", *files, "--json", "-o", "out")
+    assert ran.exit_code == 0, ran.output
+    found = strict(ran.stdout)["surfaces"]
+    each = [one["rms_height"] for one in found["surfaces"]]
+    assert found["composite"]["rms_height"] == pytest.approx(math.hypot(*each), rel=1e-3)
+    for number in (2, 3):
+        title = (place / f"out/figure-{number}.csv").read_text().splitlines()[0]
+        assert "one.csv + two.nc" in title
+        assert "synthetic" not in title
+        assert (place / f"out/figure-{number}.png").is_file()
