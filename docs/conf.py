@@ -25,7 +25,7 @@ myst_heading_anchors = 3
 nb_render_markdown_format = "myst"
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120
+nb_execution_timeout = 600
 nb_execution_show_tb = True
 
 autodoc_member_order = "bysource"
