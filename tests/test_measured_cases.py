@@ -178,6 +178,22 @@ def test_a_surface_file_that_has_gone_is_one_line(solved, tmp_path):
         assert "surface.nc" in found.stderr
 
 
+def test_a_record_is_not_run_again_on_a_surface_that_has_changed(case, solved, tmp_path):
+    """Another answer under the same name would be no record of it."""
+    surface = tmp_path / "surface.nc"
+    write_topography(MADE, surface)
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    there = asperity.load(str(tmp_path / "case.toml"))
+    record = tmp_path / "record.nc"
+    facts = there.asperities.facts
+    record.write_bytes(records.encode(dataclasses.replace(solved, case=there, surface=facts)))
+    assert call("regime", record).exit_code == 0
+    write_topography(MADE.with_heights(2.0 * MADE.heights), surface, force=True)
+    found = call("run", record, "-o", tmp_path / "out")
+    assert found.exit_code == 2
+    assert "surface.nc, which has changed since" in found.stderr
+
+
 def test_a_changed_file_is_read_anew(tmp_path):
     path = tmp_path / "surface.nc"
     write_topography(MADE, path)

@@ -27,6 +27,7 @@ from asperity.topography.describing.nayak import Nayak, mccool
 from asperity.topography.describing.resolution import discretisation_error, pixel_effect
 from asperity.topography.describing.spectrum import Moments, moments, profile_spectrum
 from asperity.topography.describing.summits import find_summits
+from asperity.topography.preparing.form import levelled
 
 PIXEL = (2e-9, 3e-9)
 RMS = 1e-9
@@ -410,22 +411,43 @@ def test_two_flat_surfaces_have_no_composite_distribution():
 def test_maps_of_one_pixel_size_are_added_about_their_centres():
     first, second = white(8, 10, 1), white(6, 14, 2)
     total = added(Topography(first, PIXEL, "a"), Topography(second, PIXEL, "b"))
-    expected = first[1:7] - first.mean() + second[:, 2:12] - second.mean()
-    np.testing.assert_allclose(total.heights, expected)
+    parts = [Topography(part, PIXEL) for part in (first[1:7], second[:, 2:12])]
+    expected = sum(levelled(part, "tilt")[0].heights for part in parts)
+    np.testing.assert_allclose(total.heights, expected, atol=1e-12)
+    assert adding_in_words(Topography(first, PIXEL), Topography(second, PIXEL)).endswith(
+        "the tilt of each removed there"
+    )
     assert (total.pixel_size, total.source) == (PIXEL, "a + b")
 
 
+def test_a_map_that_is_cropped_adds_no_tilt():
+    """A wave ten times as long as the shared area, level on the whole of its map."""
+    x = np.arange(400) * 1e-9
+    long = Topography(np.tile(1e-7 * np.sin(2 * np.pi * x / 4e-7), (40, 1)), (1e-9, 1e-9))
+    total = added(long, Topography(white(40, 40, 3) * 1e-12, (1e-9, 1e-9)))
+    assert total.rms_height < 0.02 * long.rms_height
+
+
+def test_pixels_in_a_whole_ratio_are_taken_as_they_are():
+    """White noise keeps its rms; interpolation between pixels would smooth it."""
+    fine = Topography(white(256, 256, 4), (1e-9, 1e-9))
+    flat = Topography(np.zeros((128, 128)), (2e-9, 2e-9))
+    total = added(fine, flat)
+    assert total.rms_height == pytest.approx(fine.rms_height, rel=0.02)
+    assert "taken at the coarser pixels" in adding_in_words(fine, flat)
+
+
 def test_the_finer_map_is_taken_at_the_coarser_pixels():
-    """A plane in x y is linear between pixels along either axis: interpolation is exact."""
+    """The product x y is linear between pixels along either axis: interpolation is exact."""
 
-    def tilted(rows, columns, step):
+    def saddle(rows, columns, step):
         x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n in (columns, rows))
-        return Topography(0.02 * x + 0.03 * y[:, None], (step, step))
+        return Topography(1e6 * x * y[:, None], (step, step))
 
-    coarse, fine = tilted(12, 15, 5e-9), tilted(40, 50, 1.7e-9)
+    coarse, fine = saddle(12, 15, 5e-9), saddle(40, 50, 1.7e-9)
     total = added(coarse, fine)
     rows, columns = total.heights.shape
-    np.testing.assert_allclose(total.heights, 2.0 * tilted(rows, columns, 5e-9).heights, atol=1e-20)
+    np.testing.assert_allclose(total.heights, 2.0 * saddle(rows, columns, 5e-9).heights, atol=1e-20)
     assert total.pixel_size == coarse.pixel_size
     assert "interpolated linearly at the coarser pixels" in adding_in_words(coarse, fine)
     assert added(fine, coarse).heights == pytest.approx(total.heights)

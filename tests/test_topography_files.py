@@ -80,7 +80,7 @@ POINTS = [(x * 1.0, y * 0.5, HEIGHTS[y, x]) for y in range(3) for x in range(4) 
         ("mac.csv", (HEADER + MATRIX).replace("\n", "\r")),
         ("marked.csv", b"\xef\xbb\xbf" + (HEADER + MATRIX).encode()),
         ("text.dat", HEADER + MATRIX),
-        ("packed.csv.gz", gzip.compress((HEADER + MATRIX).encode())),
+        ("packed.csv.gz", gzip.compress((HEADER + MATRIX).encode(), mtime=0)),
         ("remarks.csv", "# by hand\n#\n\n" + HEADER + MATRIX.replace("4\n", "4 # edge\n")),
         ("metres.csv", HEADER.replace("[um] 4 1.5", "[m] 4e-6 1.5e-6") + MATRIX),
         (

@@ -164,6 +164,7 @@ def _surface(found: dict[str, Any] | None) -> list[tuple[str, str]]:
         return []
     rows = [("file", Path(each["file"]).name) for each in found["files"]]
     rows += [("prepared", step) for each in found["files"] for step in each["prepared"]]
+    rows += [("maps", found["added"])] if found.get("added") else []
     return [
         *rows,
         ("summits", f"{found['summits']} (source = '{found['source']}')"),

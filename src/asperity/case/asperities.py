@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import json
 from dataclasses import dataclass
 from math import erfc, exp, pi, sqrt
@@ -11,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.case.roughness import Roughness
-from asperity.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
 
     from asperity.topography.describing.summits import Summits
+    from asperity.topography.files.reading import Reading
     from asperity.topography.map import Topography
     from asperity.topography.preparing.preparation import Prepared
 
@@ -62,8 +61,13 @@ class Asperities:
     def covered(self, separation: float) -> float:
         """Share of the area that touching asperities cover at a separation [m].
 
-        Density times pi radius times the mean overlap, for Gaussian heights.
+        Density times pi radius times the mean overlap: of the summits where they are in use, else
+        of Gaussian heights.
         """
+        if self.facts is not None and self.facts["source"] == "summits":
+            assert self.summits is not None
+            overlap = (self.summits.heights - separation).clip(0.0)
+            return self.asperity_density * pi * float((overlap * self.summits.radii).mean())
         reduced = (separation - self.mean_height) / self.rms_height
         tail = exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - 0.5 * reduced * erfc(reduced / sqrt(2.0))
         return self.asperity_density * pi * self.asperity_radius * self.rms_height * tail
@@ -111,26 +115,38 @@ def _measured(table: str, states: tuple[tuple[int, int], ...]) -> Asperities:
         done = prepared(reading.topography, rough.preparation)
         maps.append(done.topography)
         facts.append(_facts_of(file, reading.channel, done))
-        warnings += [f"{file}: {note}" for note in reading.notes]
-        if rough.channel is None and len(reading.channels) > 1:
-            warnings.append(
-                f"{file}: channel {reading.channel} was read, of {', '.join(reading.channels)}"
-            )
-        if done.missing_pixels:
-            warnings.append(
-                f"{file}: {done.missing_pixels} of {done.topography.heights.size} pixels are "
-                f"missing (missing = '{rough.preparation.missing}')"
-            )
-    whole, how = maps[0], ""
+        warnings += _said(file, reading, done, rough)
+    whole, how = maps[0], None
     if len(maps) == 2:
         whole, how = added(*maps), adding_in_words(*maps)
+        if not how.endswith("centres"):  # cropped, or taken at other pixels
+            warnings.append(f"the two maps were {how}")
     found = find_summits(whole).at_least()
-    density = found.density / (found.searched or 1.0)
-    summary = {
-        "source": rough.source or "gaussian",
-        "files": facts,
-        "added": how or None,
-        "asperity_density": density,
+    values = _found(found, whole)
+    summary = {"source": rough.source or "gaussian", "files": facts, "added": how, **values}
+    return Asperities(
+        values["asperity_density"], found.radius, found.rms_height, found.mean_height, whole,
+        found, summary, (*warnings, *_doubts(found, rough)),
+    )  # fmt: skip
+
+
+def _said(file: str, reading: Reading, done: Prepared, rough: Roughness) -> list[str]:
+    """What the reading and the preparation of a file leave to be said."""
+    out = [f"{file}: {note}" for note in reading.notes]
+    if rough.channel is None and len(reading.channels) > 1:
+        out.append(f"{file}: channel {reading.channel} was read, of {', '.join(reading.channels)}")
+    if done.missing_pixels:
+        out.append(
+            f"{file}: {done.missing_pixels} of {done.topography.heights.size} pixels are missing "
+            f"(missing = '{rough.preparation.missing}')"
+        )
+    return out
+
+
+def _found(found: Summits, whole: Topography) -> dict[str, Any]:
+    """What was found on a surface; its density is that of the part where pixels were measured."""
+    return {
+        "asperity_density": found.density / (found.searched or 1.0),
         "asperity_radius": found.radius,
         "rms_height": found.rms_height,
         "mean_height": found.mean_height,
@@ -140,20 +156,14 @@ def _measured(table: str, states: tuple[tuple[int, int], ...]) -> Asperities:
         "pixel_size": list(whole.pixel_size),
         "physical_size": list(whole.physical_size),
     }
-    return Asperities(
-        density, found.radius, found.rms_height, found.mean_height, whole, found, summary,
-        (*warnings, *_doubts(found, rough)),
-    )  # fmt: skip
 
 
 def _facts_of(file: str, channel: str, done: Prepared) -> dict[str, Any]:
-    try:
-        digest = hashlib.sha256(Path(file).read_bytes()).hexdigest()
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}", file=file) from None
+    from asperity.topography.files.content import digest
+
     return {
         "file": file,
-        "sha256": digest,
+        "sha256": digest(file),
         "channel": channel or None,
         "prepared": list(done.sentences),
         "missing_pixels": done.missing_pixels,

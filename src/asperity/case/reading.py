@@ -88,7 +88,8 @@ def _beside(case: Case, folder: Path) -> Case:
     rough = case.roughness
     if rough is None or rough.files is None:
         return case
-    files = [os.fspath(folder / file) for file in rough.files]
+    # Whole paths, so that a record can be run again from any folder.
+    files = [os.fspath((folder / file).resolve()) for file in rough.files]
     return case.model_copy(update={"roughness": rough.model_copy(update={"files": files})})
 
 

@@ -39,7 +39,12 @@ Size = Annotated[
     str | None, _text("size", "'X x Y'", "Size of the map where the file does not state it.")
 ]
 Unit = Annotated[
-    str | None, _text("unit", "UNIT", "Unit of the heights where the file does not state it.")
+    str | None,
+    _text(
+        "unit",
+        "UNIT",
+        "Unit of the heights (of points: of x and y too) where the file does not state it.",
+    ),
 ]
 Missing = Annotated[str | None, _text("missing", "refuse|keep|fill", "Missing pixels.", "refuse")]
 

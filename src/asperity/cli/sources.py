@@ -6,6 +6,7 @@ import hashlib
 import importlib.resources
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from asperity.case import Case, builtin, load_file
 from asperity.errors import InputError
@@ -41,6 +42,7 @@ def source(argument: str) -> Source:
 
         record = read(argument)
         assert record.input_sha256 is not None
+        _check_surfaces(argument, getattr(record, "surface", None))
         return Source(record.case, record.name, record.input_sha256, argument)
     case = load_file(argument)
     try:
@@ -49,6 +51,25 @@ def source(argument: str) -> Source:
         reason = error.strerror or error
         raise InputError(f"{argument}: cannot be read: {reason}", file=argument) from None
     return Source(case, path.stem, hashlib.sha256(text).hexdigest(), argument)
+
+
+def _check_surfaces(record: str, found: dict[str, Any] | None) -> None:
+    """Refuse a record whose surface files are no longer those that it was made from."""
+    if found is None:
+        return
+    from asperity.topography.files.content import digest
+
+    for each in found["files"]:
+        try:
+            changed = digest(each["file"]) != each["sha256"]
+        except InputError as error:
+            raise InputError(f"{record}: made from {error}", file=record) from None
+        if changed:
+            raise InputError(
+                f"{record}: made from {each['file']}, which has changed since; run a case to use "
+                "the file as it is now",
+                file=record,
+            )
 
 
 def _builtin(name: str) -> Source:

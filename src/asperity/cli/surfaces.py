@@ -64,6 +64,9 @@ def describe(
     if found is None:
         say("asperity: interrupted; nothing was written")
         raise typer.Exit(code)
+    for one in found.surfaces if isinstance(found, Pair) else (found,):
+        with in_options():
+            one.description.summits.at_least()
     _deliver(found, _Request(folder, force, as_json, quiet))
 
 

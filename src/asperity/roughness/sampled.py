@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import partial
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from scipy.special import binom, roots_jacobi
+from scipy.special import binom
 
 from .._jax import jax, jnp
 from ..laws.base import Powers, Real, quantity
 from ..special import order_ratio
 from .heights import Heights
+from .splines import kernel_rule, kernels
 
 SIZES = (0.0, 0.5, 1.0)
 """Powers of the tip radius by which means are weighted."""
@@ -92,7 +93,7 @@ class Sampled(Heights):
         values, ratios = (jnp.pad(x, rest, mode="edge") for x in (values, ratios))
         laid = _laid((values, ratios, counts), self.first, self.step, on.nodes)
         self.mean, self.deviation, self.share = laid
-        self.tables, self.moments = _tabulated(self.share, self.step, _kernels(on.nodes))
+        self.tables, self.moments = _tabulated(self.share, self.step, kernels(on.nodes, _KEPT))
 
     @property
     def rms(self) -> jax.Array | float:
@@ -146,8 +147,8 @@ class Sampled(Heights):
         others = tuple(sorted({order for order in orders if order not in _KEPT}))
         tables = self.tables
         if others:
-            kernels = zip(others, _kernels(self.nodes, others), strict=True)
-            more = [_cells(self.share, self.step, order, each) for order, each in kernels]
+            pairs = zip(others, kernels(self.nodes, others), strict=True)
+            more = [_cells(self.share, self.step, order, each) for order, each in pairs]
             tables = jnp.concatenate([tables, jnp.stack(more)])
         number = [(*_KEPT, *others).index(order) for order in orders]
         shape = (len(orders),) + (1,) * (places.ndim - 1)
@@ -227,7 +228,7 @@ def _tabulated(
     tables = jax.lax.map(lambda each: _cells(share, step, *each), (np.array(_KEPT), kernels))
     nodes = share.shape[1]
     # Five places stand for the kernel: all its moments below the tenth.
-    within, weight = _kernel_rule()
+    within, weight = kernel_rule()
     place = (np.arange(nodes)[:, None] + within - 0.5 * nodes) / nodes
     powers = np.stack([np.sum(weight * place**k, axis=1) for k in range(_MOMENTS + 1)])
     return tables, share @ powers.T
@@ -256,62 +257,3 @@ def _at_nodes(share: jax.Array, kernel: jax.Array) -> jax.Array:
     nodes = share.shape[1]
     place = jnp.arange(-nodes, nodes + 3)
     return share @ kernel[jnp.arange(nodes)[:, None] - place + nodes + 2]
-
-
-@cache
-def _kernels(nodes: int, orders: tuple[float, ...] = _KEPT) -> np.ndarray:
-    """Kernels of orders and of their first two derivatives, shape (orders, 3, places)."""
-    return np.array([[_kernel(order, k, nodes) for k in range(3)] for order in orders])
-
-
-def _kernel(order: float, derivative: int, nodes: int) -> np.ndarray:
-    """Integral of the spline's derivative times max(y + q, 0)^order, q from -nodes - 2 to 2 nodes.
-
-    B(y - a) moves with a, so that derivatives in the place a are those of B. At order -1 the
-    derivative itself.
-    """
-    q = np.arange(-nodes - 2, 2 * nodes + 1)
-    if order == -1.0:
-        return _spline(-q.astype(float), derivative)
-    out = np.zeros(q.size)
-    for low in range(-2, 2):
-        start = low + q
-        begun, begins = start > 0, start == 0
-        # Where the power begins it is singular: Jacobi's weight takes it there.
-        for chosen, power in ((begun, 0.0), (begins, order)):
-            x, weight = roots_jacobi(24, 0.0, power)
-            u = 0.5 * (x + 1.0)
-            rest = (start[begun, None] + u) ** order if chosen is begun else 1.0
-            parts = rest * weight * _spline(low + u, derivative) * 0.5 ** (power + 1.0)
-            out[chosen] += np.sum(parts, axis=-1)
-    return out
-
-
-def _spline(y: np.ndarray, derivative: int = 0) -> np.ndarray:
-    """Cubic B-spline of unit area on [-2, 2], or its first or second derivative."""
-    a = np.abs(y)
-    rest = 2.0 - a
-    inner, outer = (
-        (2.0 / 3.0 - a**2 + 0.5 * a**3, rest**3 / 6.0),
-        (np.sign(y) * (1.5 * a**2 - 2.0 * a), -np.sign(y) * 0.5 * rest**2),
-        (3.0 * a - 2.0, rest),
-    )[derivative]
-    return np.where(a < 1.0, inner, np.where(a < 2.0, outer, 0.0))
-
-
-@cache
-def _kernel_rule() -> tuple[np.ndarray, np.ndarray]:
-    """Five places and weights with the moments of the cubic B-spline up to the ninth."""
-    moment = [2.0 * sum(_half_moment(k)) if k % 2 == 0 else 0.0 for k in range(10)]
-    hankel = np.array([[moment[i + j] for j in range(5)] for i in range(5)])
-    last = np.array([moment[i + 5] for i in range(5)])
-    places = np.sort(np.roots(np.append(-np.linalg.solve(hankel, last), 1.0)[::-1]).real)
-    weights = np.linalg.solve(np.vander(places, 5, increasing=True).T, moment[:5])
-    return places, weights
-
-
-def _half_moment(k: int) -> tuple[float, float]:
-    """Integrals of y^k B(y) over [0, 1] and [1, 2]."""
-    x, w = np.polynomial.legendre.leggauss(12)
-    u = 0.5 * (x + 1.0)
-    return tuple(float(np.sum(0.5 * w * (a + u) ** k * _spline(a + u))) for a in (0.0, 1.0))  # type: ignore[return-value]

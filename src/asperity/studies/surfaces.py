@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +13,7 @@ from ..topography import Topography
 from ..topography.describing.composite import Composite, composite
 from ..topography.describing.description import Description, describe
 from ..topography.describing.gaussianity import Gaussianity
-from ..topography.files.content import content_of
+from ..topography.files.content import digest
 from ..topography.files.reading import Reading, read_surface
 from ..topography.preparing.preparation import Preparation, Prepared, prepared
 
@@ -163,7 +162,7 @@ def surface(file: str, treatment: Treatment) -> Surface:
         file, size=treatment.size, unit=treatment.unit, channel=treatment.channel
     )
     made = prepared(reading.topography, treatment.preparation)
-    content = hashlib.sha256(content_of(file)).hexdigest()
+    content = digest(file)
     return Surface(reading, made, describe(made.topography), content)
 
 

@@ -77,8 +77,8 @@ class McCool:
 
 
 def mccool(spectral: Moments) -> McCool | None:
-    """McCool's values; None where they are not defined: a flat map, or a bandwidth below 0.8968."""
-    if not (spectral.m4 > 0.0 and spectral.bandwidth > 0.8968):
+    """McCool's values; None of a flat map, or below a bandwidth of 1.5, which no surface has."""
+    if not (spectral.m4 > 0.0 and spectral.bandwidth >= NARROWEST * (1 - 1e-9)):
         return None
     return McCool(
         density=spectral.m4 / (6.0 * pi * sqrt(3.0) * spectral.m2),

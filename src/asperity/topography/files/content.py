@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
 import io
 import os
 import zlib
@@ -60,6 +61,20 @@ def content_of(file: str) -> bytes:
     if not content:
         raise refusal(file, "must hold a surface; got an empty file; export it again")
     return content
+
+
+def digest(file: str) -> str:
+    """SHA-256 of a file as it lies on the disk, packed or not.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read.
+    """
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError as error:
+        raise refusal(file, f"cannot be read: {error.strerror}") from None
 
 
 def refusal(file: str, rule: str) -> InputError:

@@ -60,6 +60,16 @@ class Preparation:
         alignment.checked(
             self.align if self.align != "none" else "median", self.direction, self.degree
         )
+        if self.align == "none" and self.direction != "rows":
+            raise InputError(
+                f"`direction` must be absent without `align`; got {self.direction!r}",
+                key="direction",
+            )
+        if self.align != "polynomial" and self.degree != 1:
+            raise InputError(
+                f"`degree` must be absent without align = 'polynomial'; got {self.degree}",
+                key="degree",
+            )
         filtering.checked(self.short, self.long)
 
 
