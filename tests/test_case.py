@@ -168,7 +168,9 @@ def test_the_example_of_every_key_is_read(place, name, field):
         "counterface": {"material": "gold"},
         "impact": {"speed": "1 m/s"},
     }
-    if name in ("youngs_modulus", "poisson", "density", "hardness"):
+    if name in ("youngs_modulus", "poisson", "density", "hardness", "yield_strength") and (
+        place[0] != "plasticity"
+    ):
         table[place[0]] |= {"youngs_modulus": "1 GPa", "poisson": 0.2, "density": "1 g/cc"}
         table[place[0]].pop("material")
     if place[0] == "publication":
@@ -185,6 +187,8 @@ def test_the_example_of_every_key_is_read(place, name, field):
         table[place[0]] = {"model": "none"}
         if name == "model":
             return
+    if place[0] == "plasticity":
+        table["plasticity"] = {"model": "thornton-ning"}
     if place[0] == "gas":
         by_number = name in ("viscosity", "slip_length")
         given = {"viscosity": "18 uPa s", "slip_length": "0 nm"} if by_number else {

@@ -83,9 +83,9 @@ BAD = [
     ('model = "dmt"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
     ('model = "dmt"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "dmt"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
-    ('work = "30 mJ/m^2"', "", "adhesion.work (line 52): `work` must be given with model = 'dmt'"),
+    ('work = "30 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'dmt'"),
     ('range = "0.2 nm"', "", "`range` must be given with model = 'dmt'"),
-    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 68): `humidity` must lie in "
+    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 70): `humidity` must lie in "
      "[0, 1]; got 1.2"),
     ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',
      "got 'argom' - did you mean 'argon'?"),
@@ -97,7 +97,7 @@ BAD = [
     ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "60 nm"',
      "`closest_gap` must be smaller than `release_gap` (60 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
-    ("[adhesion]", "[publication]\n[adhesion]", "counterface.deformation (line 19): `deformation` "
+    ("[adhesion]", "[publication]\n[adhesion]", "counterface.deformation (line 20): `deformation` "
      "must be 'rigid' with a [publication] table, which replaces the other models; got "
      "'half-space'"),
     ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1]; got -0.1"),
@@ -105,12 +105,12 @@ BAD = [
     ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1]; got '60 %'"),
     ("humidity = 0.6", "humidity = true", "`humidity` must be a number in [0, 1]; got True"),
     ("humidity = 0.6", "", "`humidity` must be given with model = 'equilibrium'"),
-    ('"73 deg"', '"120 deg"', "capillary.contact_angle (line 70): `contact_angle` must lie in "
+    ('"73 deg"', '"120 deg"', "capillary.contact_angle (line 72): `contact_angle` must lie in "
      "[0, 90) deg with menisci"),
     ('"73 deg"', '"300 deg"', "`contact_angle` must lie in [0, 180] deg; got '300 deg'"),
     ('"73 deg"', '"-1 deg"', "`contact_angle` must lie in [0, 180] deg; got '-1 deg'"),
     ('liquid = "water"', 'liquid = "watr"', "got 'watr' - did you mean 'water'?"),
-    ('"20 degC"', '"200 degC"', "capillary.temperature (line 69): `temperature` must lie in "
+    ('"20 degC"', '"200 degC"', "capillary.temperature (line 71): `temperature` must lie in "
      "[273.15 K, 373.15 K]"),
     ('"20 degC"', '"-300 degC"', "`temperature` must lie in [1, 10000] K; got '-300 degC'"),
     ('release_gap = "60 nm"', "", "`release_gap` or `speed` must be given; got neither"),

@@ -39,6 +39,7 @@ def test_there_is_an_example_for_each_question():
         "published-exact",
         "wet-drop",
         "wet-surface",
+        "yielding-drop",
     ]
 
 
@@ -107,6 +108,16 @@ def test_sphere_is_held_by_measured_summits(solved):
     assert measures["restitution"][0] == pytest.approx(0.90914, abs=1e-4)
     assert measures["stiction_time"] == pytest.approx(3.219e-3, rel=1e-3)
     assert result.surface["summits"] == 100
+
+
+def test_asperities_that_yield_keep_most_energy_at_the_first_impact(solved):
+    result = solved("yielding-drop")
+    assert result.outcome is Outcome.MAX_IMPACTS
+    first, *later = result.measures["restitution"]
+    assert first == pytest.approx(0.307, abs=1e-3)
+    assert later == pytest.approx([0.993] * 4, abs=2e-3)
+    share = result.ledger["lost"]["plastic"] / result.ledger["initial"]
+    assert share == pytest.approx(0.896, abs=1e-3)
 
 
 def test_dry_drop_loses_nothing(solved):

@@ -181,6 +181,14 @@ def test_sapphires_density_is_that_of_its_unit_cell():
         ({"youngs_modulus": 1e9, "poisson": -1.0}, "`poisson` must lie in"),
         ({"youngs_modulus": 1e9, "poisson": 0.2, "density": -1.0}, "`density` must be positive"),
         ({"youngs_modulus": 1e9, "poisson": 0.2, "hardness": 0.0}, "`hardness` must be positive"),
+        (
+            {"youngs_modulus": 1e9, "poisson": 0.2, "yield_strength": 0.0},
+            "`yield_strength` must be positive",
+        ),
+        (
+            {"youngs_modulus": 1e9, "poisson": 0.2, "hardness": 1e8, "yield_strength": 2e8},
+            r"`hardness` must be at least the yield strength \(200 MPa\).*; got 100 MPa",
+        ),
     ],
 )
 def test_a_solid_that_cannot_be_is_refused(numbers, rule):

@@ -20,7 +20,7 @@ from asperity.topography.describing.summits import find_summits
 from asperity.topography.files.writing import write_topography
 from asperity.topography.making.generation import self_affine
 from asperity.topography.preparing.preparation import Preparation, prepared
-from asperity.validity import CLASSED
+from asperity.validity import CLASSED, _one_law
 
 MADE = self_affine(
     (128, 128), (10e-9, 10e-9), hurst=0.8, rolloff=240e-9, cutoff=50e-9, rms_height=2e-9, seed=4
@@ -339,3 +339,15 @@ def test_too_few_classes_of_radius_are_warned_about(case):
     jkr = case.replace({"adhesion.model": "jkr", "capillary": None, "numerics.max_impacts": 1})
     lines = asperity.solve(changed(jkr, radius_classes=1)).warnings
     assert any("1 classes of tip radius" in line and "too small" in line for line in lines)
+
+
+def test_a_law_chosen_for_all_radii_that_would_differ_is_named(case):
+    """Tips whose Tabor numbers lie on both sides of a border of the laws."""
+    adhesion = case.adhesion.model_copy(update={"model": "auto", "range": 3e-10})
+    said = {}
+    for work in (1e-4, 0.017):
+        each = case.model_copy(update={"adhesion": adhesion.model_copy(update={"work": work})})
+        said[work] = _one_law(each, build(each))
+    assert said[1e-4] == []
+    assert len(said[0.017]) == 1
+    assert "DMT and Maugis-Dugdale" in said[0.017][0]

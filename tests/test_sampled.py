@@ -132,7 +132,7 @@ def test_finer_nodes_converge_to_the_sums_with_the_square_of_their_step():
 
 
 def test_mean_and_rms_are_exactly_those_of_the_heights(sampled):
-    assert float(sampled.centre) == pytest.approx(HEIGHTS.mean(), rel=1e-13, abs=1e-22)
+    assert float(sampled.mean) == pytest.approx(HEIGHTS.mean(), rel=1e-13, abs=1e-22)
     assert float(sampled.rms) == pytest.approx(HEIGHTS.std(), rel=1e-13)
 
 

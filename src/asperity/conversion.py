@@ -22,6 +22,7 @@ from .program import Program
 from .result import Result
 from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
+from .yielding import kept_elastic
 
 _measure = Program(measure)
 _end_of_contact = Program(end_of_contact)
@@ -65,7 +66,14 @@ def _sampled(case: Case, flight: Flight, body: Body) -> tuple[Series, dict[str, 
     return series, _losses_along(contact, motion, body, series)
 
 
-def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result:
+def first_restitution(flight: Flight, body: Body) -> float | None:
+    """Restitution of a motion's first impact; None where it has none."""
+    return _number(_padded(flight, body).restitution[0])
+
+
+def result_of(
+    case: Case, name: str, problem: Problem, flight: Flight, elastic: float | None = None
+) -> Result:
     """The result of a motion that was flown.
 
     Parameters
@@ -76,6 +84,8 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
         What was built from it.
     flight
         The motion.
+    elastic
+        Restitution of the first impact were nothing to yield, for a case in which it does.
     """
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
@@ -103,6 +113,7 @@ def result_of(case: Case, name: str, problem: Problem, flight: Flight) -> Result
         warnings=[
             *warnings_of(case, problem, regime, at_depth, motion),
             *slow_menisci(problem, motion, flight.trajectory),
+            *kept_elastic(case, float(measures.restitution[0]), elastic),
         ],
         events={
             name: np.asarray(values)[:made]
@@ -165,6 +176,7 @@ def assessment_of(
         molecule_size=None if liquid is None else liquid.molecule_size,
         bounded=case.liquid_radius < case.kelvin_radius,
         on_tips=case.capillary.model != "kelvin-filling" or rough is None,
+        yields=case.plasticity_model != "none",
     )
     warnings = warnings_of(case, problem, regime, at_depth, motion)
     warnings += slow_menisci(problem, motion)
@@ -177,11 +189,9 @@ def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     tabor = plasticity = load = None
     if work and spacing:
         tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
-    solids = (case.body_solid, case.counterface_solid)
-    hardness = [solid.hardness for solid in solids if solid.hardness]
-    if rough is not None and hardness:
+    if rough is not None and case.has_strength:
         plasticity = regimes.plasticity_index(
-            problem.modulus, min(hardness), rough.rms_height, rough.asperity_radius
+            problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
         )
     touching = at_depth.touching
     if work and touching > 0.0:

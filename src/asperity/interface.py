@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import enum
 from typing import NamedTuple
 
 import equinox as eqx
 
 from ._jax import jax, jnp
 from .laws.base import Law, Powers, Real, TruncatedPower, quantity, terms
-from .quadrature import Asked, means, means_near
+from .quadrature import Asked, Near, means, means_near
 from .roughness.heights import Heights
 
 Memory = tuple[jax.Array, ...]
 """One threshold height b [m] per hysteretic law: the asperities higher than b are bonded."""
-
-
-class Near(enum.Enum):
-    """How the separations at which means are taken lie to one another."""
-
-    NOT = "anywhere"
-    BY = "a vector within a few rms"
-    LEVEL = "the same, bonded up to the same gap"
 
 
 class Means(NamedTuple):
@@ -80,7 +71,7 @@ class Interface(eqx.Module):
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
-        """Names under which the losses of :meth:`change` are booked."""
+        """Names under which the losses of :meth:`losses` are booked."""
         return tuple(law.mechanism for law in self.hysteretic)
 
     @property
@@ -125,12 +116,42 @@ class Interface(eqx.Module):
         )
 
     @property
+    def yields(self) -> bool:
+        """Whether what was pressed once stays changed. Without values."""
+        return False
+
+    @property
+    def yield_overlap(self) -> jax.Array:
+        """Overlap [m] at which an asperity begins to yield."""
+        return jnp.asarray(jnp.inf)
+
+    def touched(self, memory: Memory) -> jax.Array:
+        """Whether anything was pressed so that it stays changed."""
+        return jnp.asarray(False)
+
+    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+        """The memory on an outermost branch: no bond is left of what it was, or all hold."""
+        return tuple(jnp.where(parting, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
+
+    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        return [
+            b + jnp.where(parting, law.breaking_gap, law.forming_gap)
+            for law, b in zip(self.hysteretic, memory, strict=True)
+        ]
+
+    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
+        return self.energy(separation, self.fresh(), lift)
+
+    @property
     def only_bonded(self) -> bool:
         """Whether every law without truncated powers ends with its bonds. Without values."""
-        return all(law.only_bonded for law in terms(self.law) if not law.in_powers)
+        edge = jnp.zeros(())
+        return all(law.only_bonded or law.powers(edge) is not None for law in terms(self.law))
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights at a separation reached monotonically from ``memory``.
 
@@ -143,7 +164,7 @@ class Interface(eqx.Module):
         lift
             0 for a plane, 1 for a rigid paraboloid (times 2 pi R).
         near
-            Whether the separations are a vector of places near one another (static).
+            How they lie to one another if they are a vector of places near one another.
         """
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         laws = dict(enumerate(terms(self.law)))
@@ -192,13 +213,13 @@ class Interface(eqx.Module):
             powers = law.powers(edges[k])
             if powers is None:
                 asked = Asked((name,), lift)
-                total = total + self._quadrature(law, edges[k], separation, asked, Near.NOT)[0]
+                total = total + self._quadrature(law, edges[k], separation, asked)[0]
             else:
                 flat += powers[0 if name == "force" else 1]
                 sizes += (law.radius_power,) * (len(flat) - len(sizes))
         if flat:
-            means = self.heights.mean_powers(flat, lift, separation, sizes)
-            total = total + jnp.sum(means, axis=0)
+            values = self.heights.mean_powers(flat, lift, separation, sizes)
+            total = total + jnp.sum(values, axis=0)
         return self.density * total
 
     def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
@@ -227,13 +248,17 @@ class Interface(eqx.Module):
         return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)
 
     def _quadrature(
-        self, law: Law, edge: jax.Array, separation: jax.Array, asked: Asked, near: Near
+        self,
+        law: Law,
+        edge: jax.Array,
+        separation: jax.Array,
+        asked: Asked,
+        near: Near | None = None,
     ) -> jax.Array:
         """Means of a law without truncated powers, one row a name."""
-        if near is Near.NOT:
+        if near is None:
             return means(law, self.heights, edge, separation, asked)
-        level = near is Near.LEVEL
-        return means_near(law, self.heights, edge, separation, asked, level=level)
+        return means_near(law, self.heights, edge, separation, asked, near)
 
     @staticmethod
     def _force_names(law: Law) -> tuple[str, ...]:

@@ -8,9 +8,13 @@ import equinox as eqx
 
 from ._jax import jax, jnp
 from .errors import InputError
-from .interface import Interface, Means, Memory, Near
+from .interface import Interface, Means, Memory
 from .laws.base import Law, terms
+from .plastic_interface import PlasticInterface
+from .quadrature import Near
 from .radius_classes import RadiusClasses, Scale, scale_of
+
+Layer = Interface | RadiusClasses | PlasticInterface
 
 
 class Layers(eqx.Module):
@@ -31,9 +35,9 @@ class Layers(eqx.Module):
     Pressures, energies and bonds add up; the memory is that of the parts in a row.
     """
 
-    parts: tuple[Interface | RadiusClasses, ...]
+    parts: tuple[Layer, ...]
 
-    def __init__(self, parts: Sequence[Interface | RadiusClasses]) -> None:
+    def __init__(self, parts: Sequence[Layer]) -> None:
         counted = [name for part in parts for law in terms(part.law) for name in law.counts]
         twice = sorted({name for name in counted if counted.count(name) > 1})
         if twice:
@@ -96,12 +100,40 @@ class Layers(eqx.Module):
         )
 
     @property
+    def yields(self) -> bool:
+        """Whether what was pressed once stays changed. Without values."""
+        return any(part.yields for part in self.parts)
+
+    @property
+    def yield_overlap(self) -> jax.Array:
+        """Overlap [m] at which an asperity begins to yield."""
+        return jnp.min(jnp.stack([part.yield_overlap for part in self.parts]))
+
+    def touched(self, memory: Memory) -> jax.Array:
+        """Whether anything was pressed so that it stays changed."""
+        each = [part.touched(own) for part, own in self._shares(memory)]
+        return jnp.any(jnp.stack(each))
+
+    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+        """The memory on an outermost branch; see :meth:`Interface.swept`."""
+        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, parting))
+
+    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        return [d for part, own in self._shares(memory) for d in part.merging(own, parting)]
+
+    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
+        values = [part.work_of_approach(separation, lift) for part in self.parts]
+        return jnp.sum(jnp.stack(values), axis=0)
+
+    @property
     def only_bonded(self) -> bool:
         """Whether every law without truncated powers ends with its bonds. Without values."""
         return all(part.only_bonded for part in self.parts)
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`."""
         each = [part.measure(separation, own, lift, near) for part, own in self._shares(memory)]
@@ -135,15 +167,15 @@ class Layers(eqx.Module):
         formation, rupture = zip(*(part.losses() for part in self.parts), strict=True)
         return jnp.concatenate(formation), jnp.concatenate(rupture)
 
-    def _shares(self, memory: Memory) -> list[tuple[Interface | RadiusClasses, Memory]]:
+    def _shares(self, memory: Memory) -> list[tuple[Layer, Memory]]:
         """Each interface with its own part of the memory."""
         out, first = [], 0
         for part in self.parts:
-            last = first + len(part.hysteretic)
+            last = first + len(part.mechanisms)
             out.append((part, memory[first:last]))
             first = last
         return out
 
 
-Surfaces = Interface | Layers | RadiusClasses
+Surfaces = Layer | Layers
 """What a rough contact presses."""

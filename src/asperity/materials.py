@@ -17,6 +17,9 @@ AVOGADRO = 6.02214076e23
 ROOM_TEMPERATURE = 293.15
 """Temperature of the catalogue's values [K]: 20 degC."""
 
+HARDNESS_PER_YIELD_STRENGTH = 2.8
+"""Indentation hardness over yield strength [-]. Tabor, The Hardness of Metals (1951)."""
+
 
 @dataclass(frozen=True)
 class Solid:
@@ -33,7 +36,9 @@ class Solid:
     density : float or None
         Density [kg/m^3]; None where it is not known (a counterface needs none).
     hardness : float or None
-        Indentation hardness [Pa]; None where it is not known.
+        Indentation hardness [Pa], at least the yield strength; None where it is not known.
+    yield_strength : float or None
+        Yield strength in uniaxial tension [Pa]; None where it is not known.
     source : str
         Where the numbers come from.
 
@@ -48,15 +53,17 @@ class Solid:
     poisson: float
     density: float | None = None
     hardness: float | None = None
+    yield_strength: float | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
         _positive("youngs_modulus", self.youngs_modulus)
         if not -1.0 < self.poisson <= 0.5:
             raise InputError(f"`poisson` must lie in (-1, 0.5]; got {self.poisson!r}")
-        for name in ("density", "hardness"):
+        for name in ("density", "hardness", "yield_strength"):
             if getattr(self, name) is not None:
                 _positive(name, getattr(self, name))
+        refuse_softer_than_yield(self.hardness, self.yield_strength)
 
 
 @dataclass(frozen=True)
@@ -129,6 +136,18 @@ class Liquid:
 def _positive(name: str, value: float) -> None:
     if not (0.0 < value < math.inf):
         raise InputError(f"`{name}` must be positive and finite; got {value!r}")
+
+
+def refuse_softer_than_yield(
+    hardness: float | None, yield_strength: float | None, *, key: str = "hardness"
+) -> None:
+    """Raise `InputError` where a hardness is below a yield strength [Pa]; None is not known."""
+    if hardness is not None and yield_strength is not None and hardness < yield_strength:
+        raise InputError(
+            f"`hardness` must be at least the yield strength ({yield_strength / 1e6:.6g} MPa), "
+            f"since a dent is made by yielding; got {hardness / 1e6:.6g} MPa",
+            key=key,
+        )
 
 
 def contact_modulus(a: Solid, b: Solid) -> float:
@@ -258,7 +277,7 @@ LIQUIDS: dict[str, Liquid] = {
 
 
 def _solids() -> tuple[Solid, ...]:
-    """Name, Young's modulus [Pa], Poisson's ratio, density [kg/m^3], hardness [Pa], source."""
+    """Name, modulus [Pa], Poisson's ratio, density [kg/m^3], hardness, yield [Pa], source."""
     sample = f"modulus, ratio: {_PUBLICATION}"
     assumed = "density: assumed, as fused silica; hardness: assumed, usual for fused silica"
     dense = "a sample far below the 415 GPa of dense ceramic; density: that of the ceramic"
@@ -267,24 +286,29 @@ def _solids() -> tuple[Solid, ...]:
     silicone = "Sylgard 184: Johnston et al., J. Micromech. Microeng. 24, 035017 (2014), 1.32 to"
     dowling = "Dowling, Mechanical Behavior of Materials, Table 5.2"
     return (
-        Solid("silica", 80e9, 0.25, 2200.0, 9e9, f"{sample}; {assumed}"),
-        Solid("silicon carbide", 161e9, 0.23, 3160.0, None, f"{sample}, {dense}"),
-        Solid("fused silica", 73e9, 0.17, 2200.0, None, _CALLISTER),
-        Solid("soda-lime glass", 69e9, 0.23, 2500.0, None, _CALLISTER),
-        Solid("sintered silicon carbide", 415e9, 0.16, 3160.0, None,
+        Solid("silica", 80e9, 0.25, 2200.0, 9e9, None, f"{sample}; {assumed}"),
+        Solid("silicon carbide", 161e9, 0.23, 3160.0, None, None, f"{sample}, {dense}"),
+        Solid("fused silica", 73e9, 0.17, 2200.0, None, None, _CALLISTER),
+        Solid("soda-lime glass", 69e9, 0.23, 2500.0, None, None, _CALLISTER),
+        Solid("sintered silicon carbide", 415e9, 0.16, 3160.0, None, None,
               "Munro, J. Phys. Chem. Ref. Data 26, 1195 (1997)"),
-        Solid("alumina", 416e9, 0.231, 3984.0, None,
+        Solid("alumina", 416e9, 0.231, 3984.0, None, None,
               "sintered: Munro, J. Am. Ceram. Soc. 80, 1919 (1997)"),
-        Solid("sapphire", 403e9, 0.233, 3990.0, None,
-              f"{crystal}; density: from its cell, 0.4758 nm by 1.2991 nm"),
-        Solid("silicon", 160e9, 0.22, 2329.0, None, f"{poly}; density: {_CRC}"),
-        Solid("silicon nitride", 304e9, 0.30, 3300.0, None, f"hot pressed: {_CALLISTER}"),
-        Solid("steel", 207e9, 0.30, 7850.0, None, f"alloy 1020: {_CALLISTER}"),
-        Solid("gold", 77e9, 0.42, 19320.0, None, f"commercially pure: {_CALLISTER}"),
-        Solid("tungsten", 411e9, 0.28, 19300.0, None, f"{dowling}; density: {_CRC}"),
-        Solid("polystyrene", 2.8e9, 0.33, 1050.0, None,
-              f"modulus: middle of 2.28 to 3.28 GPa; {_CALLISTER}"),
-        Solid("PDMS", 2e6, 0.5, 1030.0, None,
+        Solid("sapphire", 403e9, 0.233, 3990.0, 22.5e9, None,
+              f"{crystal}; density: from its cell, 0.4758 nm by 1.2991 nm; hardness: middle of 22 "
+              "to 23 GPa, Sinani et al., Bull. Russ. Acad. Sci. Phys. 73, 1380 (2009)"),
+        Solid("silicon", 160e9, 0.22, 2329.0, None, None, f"{poly}; density: {_CRC}"),
+        Solid("silicon nitride", 304e9, 0.30, 3300.0, None, None, f"hot pressed: {_CALLISTER}"),
+        Solid("steel", 207e9, 0.30, 7850.0, None, 295e6,
+              f"alloy 1020, yield strength when annealed: {_CALLISTER}"),
+        Solid("gold", 77e9, 0.42, 19320.0, None, 205e6,
+              f"commercially pure, yield strength when cold worked by 60 %: {_CALLISTER}"),
+        Solid("tungsten", 411e9, 0.28, 19300.0, None, 760e6,
+              f"{dowling}; density: {_CRC}; yield strength, commercially pure: {_CALLISTER}"),
+        Solid("polystyrene", 2.8e9, 0.33, 1050.0, None, 47e6,
+              "modulus: middle of 2.28 to 3.28 GPa; yield strength: middle of 25 to 69 MPa; "
+              f"{_CALLISTER}"),
+        Solid("PDMS", 2e6, 0.5, 1030.0, None, None,
               f"{silicone} 2.97 MPa by curing; ratio: incompressible; density: maker's sheet"),
     )  # fmt: skip
 

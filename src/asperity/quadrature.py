@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -10,11 +11,27 @@ from ._jax import jax, jnp
 from .laws.base import Law
 from .roughness.heights import Heights
 
-_PIECES = 7  # even ones over Gaussian heights, besides those that a law's kinks ask for
-_FINEST = 28  # even ones over heights whose distribution is as fine as it was measured
+EVEN = 7
+"""Even pieces over Gaussian heights, besides those that a law's kinks ask for; of 6.4 rms at most
+where places within 27 rms of one another share them, which is good to 1e-9."""
+
 _RUNGS = 4  # of a ladder, in geometric progression from a quarter of the law's length
-_NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))
 _HALVES = 2  # pieces of the gaps between the edges of places near one another
+
+
+class Near(NamedTuple):
+    """Separations that are a vector within a few rms of one another (all static).
+
+    Attributes
+    ----------
+    level
+        Whether bonds reach up to the same gap at all of them.
+    pieces
+        Even pieces that they share.
+    """
+
+    level: bool
+    pieces: int = EVEN
 
 
 class Asked(NamedTuple):
@@ -50,7 +67,7 @@ def means(
     """
 
     def one(e: jax.Array, h: jax.Array) -> jax.Array:
-        return means_near(law, heights, e[None], h[None], asked, level=True)[:, 0]
+        return means_near(law, heights, e[None], h[None], asked, Near(level=True))[:, 0]
 
     shape = jnp.shape(separation)
     flat = jax.vmap(one, out_axes=1)
@@ -64,30 +81,48 @@ def means_near(
     edges: jax.Array,
     separations: jax.Array,
     asked: Asked,
-    *,
-    level: bool,
+    near: Near,
 ) -> jax.Array:
-    """Means at separations [m] within a few rms of one another, which share their nodes.
+    """Means at separations [m] near one another, which share their nodes.
 
-    As :func:`means`, for vectors. With ``level`` (static) all edges are the same.
+    As :func:`means`, for vectors.
     """
     low, high, edge = jnp.min(separations), jnp.max(separations), jnp.min(edges)
-    lowest = low - heights.highest_beside(low)
-    highest = high - heights.bottom
-    end = jnp.minimum(highest, law.breaking_gap) if law.only_bonded else highest
-    even = _PIECES if heights.grain == 1.0 else _FINEST
-    bounds = _pieces((lowest, end), (*law.kinks, edge), _shortest(law, heights), even, law)
-    gap, weight = _points(bounds)
+    # Beyond the end of a law the share of its gaps falls steeply, from the last one on.
+    within = low - edge if law.only_bonded else jnp.asarray(heights.bottom)
+    lowest = low - heights.highest_beside(within)
+    # Up to here places differ in how many asperities are higher; beyond, all of them are.
+    uneven = high - heights.bottom
+    end = _end(law, uneven, edge, asked.lift)
+    pieces = ceil(near.pieces / heights.grain)
+    even = lowest + (jnp.minimum(uneven, end) - lowest) * np.linspace(0.0, 1.0, pieces + 1)
+    kinks = jnp.append(_kinks(law), edge)
+    bounds = _pieces((lowest, end), kinks, even, _shortest(law, heights), law)
+    gap, weight = points(bounds)
     values = weight * _values(law, gap, gap < edge, asked.names)
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
     found = jnp.stack([jnp.einsum("ij,pij->p", row, shares) for row in values])
-    if not level:
+    if not near.level:
         found = found + _between(law, heights, edge, edges, separations, asked)
     if asked.lift == 0 or law.only_bonded:
         return found
     whole = heights.tail(1, jnp.asarray(heights.bottom), law.radius_power)
-    beyond = [_beyond(law, highest, _shortest(law, heights), name) for name in asked.names]
+    beyond = [_beyond(law, end, _shortest(law, heights), name) for name in asked.names]
     return found + whole * jnp.stack(beyond)[:, None]
+
+
+def _end(law: Law, uneven: jax.Array, edge: jax.Array, lift: int) -> jax.Array:
+    """Gap [m] up to which a law is integrated piece by piece.
+
+    A paraboloid may be so deep that all asperities beside its apex are well within the law.
+    """
+    if law.only_bonded:
+        return edge if lift else jnp.minimum(uneven, edge)
+    return jnp.maximum(uneven, jnp.max(_kinks(law))) if lift else uneven
+
+
+def _kinks(law: Law) -> jax.Array:
+    return jnp.stack([jnp.asarray(gap, float) for gap in law.kinks])
 
 
 def _between(
@@ -100,7 +135,7 @@ def _between(
 ) -> jax.Array:
     """What bonds of gaps between the lowest edge and each place's own add to its mean."""
     steps = np.linspace(0.0, 1.0, _HALVES + 1)
-    gap, weight = jax.vmap(_points)(edge + (edges - edge)[:, None] * steps)
+    gap, weight = jax.vmap(points)(edge + (edges - edge)[:, None] * steps)
     bonded = _values(law, gap, jnp.ones(gap.shape, bool), asked.names)
     free = _values(law, gap, jnp.zeros(gap.shape, bool), asked.names)
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
@@ -129,35 +164,35 @@ def _shortest(law: Law, heights: Heights) -> jax.Array:
 
 def _pieces(
     between: tuple[jax.Array, jax.Array],
-    kinks: tuple[jax.Array | float, ...],
+    kinks: jax.Array,
+    even: jax.Array,
     shortest: jax.Array,
-    even: int,
     law: Law,
 ) -> jax.Array:
-    """Sorted ends of the pieces: the kinks, even ones, and ladders from the kinks to both ends.
+    """Sorted ends of the pieces: kinks, even ones, and ladders from the kinks to both ends.
 
     Where the law ends with its bonds, nothing lies above the highest kink.
     """
     lowest, highest = between
-    kink = jnp.sort(jnp.clip(jnp.stack([jnp.asarray(k, float) for k in kinks]), lowest, highest))
+    kink = jnp.sort(jnp.clip(kinks, lowest, highest))
     reach = highest - lowest
     first = jnp.minimum(0.25 * shortest, reach)
     ratio = jnp.where(first > 0.0, reach / jnp.where(first > 0.0, first, 1.0), 1.0)
     ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
     rungs = [kink[0] - ladder] if law.only_bonded else [kink[0] - ladder, kink[-1] + ladder]
-    uniform = lowest + reach * np.linspace(0.0, 1.0, even + 1)
-    return jnp.sort(jnp.clip(jnp.concatenate([uniform, kink, *rungs]), lowest, highest))
+    return jnp.sort(jnp.clip(jnp.concatenate([even, kink, *rungs]), lowest, highest))
 
 
-def _points(bounds: jax.Array) -> tuple[jax.Array, jax.Array]:
+def points(bounds: jax.Array, nodes: int = 16) -> tuple[jax.Array, jax.Array]:
     """Nodes and weights on all pieces, shape (pieces, nodes).
 
     Gathered at both ends of each, where there may be square roots. Kept apart by pieces: XLA
     makes vector code of what follows, which it does not of nodes in one row.
     """
-    t = 0.5 * (_NODES + 1.0)
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    t = 0.5 * (places + 1.0)
     inner = t * t * (3.0 - 2.0 * t)
-    slope = 6.0 * t * (1.0 - t) * 0.5 * _WEIGHTS
+    slope = 6.0 * t * (1.0 - t) * 0.5 * weights
     width = jnp.diff(bounds)[:, None]
     return bounds[:-1, None] + width * inner, width * slope
 
@@ -171,6 +206,5 @@ def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.A
     if known is not None:
         return known
     ladder = shortest * 2.0 ** np.arange(-2.0, 34.0)
-    kink = jnp.stack([jnp.asarray(k, float) for k in law.kinks])
-    gap, weight = _points(jnp.sort(jnp.maximum(jnp.concatenate([kink, ladder]), start)))
+    gap, weight = points(jnp.sort(jnp.maximum(jnp.append(_kinks(law), ladder), start)))
     return jnp.sum(weight * law.energy(gap))

@@ -9,8 +9,9 @@ import equinox as eqx
 import numpy as np
 
 from ._jax import jax, jnp
-from .interface import Interface, Means, Memory, Near
+from .interface import Interface, Means, Memory
 from .laws.base import Law
+from .quadrature import Near
 
 CLASSES = 6
 """Classes of tip radius, where a law needs them."""
@@ -109,12 +110,39 @@ class RadiusClasses(eqx.Module):
         return tuple(b for part, own in shares for b in part.remember(own, separation))
 
     @property
+    def yields(self) -> bool:
+        """Whether what was pressed once stays changed. Without values."""
+        return self.stacked.yields
+
+    @property
+    def yield_overlap(self) -> jax.Array:
+        """Overlap [m] at which an asperity begins to yield."""
+        return self.stacked.yield_overlap
+
+    def touched(self, memory: Memory) -> jax.Array:
+        """Whether anything was pressed so that it stays changed."""
+        return self.stacked.touched(memory)
+
+    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+        """The memory on an outermost branch; see :meth:`Interface.swept`."""
+        return self.stacked.swept(memory, parting)
+
+    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        shares = zip(self.parts, self._shares(memory), strict=True)
+        return [d for part, own in shares for d in part.merging(own, parting)]
+
+    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
+        return self.energy(separation, self.fresh(), lift)
+
+    @property
     def only_bonded(self) -> bool:
         """Whether every law without truncated powers ends with its bonds. Without values."""
         return self.stacked.only_bonded
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near = Near.NOT
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`."""
         each = self._each(lambda part, own: part.measure(separation, own, lift, near), memory)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import threading
 from collections.abc import Callable
 
@@ -12,7 +13,7 @@ from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem, build
 from .contact import Contact
-from .conversion import Assessment, Flight, assessment_of, result_of
+from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.datum import Datum
@@ -74,7 +75,8 @@ def solve(
     else:
         flight = _fly_late(problem, contact, (table, datum), limits, tell, stop)
     tell(0.9, "measures")
-    result = result_of(case, name, problem, flight)
+    stopped = flight.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
+    result = result_of(case, name, problem, flight, None if stopped else _kept_elastic(case))
     tell(1.0, "done")
     if flight.outcome is Outcome.FAILED and throw:
         damped = " or the gas film damps it too strongly to be followed" * (case.gas is not None)
@@ -139,6 +141,22 @@ def assess(
     contact, motion = _first_impact(case, problem)
     tell(1.0, "done")
     return assessment_of(case, name, problem, contact, motion)
+
+
+def _kept_elastic(case: Case) -> float | None:
+    """Restitution of the first impact of a case that yields, were nothing in it to yield.
+
+    NaN where it cannot be computed, None where it has none or nothing yields.
+    """
+    if case.plasticity_model == "none":
+        return None
+    elastic = case.model_copy(update={"plasticity": None})
+    problem = build(elastic)
+    try:
+        contact, motion = _first_impact(elastic, problem)
+    except (InputError, SimulationError):
+        return math.nan  # it may be released within contact, or pull too hard to be solved
+    return first_restitution(Flight(motion, contact, Outcome.MAX_IMPACTS), problem.body)
 
 
 def _first_impact(case: Case, problem: Problem) -> tuple[Contact, Motion]:

@@ -16,8 +16,17 @@ from .impact.sampling import sample
 from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, read_row
 from .impact.trajectory import Trajectory
 from .radius_classes import CLASSES
-from .regimes import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime
+from .regimes import (
+    DMT_BELOW,
+    FEW,
+    JKR_ABOVE,
+    LAW_NAMES,
+    Regime,
+    choose_adhesion,
+    tabor_number,
+)
 from .surroundings import gas_warnings, liquid_warnings
+from .yielding import yielded
 
 APART = 1e-6
 """Share of its value at closest approach below which a contact force counts as none."""
@@ -74,7 +83,8 @@ def warnings_of(
         *_surface(case, problem),
         *_asperities(case, at_depth),
         *_publication(case),
-        *_adhesion(regime, problem.adhesion.near_borders),
+        *_adhesion(regime, problem.adhesion.near_borders, case.plasticity_model != "none"),
+        *yielded(case, problem.modulus, at_depth.central),
         *liquid_warnings(case, regime),
         *gas_warnings(case, at_depth.central, motion),
         *_shape(case, motion),
@@ -94,7 +104,29 @@ def _surface(case: Case, problem: Problem) -> list[str]:
             f"{classes} classes of tip radius make the work of bonds {100 * abs(off):.2g} % too "
             f"{'small' if off < 0.0 else 'large'}: raise `radius_classes`"
         )
-    return out
+    return out + _one_law(case, problem)
+
+
+def _one_law(case: Case, problem: Problem) -> list[str]:
+    """A line where the law chosen for the mean tip radius would not be chosen for all tips."""
+    rough, given, table = case.asperities, case.adhesion, case.roughness
+    if given.model != "auto" or rough is None or rough.summits is None or table is None:
+        return []
+    if table.source != "summits" or given.work is None or given.range is None:
+        return []
+    ends = np.quantile(rough.summits.radii, (0.05, 0.95))
+    laws = [
+        choose_adhesion(tabor_number(tip, given.work, problem.modulus, given.range)).law
+        for tip in ends
+    ]
+    if laws == [problem.adhesion.law] * 2:
+        return []
+    names = " and ".join(LAW_NAMES[law] for law in dict.fromkeys(laws))
+    return [
+        f"the {LAW_NAMES[problem.adhesion.law]} law was chosen for the mean tip radius: between "
+        f" radii of {ends[0] * 1e9:.3g} and {ends[1] * 1e9:.3g} nm (5 to 95 % of the "
+        f"summits) it would be {names}"
+    ]
 
 
 def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
@@ -164,10 +196,10 @@ def _publication(case: Case) -> list[str]:
     ]
 
 
-def _adhesion(regime: Regime, near_borders: Sequence[str]) -> list[str]:
+def _adhesion(regime: Regime, near_borders: Sequence[str], yields: bool) -> list[str]:
     out = list(near_borders)
     psi, mu = regime.plasticity_index, regime.tabor_number
-    if psi is not None and psi > 1.0:
+    if psi is not None and psi > 1.0 and not yields:
         out.append(
             f"the plasticity index is {psi:.3g}: above 1 the asperities yield, and this model "
             "keeps them elastic"

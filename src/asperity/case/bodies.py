@@ -12,8 +12,12 @@ from asperity.case import fields
 from asperity.case.fields import entry
 from asperity.case.table import Table
 from asperity.errors import InputError
+from asperity.materials import refuse_softer_than_yield
 
 _ELASTIC = ("youngs_modulus", "poisson", "density")
+_STRENGTHS = ("hardness", "yield_strength")
+_HARDNESS = "Hardness, for the plasticity index and [plasticity]."
+_YIELD_STRENGTH = "Yield strength, for [plasticity]."
 
 
 class Material(Table):
@@ -22,9 +26,13 @@ class Material(Table):
     youngs_modulus: fields.Modulus = entry("Pa", "Young's modulus.", "70 GPa")
     poisson: fields.Poisson = entry("1", "Poisson's ratio, in (-1, 0.5].", 0.22)
     density: fields.Density = entry("kg/m^3", "Density.", "2500 kg/m^3")
-    hardness: fields.Modulus | None = entry(
-        "Pa", "Indentation hardness, for the plasticity index.", "5.5 GPa", default=None
-    )
+    hardness: fields.Modulus | None = entry("Pa", _HARDNESS, "5.5 GPa", default=None)
+    yield_strength: fields.Modulus | None = entry("Pa", _YIELD_STRENGTH, "2 GPa", default=None)
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        refuse_softer_than_yield(self.hardness, self.yield_strength)
+        return self
 
     def solid(self, name: str) -> catalogue.Solid:
         """The material as a `Solid`."""
@@ -48,13 +56,12 @@ class Made(Table):
     density: fields.Density | None = entry(
         "kg/m^3", "Density, in place of `material`.", "2200 kg/m^3", default=None
     )
-    hardness: fields.Modulus | None = entry(
-        "Pa", "Indentation hardness, for the plasticity index.", "9 GPa", default=None
-    )
+    hardness: fields.Modulus | None = entry("Pa", _HARDNESS, "9 GPa", default=None)
+    yield_strength: fields.Modulus | None = entry("Pa", _YIELD_STRENGTH, "3.2 GPa", default=None)
 
     @model_validator(mode="after")
     def _material_or_numbers(self) -> Self:
-        given = [key for key in (*_ELASTIC, "hardness") if getattr(self, key) is not None]
+        given = [key for key in (*_ELASTIC, *_STRENGTHS) if getattr(self, key) is not None]
         if self.material is not None and given:
             raise InputError(
                 f"`{given[0]}` and `material` exclude each other: name a material or give its "
@@ -68,6 +75,7 @@ class Made(Table):
                 f"`material`, or all of {wanted}, must be given; got no `{missing[0]}`",
                 key=missing[0] if given else "material",
             )
+        refuse_softer_than_yield(self.hardness, self.yield_strength)
         return self
 
     def solid(self, own: Mapping[str, Material], name: str) -> catalogue.Solid:
@@ -81,6 +89,7 @@ class Made(Table):
                 self.poisson,
                 self.density,
                 self.hardness,
+                self.yield_strength,
                 "the case file",
             )
         if self.material in own:

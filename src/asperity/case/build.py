@@ -14,6 +14,7 @@ from ..contact import (
     PublishedContact,
     RigidContact,
     SmoothContact,
+    SmoothPlasticContact,
 )
 from ..contact.late import LATE, LateContact
 from ..film import SqueezeFilm
@@ -39,16 +40,19 @@ from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..laws.meniscus import Formation
 from ..layers import Layers, Surfaces
 from ..materials import contact_modulus
+from ..plastic_interface import PlasticInterface
 from ..radius_classes import CLASSES
 from ..regimes import AdhesionChoice, choose_adhesion, tabor_number
 from ..roughness import Gaussian
 from ..shapes import Sphere
 from ..summits import loss_error, measured_surface
+from .yielding import plastic_contact, smooth_contact
 
 if TYPE_CHECKING:
     import numpy as np
 
     from .asperities import Asperities
+    from .forces import Adhesion
     from .publication import Publication
     from .schema import Case
 
@@ -99,7 +103,10 @@ def build(case: Case) -> Problem:
     tip = case.body.radius if rough is None else rough.asperity_radius
     adhesion = _adhesion(case, tip, modulus)
     contact: Contact
-    if rough is None:
+    if rough is None and case.plasticity_model != "none":
+        beside = _beside(case, adhesion.law, tip, tip)
+        contact = SmoothPlasticContact(smooth_contact(case, modulus), Sum(beside))
+    elif rough is None:
         contact = SmoothContact(_law(case, adhesion.law, tip, modulus))
     elif case.publication is not None:
         contact = _published(case, rough, case.publication, modulus)
@@ -169,6 +176,10 @@ def _asperities(case: Case, rough: Asperities, adhesion: str, modulus: float) ->
     if summits is None or table.source != "summits":
         law = _law(case, adhesion, rough.asperity_radius, modulus)
         heights = Gaussian(rough.rms_height, rough.mean_height)
+        if case.plasticity_model != "none":
+            tip = rough.asperity_radius
+            beside, yields = _beside(case, adhesion, tip, tip), plastic_contact(case, tip, modulus)
+            return PlasticInterface(yields, Sum(beside), heights, rough.asperity_density)
         return Interface(law, heights, rough.asperity_density)
     return measured_surface(
         _law_of_radius(case, adhesion, modulus, summits.radii),
@@ -230,20 +241,25 @@ def _published(
 
 def _law(case: Case, model: str, tip: float, modulus: float, smallest: float | None = None) -> Law:
     """The laws of one asperity, side by side; ``smallest`` is the least radius [m] among all."""
-    laws: list[Law] = []
-    adhesion = case.adhesion
+    adhesion: Adhesion = case.adhesion
+    contact: Law = Hertz(tip, modulus)
     if model == "jkr":
-        laws.append(Jkr(tip, modulus, _given(adhesion.work)))
+        contact = Jkr(tip, modulus, _given(adhesion.work))
     elif model == "maugis":
-        laws.append(Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.range)))
-    else:
-        laws.append(Hertz(tip, modulus))
-        if model == "dmt":
-            laws.append(Dmt(tip, _given(adhesion.work)))
-        elif model == "bradley":
-            laws.append(Bradley(tip, _given(adhesion.work), _given(adhesion.range)))
-    laws += _menisci(case, tip, smallest or tip)
-    return laws[0] if len(laws) == 1 else Sum(laws)
+        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.range))
+    beside = _beside(case, model, tip, smallest or tip)
+    return Sum([contact, *beside]) if beside else contact
+
+
+def _beside(case: Case, model: str, tip: float, smallest: float) -> list[Law]:
+    """The laws of one asperity that act beside its contact."""
+    adhesion = case.adhesion
+    menisci = _menisci(case, tip, smallest)
+    if model == "dmt":
+        return [Dmt(tip, _given(adhesion.work)), *menisci]
+    if model == "bradley":
+        return [Bradley(tip, _given(adhesion.work), _given(adhesion.range)), *menisci]
+    return menisci
 
 
 def _menisci(case: Case, tip: float, smallest: float) -> list[Law]:

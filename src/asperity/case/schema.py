@@ -14,6 +14,7 @@ from asperity.case.asperities import Asperities, asperities_of
 from asperity.case.bodies import Body, Counterface, Material
 from asperity.case.forces import Adhesion, Capillary
 from asperity.case.gas import Gas
+from asperity.case.plasticity import Plasticity, Yielding, yielding_of
 from asperity.case.publication import Publication
 from asperity.case.roughness import Roughness
 from asperity.case.running import Impact, Numerics, Output
@@ -45,6 +46,7 @@ class Case(Table):
     roughness: Roughness | None = None
     adhesion: Adhesion = Field(default_factory=lambda: Adhesion(model="none"))
     capillary: Capillary = Field(default_factory=lambda: Capillary(model="none"))
+    plasticity: Plasticity | None = Field(None, json_schema_extra={"rare": True})
     gas: Gas | None = Field(None, json_schema_extra={"rare": True})
     impact: Impact
     publication: Publication | None = Field(None, json_schema_extra={"rare": True})
@@ -76,6 +78,12 @@ class Case(Table):
             )
         self._bounded_liquid()
         self._late_liquid()
+        if self.plasticity is not None and self.plasticity_model != "none":
+            self.plasticity.refuse_beside(
+                self.adhesion, self.capillary, self.roughness, self.publication
+            )
+            self.plasticity.refuse_under(self.counterface, self.roughness)
+            _ = self.yielding  # which refuses what has no strength
         return self
 
     def _late_liquid(self) -> None:
@@ -191,6 +199,32 @@ class Case(Table):
         density = self.body_solid.density
         assert density is not None
         return density
+
+    @property
+    def plasticity_model(self) -> str:
+        """Law of contacts that yield; 'none' without a [plasticity] table."""
+        return "none" if self.plasticity is None else self.plasticity.model
+
+    @property
+    def has_strength(self) -> bool:
+        """Whether it is known at what load something yields."""
+        solids = (self.body_solid, self.counterface_solid)
+        known = any(solid.hardness or solid.yield_strength for solid in solids)
+        return known or self.plasticity_model != "none"
+
+    @property
+    def yielding(self) -> Yielding:
+        """What yields in a contact: the softer solid, with the [plasticity] table's own values.
+
+        Raises
+        ------
+        InputError
+            Where nothing is known of it; never with a model other than 'none'.
+        """
+        table = self.plasticity
+        if table is None or table.model == "none":
+            table = Plasticity()
+        return yielding_of(table, (self.body_solid, self.counterface_solid))
 
     @property
     def asperities(self) -> Asperities | None:

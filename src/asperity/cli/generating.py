@@ -144,7 +144,9 @@ def _heights(
         return _numbers(file), f"distributed as the numbers of {name}"
     flat, step = levelled(read_topography(file), "tilt")
     known = flat.heights[~flat.missing]
-    return known, f"distributed as those of {name} ({step.words})"
+    lost = flat.heights.size - known.size
+    left_out = f"; {lost} missing pixels left out" if lost else ""
+    return known, f"distributed as those of {name} ({step.words}{left_out})"
 
 
 def _numbers(file: str) -> np.ndarray:

@@ -16,7 +16,8 @@ from asperity.materials import LIQUIDS, ROOM_TEMPERATURE, SOLIDS
 from asperity.records.layout import plain
 from asperity.summary import WIDTH, amount
 
-_NUMBERS = 54
+_SOLID = (9, 7, 15, 12, 11)
+_FLUID = (18, 18, 18)
 _HIDDEN = ("tension_law", "density_law", "temperatures")
 
 
@@ -59,15 +60,16 @@ def list_materials(*, as_json: bool) -> None:
         }
         tell(json.dumps(found, allow_nan=False))
         return
-    lines = ["Solids: Young's modulus, Poisson's ratio, density, hardness", ""]
+    lines = ["Solids: Young's modulus, Poisson's ratio, density, hardness, yield strength", ""]
     for solid in SOLIDS.values():
         numbers = [
             amount(solid.youngs_modulus, "Pa"),
             f"{solid.poisson:.4g}",
             _density(solid.density),
             amount(solid.hardness, "Pa"),
+            amount(solid.yield_strength, "Pa"),
         ]
-        lines += _entry(solid.name, numbers, solid.source)
+        lines += _entry(solid.name, numbers, _SOLID, solid.source)
     lines += ["Liquids: surface tension, molar volume, density", ""]
     for liquid in LIQUIDS.values():
         numbers = [
@@ -75,7 +77,7 @@ def list_materials(*, as_json: bool) -> None:
             f"{liquid.molar_volume * 1e6:.4g} cm^3/mol",
             _density(liquid.density),
         ]
-        lines += _entry(liquid.name, numbers, liquid.source)
+        lines += _entry(liquid.name, numbers, _FLUID, liquid.source)
     lines += ["Gases: viscosity, mean free path and slip length at 20 degC and 101.325 kPa", ""]
     for gas in GASES.values():
         numbers = [
@@ -83,7 +85,7 @@ def list_materials(*, as_json: bool) -> None:
             amount(gas.free_path(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
             amount(gas.slip_length(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
         ]
-        lines += _entry(gas.name, numbers, gas.source)
+        lines += _entry(gas.name, numbers, _FLUID, gas.source)
     tell("\n".join(lines).rstrip())
 
 
@@ -99,11 +101,14 @@ def _rows(entries: Any) -> dict[str, Any]:
     }
 
 
-def _entry(name: str, numbers: Sequence[str], source: str) -> list[str]:
-    row = f"{name:<25}" + "".join(f"{number:>{_NUMBERS // len(numbers)}}" for number in numbers)
+def _entry(name: str, numbers: Sequence[str], widths: Sequence[int], source: str) -> list[str]:
+    columns = zip(numbers, widths, strict=True)
+    row = f"{name:<25}" + "".join(f"{number:>{width}}" for number, width in columns)
     about = textwrap.wrap(source, WIDTH, initial_indent="    ", subsequent_indent="    ")
     return [row, *about, ""]
 
 
 def _density(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g} kg/m^3"
+    if value is None:
+        return "-"
+    return f"{value:.0f} kg/m^3" if value >= 1e4 else f"{value:.4g} kg/m^3"

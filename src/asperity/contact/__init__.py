@@ -5,6 +5,7 @@ from .elastic import ElasticContact, RingMemory
 from .published import PublishedContact
 from .rigid import RigidContact
 from .smooth import SmoothContact
+from .smooth_plastic import SmoothPlasticContact
 
 __all__ = [
     "Contact",
@@ -13,5 +14,6 @@ __all__ = [
     "RigidContact",
     "RingMemory",
     "SmoothContact",
+    "SmoothPlasticContact",
     "State",
 ]

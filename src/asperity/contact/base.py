@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from itertools import product
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -138,6 +139,41 @@ class Contact(eqx.Module):
     @abc.abstractmethod
     def extreme(self, bonded: tuple[bool, ...]) -> Memory:
         """Memory on an outermost branch: for each law, all bonds kept or none made."""
+
+    @property
+    def yields(self) -> bool:
+        """Whether its first impact leaves it changed for good. Known without values."""
+        return False
+
+    @property
+    def resting(self) -> int:
+        """Index of the branch on which it comes to rest: of approach, once it has yielded."""
+        return int(self.yields)
+
+    def worn(self, memory: Memory, separation: jax.Array) -> Contact:
+        """The contact as its first impact leaves it, that turned at a separation [m]."""
+        return self
+
+    def branches(self) -> tuple[Memory, ...]:
+        """Memories of the outermost branches.
+
+        On a smooth body all combinations of bonds. Else the first has no bonds and the last has
+        all; a contact that yields begins with the branch of its first approach.
+        """
+        laws = len(self.mechanisms)
+        if self.discrete:
+            combinations = product((False, True), repeat=laws)
+            return tuple(self.extreme(tuple(reversed(bits))) for bits in combinations)
+        ends = ((False,) * laws, (True,) * laws) if laws else ((),)
+        return tuple(self.extreme(bonded) for bonded in ends)
+
+    def branch_of(self, memory: Memory, parting: jax.Array) -> jax.Array:
+        """Index of the outermost branch that a body with ``memory`` reaches."""
+        laws = len(self.mechanisms)
+        if self.discrete:
+            weights = 2 ** np.arange(laws)
+            return jnp.sum(jnp.where(self.bonded(memory), weights, 0))
+        return jnp.where(parting, min(laws, 1), 0)
 
     @abc.abstractmethod
     def state(self, separation: jax.Array, memory: Memory) -> State:

@@ -13,8 +13,7 @@ from .._jax import jax, jnp
 from ..errors import InputError
 from ..interface import Interface
 from ..laws.base import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
-from ..layers import Layers, Surfaces
-from ..radius_classes import RadiusClasses
+from ..layers import Layer, Layers, Surfaces
 from .base import Contact, Memory, State
 from .rigid import RigidContact
 from .smooth import SmoothContact
@@ -52,10 +51,6 @@ class Told(Law):
     @property
     def hysteretic(self) -> bool:
         return True
-
-    @property
-    def in_powers(self) -> bool:
-        return self.law.in_powers
 
     @property
     def only_bonded(self) -> bool:
@@ -193,9 +188,15 @@ def _told_surfaces(surfaces: Surfaces) -> Surfaces:
     return _told_part(surfaces)
 
 
-def _told_part(part: Interface | RadiusClasses) -> Interface | RadiusClasses:
+def _told_part(part: Layer) -> Layer:
     if isinstance(part, Interface):
         return _told_interface(part)
+    if part.yields:
+        raise InputError(
+            "`formation_time` must be absent where asperities yield: which of them have a meniscus "
+            "would need a history in time; take plasticity.model = 'none'",
+            key="capillary.formation_time",
+        )
     if LATE in part.mechanisms:
         raise InputError(
             "`formation_time` must be absent where the bridges of each class of tip radius would "

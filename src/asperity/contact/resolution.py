@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from math import ceil
+from math import asinh, ceil, hypot
 from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..layers import Surfaces
 from ..program import Program
+from ..quadrature import EVEN
 
 LINEAR = 8.0
 """Panels are even in asinh(separation / (LINEAR rms))."""
+
+_DEEP = 5.0  # rms below the mean plane, down to where a body may come
+_HEIGHTS = 17.2  # rms between the lowest and the highest
+_PIECE = 6.4  # rms of a quadrature's piece
 
 
 class Resolution(NamedTuple):
@@ -24,11 +29,17 @@ class Resolution(NamedTuple):
         Solutions on a piece of the way from a reversal to the outermost branch.
     pieces
         Number of these pieces, for each law.
+    shared
+        Even pieces of the quadratures that the places of one panel share.
+    back
+        Panels within two rms heights above the deepest point of asperities that yielded.
     """
 
     panels: int
     nodes: int
     pieces: int
+    shared: int = EVEN
+    back: int = 28
 
 
 def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
@@ -40,23 +51,34 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         return Resolution(ceil(10 / interface.grain**0.5), 16, 2)
     grain = interface.grain
-    share, kinked, smooth, bends = (float(length) for length in _lengths(interface))
+    share, kinked, reach, bends = (float(length) for length in _lengths(interface))
     nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
     pieces = ceil(share / 4.5) or 1
     if bends > 1.5:
         nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
+    if interface.yields:  # what is left of the heights is steeper than they were
+        nodes, pieces = 16, max(pieces, 2)
+    # What is smooth counts as the panels do, which widen with the separation.
+    smooth = LINEAR * (asinh(reach / LINEAR) - asinh(kinked / LINEAR))
+    length = kinked + max(smooth, 0.0)
     if not deforms:
-        return Resolution(ceil((kinked + smooth) / (2.2 * grain)), max(nodes, 8), pieces)
+        panels = ceil(length / (2.2 * grain))
+        return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own.
-    panels = ceil((kinked + smooth) / (1.7 * grain))
+    panels = ceil(length / (1.7 * grain))
     return Resolution(panels, nodes, pieces + (share > 0.1))
 
 
-def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
-    """How far a bond stretches, and how far forces have kinks and then reach, over the rms height.
+def _shared(reach: float, panels: int) -> int:
+    """Even pieces of quadratures that the places of the outermost panel share."""
+    step = (asinh(reach / LINEAR) + asinh(_DEEP / LINEAR)) / panels
+    return max(EVEN, ceil((step * hypot(reach, LINEAR) + _HEIGHTS) / _PIECE))
 
-    What is smooth counts as the panels do, which widen with the separation. And how far a bond
-    stretches over the length on which its force changes.
+
+def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+    """How far a bond stretches, and how far forces have kinks and reach, over the rms height.
+
+    And how far a bond stretches over the length on which its force changes.
     """
     widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
     widest = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
@@ -65,8 +87,7 @@ def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.A
     most = jnp.max(jnp.stack([jnp.zeros(()), *bends]))
     kinked = (interface.heights.top + interface.last_kink) / rms
     reach = (interface.heights.top + jnp.maximum(interface.reach, 0.0)) / rms
-    smooth = LINEAR * (jnp.arcsinh(reach / LINEAR) - jnp.arcsinh(kinked / LINEAR))
-    return widest / rms, kinked, jnp.maximum(smooth, 0.0), most
+    return widest / rms, kinked, reach, most
 
 
 _lengths = Program(_in_rms)

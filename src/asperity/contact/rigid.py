@@ -10,9 +10,10 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
-from ..interface import Means, Near
+from ..interface import Means
 from ..interface import Memory as Thresholds
 from ..layers import Surfaces
+from ..quadrature import Near
 from ..shapes import Sphere
 from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
 from .resolution import LINEAR, Resolution, resolution
@@ -32,6 +33,9 @@ class RigidContact(Contact):
         The body.
     resolved
         How finely its curves are cut (static); by default as its forces ask for.
+    left
+        Memory and separation [m] at the deepest point of the first impact, where asperities
+        that yield have had one.
 
     Notes
     -----
@@ -43,12 +47,18 @@ class RigidContact(Contact):
     interface: Surfaces
     shape: Sphere
     resolved: Resolution = eqx.field(static=True)
+    left: tuple[Thresholds, jax.Array] | None
 
     def __init__(
-        self, interface: Surfaces, shape: Sphere, resolved: Resolution | None = None
+        self,
+        interface: Surfaces,
+        shape: Sphere,
+        resolved: Resolution | None = None,
+        left: tuple[Thresholds, jax.Array] | None = None,
     ) -> None:
         self.interface = interface
         self.shape = shape
+        self.left = left
         self.resolved = resolved or resolution(interface, deforms=False)
 
     @property
@@ -68,7 +78,9 @@ class RigidContact(Contact):
         return self.interface.blur
 
     def refined(self, factor: int) -> RigidContact:
-        finer = self.resolved._replace(panels=factor * self.resolved.panels)
+        now = self.resolved
+        panels, shared, back = (factor * n for n in (now.panels, now.shared, now.back))
+        finer = now._replace(panels=panels, shared=shared, back=back)
         return dataclasses.replace(self, resolved=finer)
 
     def fresh(self) -> Thresholds:
@@ -77,13 +89,34 @@ class RigidContact(Contact):
     def extreme(self, bonded: tuple[bool, ...]) -> Thresholds:
         return tuple(jnp.asarray(-jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded)
 
+    @property
+    def yields(self) -> bool:
+        return self.interface.yields
+
+    def worn(self, memory: Thresholds, separation: jax.Array) -> RigidContact:
+        return dataclasses.replace(self, left=(memory, separation))
+
+    def branches(self) -> tuple[Thresholds, ...]:
+        if not self.yields:
+            return super().branches()
+        if self.left is None:
+            return (self.fresh(),)
+        ways = (False, True) if self.interface.hysteretic else (False,)
+        return (self.fresh(), *(self.interface.swept(self.left[0], way) for way in ways))
+
+    def branch_of(self, memory: Thresholds, parting: jax.Array) -> jax.Array:
+        if not self.yields:
+            return super().branch_of(memory, parting)
+        apart = jnp.where(parting, min(len(self.interface.hysteretic), 1), 0)
+        return jnp.where(self.interface.touched(memory), 1 + apart, 0)
+
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
         return self._state(separation, self.interface.measure(separation, memory, lift=1))
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
         """Places of one panel share their quadrature; far out only where all forces have ended."""
         count = places.shape[0] - (0 if self.interface.only_bonded else FAR)
-        states = [self._states(Near.LEVEL, places[:count], memory)]
+        states = [self._states(Near(True, self.resolved.shared), places[:count], memory)]
         if count < places.shape[0]:
             states.append(super().branch(ends, places[count:], memory))
         return jax.tree_util.tree_map(lambda *rows: jnp.concatenate(rows), *states)
@@ -123,29 +156,38 @@ class RigidContact(Contact):
         self, memory: Thresholds, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
-        if not self.mechanisms:
+        if not self.interface.hysteretic:
             return None
         steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
-        marks = [
-            start + (b + jnp.where(parting, law.breaking_gap, law.forming_gap) - start) * steps
-            for law, b in zip(self.interface.hysteretic, memory, strict=True)
-        ]
+        ends = self.interface.merging(memory, parting)
+        marks = [start + (end - start) * steps for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
         places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
-        return Way(enter, leave, self._states(Near.BY, places, memory))
+        return Way(enter, leave, self._states(Near(level=False), places, memory))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
 
     def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         ladder = jnp.append(release, _LADDER * self.interface.heights.rms)
-        stored = self._measure * self.interface.energy(ladder, self.fresh(), lift=1)
+        stored = self._measure * self.interface.work_of_approach(ladder, lift=1)
         energy = stored + weight * ladder
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return rough_panels(self, low, high, self.resolved.panels)
+        ends = rough_panels(self, low, high, self.resolved.panels)
+        return ends if self.left is None else self.around_turn(ends, self.left[1])
+
+    def around_turn(self, ends: jax.Array, turn: jax.Array) -> jax.Array:
+        """Ends of panels, with more just above the deepest point, where asperities spring back."""
+        rms = self.interface.heights.rms
+        first = jnp.minimum(0.3 * self.interface.yield_overlap, 0.1 * rms)
+        count = self.resolved.back
+        rungs = first * (2.0 * rms / first) ** (np.arange(count) / (count - 1))
+        # Not at the turn itself, where rounding would make a body turn that has just turned.
+        marks = jnp.append(turn + rungs, turn - 1e-9 * rms)
+        return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
 
     @property
     def reach(self) -> jax.Array:

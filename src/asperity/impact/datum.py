@@ -37,9 +37,9 @@ class Datum(NamedTuple):
     rests: jax.Array
 
 
-def find_datum(table: Table, weight: jax.Array, release: jax.Array) -> Datum:
-    """Static equilibrium on the branch of first approach."""
-    values = table.values[0]
+def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
+    """Static equilibrium on a branch of approach."""
+    values = table.values[branch]
     place, panel, found = _outermost(
         table.ends, values[..., FORCE], lambda force: force - weight > 1e-9 * weight
     )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
-from ..contact.base import Contact, Held
+from ..contact.base import Contact, Held, Memory
 from ..errors import Outcome, Tolerance
 from .damping import fall_to_rest
 from .datum import Datum, find_datum
@@ -19,7 +19,6 @@ from .table import (
     STORED,
     TOUCHING,
     Table,
-    branch_of,
     inner_pieces,
     join,
     outer_row,
@@ -41,10 +40,32 @@ def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
     high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
-    table = tabulate(contact, low, high)
+    table = (
+        _worn_table(contact, body, low, high) if contact.yields else (tabulate(contact, low, high))
+    )
     if contact.datum is None:
-        return table, find_datum(table, body.weight, body.release)
+        return table, find_datum(table, body.weight, contact.resting)
     return table, Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
+
+
+def _worn_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
+    """The curves of a contact that yields, before its first impact and as that leaves it.
+
+    Nothing that follows goes deeper than the first impact: it has lost energy since.
+    """
+
+    def pressed(left: tuple[Memory, jax.Array], _: None) -> tuple[tuple[Memory, jax.Array], Table]:
+        worn = contact.worn(*left)
+        table = tabulate(worn, low, high)
+        progress, _origin = start(worn, body, table)
+        rest = find_datum(table, body.weight, 0).equilibrium
+        after, _leg_down = _leg(worn, body, table, (rest, rest), progress, jnp.asarray(False))
+        return (after.memory, after.place), table
+
+    # One body of code for both tables: half to compile.
+    _, tables = jax.lax.scan(pressed, (contact.fresh(), body.release), None, length=2)
+    last: Table = jax.tree_util.tree_map(lambda leaf: leaf[1], tables)
+    return last
 
 
 def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:
@@ -151,7 +172,7 @@ def _leg(
     """
     crept, followed = jnp.asarray(False), jnp.asarray(True)
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
-    branch = branch_of(contact, progress.memory, parting)
+    branch = contact.branch_of(progress.memory, parting)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
     if body.film is None:
         turn, heat = find_turn(ahead), jnp.zeros(0)
@@ -215,6 +236,8 @@ def _impact(
         (
             (jnp.logical_not(sound), Outcome.FAILED),
             (fall.crept, Outcome.REST),
+            # Flattened tips may pull at once by more than what they press.
+            (jnp.logical_and(contact.yields, end.place <= fall.turn.place), Outcome.REST),
             (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
             (rise.time >= limits.time, Outcome.TIME_LIMIT),
             (height < limits.rest * first, Outcome.REST),

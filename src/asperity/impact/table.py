@@ -7,7 +7,6 @@ so that no equation is solved inside the motion and work is integrated exactly.
 
 from __future__ import annotations
 
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -158,18 +157,10 @@ def quantities(contact: Contact) -> Quantities:
     return Quantities(len(contact.mechanisms), len(contact.components))
 
 
-def branches(contact: Contact) -> tuple[tuple[bool, ...], ...]:
-    """The outermost branches: all combinations on a smooth body, else none or all bonds."""
-    laws = len(contact.mechanisms)
-    if contact.discrete:
-        return tuple(tuple(reversed(bits)) for bits in product((False, True), repeat=laws))
-    return ((False,) * laws, (True,) * laws) if laws else ((),)
-
-
 def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     """Solve a contact on its outermost branches between two separations [m]."""
     ends = jax.lax.stop_gradient(contact.panels(low, high))
-    memories = [contact.extreme(branch) for branch in branches(contact)]
+    memories = contact.branches()
     stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
     points = chebyshev.chebpts1(NODES)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
@@ -231,14 +222,6 @@ def inner_pieces(
     values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
     low, high = jnp.minimum(way.enter, way.leave), jnp.maximum(way.enter, way.leave)
     return Pieces(low, high, way.enter, way.leave, values)
-
-
-def branch_of(contact: Contact, memory: Memory, parting: jax.Array) -> jax.Array:
-    """Index of the outermost branch that a body with ``memory`` reaches."""
-    if contact.discrete:
-        weights = 2 ** np.arange(len(contact.mechanisms))
-        return jnp.sum(jnp.where(contact.bonded(memory), weights, 0))
-    return jnp.where(parting, len(branches(contact)) - 1, 0)
 
 
 def join(

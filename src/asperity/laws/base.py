@@ -136,11 +136,6 @@ class Law(eqx.Module):
         return None
 
     @property
-    def in_powers(self) -> bool:
-        """Whether :meth:`powers` has the form. Known without values."""
-        return type(self).powers is not Law.powers
-
-    @property
     def only_bonded(self) -> bool:
         """Whether its free branch is nothing at all. Known without values."""
         return False

@@ -47,6 +47,7 @@ COLOURS = {
     "lost_adhesion": "#D55E00",
     "lost_capillary": "#009E73",
     "lost_gas": "#CC79A7",
+    "lost_plastic": "#E69F00",
     "approach": "#0072B2",
     "parting": "#D55E00",
     "lost": "#F5D0B5",

@@ -60,6 +60,8 @@ class Situation(NamedTuple):
         Whether a film bounds it.
     on_tips
         Whether the liquid forms menisci on the tips, not a filling of the surface.
+    yields
+        Whether the case lets its asperities yield.
     molecule_size
         Size of a molecule of the liquid [m]; None without menisci.
     """
@@ -73,6 +75,7 @@ class Situation(NamedTuple):
     molecule_size: float | None
     bounded: bool = False
     on_tips: bool = True
+    yields: bool = False
 
 
 def verdicts(situation: Situation) -> dict[str, Verdict]:
@@ -147,14 +150,19 @@ def _load(situation: Situation) -> Verdict:
 def _plasticity(situation: Situation) -> Verdict:
     value = situation.regime.plasticity_index
     if value is None:
-        why = "neither material has a hardness" if situation.rough else "the body is smooth"
+        why = (
+            "neither material has a hardness or yield strength"
+            if situation.rough
+            else "the body is smooth"
+        )
         return Verdict(None, "1", why)
     if value < ELASTIC_BELOW:
         said = f"below {ELASTIC_BELOW:g}: asperities stay elastic"
     elif value <= 1.0:
         said = f"between {ELASTIC_BELOW:g} and 1: some asperities yield under load"
     else:
-        said = "above 1: asperities yield, and the models keep them elastic"
+        said = "above 1: asperities yield, "
+        said += "as they do here" if situation.yields else "and the models keep them elastic"
     return Verdict(value, "1", said)
 
 

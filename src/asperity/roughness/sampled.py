@@ -100,10 +100,6 @@ class Sampled(Heights):
         return self.deviation
 
     @property
-    def centre(self) -> jax.Array | float:
-        return self.mean
-
-    @property
     def nodes(self) -> int:
         """Number of nodes that carry the heights."""
         return self.share.shape[-1]

@@ -202,7 +202,8 @@ def _chance(value: float | None) -> str:
 
 def _measure(value: float | None, unit: str) -> str:
     """A value with its unit; only a plain length takes a prefix."""
-    return amount(value, "m") if unit == "m" else f"{amount(value)} {unit}".strip()
+    shown = amount(value, "m" if unit == "m" else "")
+    return shown if shown == "-" or unit == "m" else f"{shown} {unit}".strip()
 
 
 def rows(named: Sequence[Row], title: str = "") -> list[str]:

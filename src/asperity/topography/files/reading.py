@@ -30,7 +30,8 @@ size of points is their spacing times their number.
 Cut short
 ---------
 A line too short, a scan line of points that ends early, and fewer pixels than ``# pixels`` states
-are refused. A text cut between two rows without that line looks like a smaller map.
+are refused. A text cut between two rows without that line looks like a smaller map; one cut within
+its last number is read with a note that its last line has no end.
 """
 
 from __future__ import annotations
@@ -158,9 +159,12 @@ def read_surface(
             raise refusal(file, f"holds one map and no channels; got {channel!r}; leave it out")
         if suffix == ".npy":
             found, words = _from_array(content, file, size, unit), "NumPy array"
+            notes: tuple[str, ...] = ()
         else:
-            found, words = _from_text(content, file, suffix, size, unit)
-        return Reading(Topography(*found, file), words)
+            text = texts.split(content, file)
+            found, words = _from_text(text, suffix, size, unit)
+            notes = _doubts(text)
+        return Reading(Topography(*found, file), words, notes=notes)
     scan = scan_of(content, file, size, unit, channel)
     surface = Topography(scan.heights, scan.pixel_size, file)
     return Reading(surface, scan.format, scan.channel, scan.channels, scan.notes)
@@ -186,14 +190,17 @@ def _from_array(
     return heights, _pixel_size(values, agreed_size(None, size, file))
 
 
+def _doubts(text: texts.Text) -> tuple[str, ...]:
+    """A note where nothing tells a whole text from one cut within its last number."""
+    if text.ended or text.stated.pixels is not None:
+        return ()
+    return ("its last line has no end: it may have been cut short; `# pixels 512 256` tells",)
+
+
 def _from_text(
-    content: bytes,
-    file: str,
-    suffix: str,
-    size: tuple[float, float] | None,
-    unit: str | None,
+    text: texts.Text, suffix: str, size: tuple[float, float] | None, unit: str | None
 ) -> tuple[Map, str]:
-    text = texts.split(content, file)
+    file = text.file
     if suffix == ".xyz" or text.stated.lateral is not None:
         return _from_points(text, size, unit), "points x y z"
     heights_unit = agreed_unit(text.stated.unit, unit, file, _ADVICE_UNIT)

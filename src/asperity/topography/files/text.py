@@ -32,12 +32,15 @@ class Text:
         Number of the first line of ``body``.
     body
         From the first number to the last, lines ended by a line feed.
+    ended
+        Whether its last line has an end.
     """
 
     file: str
     stated: Stated
     first: int
     body: bytes
+    ended: bool
 
 
 def split(content: bytes, file: str) -> Text:
@@ -67,7 +70,7 @@ def split(content: bytes, file: str) -> Text:
     if not body:
         raise cut_short(file, "a text without numbers")
     _refuse_second_header(body, number, file)
-    return Text(file, stated_in(head, file), number, body)
+    return Text(file, stated_in(head, file), number, body, lines.endswith(b"\n"))
 
 
 def numbers(text: Text, columns: int | None = None) -> np.ndarray:

@@ -1,0 +1,273 @@
+"""A smooth body that yields: what was pressed flat stays flat."""
+
+from __future__ import annotations
+
+import dataclasses
+from itertools import product
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..errors import InputError
+from ..laws.base import Law, Sum, terms
+from ..laws.jkr import Jkr
+from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
+from .base import Contact, State, first_out_of_reach
+
+PLASTIC = "plastic"
+"""Mechanism of the work that the body keeps."""
+
+Pressed = tuple[jax.Array, jax.Array]
+"""Lowest separation so far [m], inf before the first impact, and a flag for each bond."""
+
+
+class SmoothPlasticContact(Contact):
+    """A smooth body on a smooth plane, elastic-plastic, with other laws beside its contact.
+
+    Parameters
+    ----------
+    contact
+        The contact, with the radius of the body; it may adhere.
+    law
+        Laws that act beside it, none by default.
+    refinement
+        Factor on the number of panels of its curves (static).
+    left
+        Memory and separation [m] at the deepest point of the first impact, where it has had one.
+
+    Raises
+    ------
+    InputError
+        If a law contains a force that the contact contains.
+
+    Notes
+    -----
+    The separation is the gap of the body before anything touched. At the deepest overlap D a
+    tip is left that stands back by the residual r: laws beside contact act at the separation
+    plus r, and times the flatness to the power of the tip radius that they have. The flatness
+    is D/(D - r); where contact adheres, and r is not where its force ends, it is the radius of
+    the flattened tip over that before. While it goes deeper than ever, the body pulls as if it
+    were whole.
+
+    The ledger closes since all that a law cannot give back is a function of D:
+
+    - Work that is kept counts as bonds of the first mechanism, of 1 J each, that form once. A
+      law beside contact adds what its energy lost as the tip became flatter, less what that
+      adds to the formation of its bonds. Where adhesion alone makes it yield, the work kept is
+      at first slightly negative: 1 J is given back for each such bond that breaks.
+    - Bonds of a law beside contact count with the flatness to the power of their law.
+    - Formation and rupture of an adhesive contact lose what those of the whole tip lose, times
+      the same factor f of D, 1 at first. Held, its bond counts 1; broken, 1 - f. So the first
+      touch loses the formation of the whole tip, and rupture and another touch those of the
+      flattened one.
+    """
+
+    contact: PlasticContact | AdhesiveThorntonNing
+    law: Law = Sum(())
+    refinement: int = eqx.field(static=True, default=1)
+    left: tuple[Pressed, jax.Array] | None = None
+
+    def __check_init__(self) -> None:
+        contained = {"elastic", *self._adhesion}
+        for law in terms(self.law):
+            for name in sorted(contained & law.counts):
+                raise InputError(
+                    f"{type(law).__name__} and {type(self.contact).__name__} both contain the "
+                    f"{name} force; it would count twice"
+                )
+
+    @property
+    def _hysteretic(self) -> tuple[Law, ...]:
+        return tuple(law for law in terms(self.law) if law.hysteretic)
+
+    @property
+    def _adhesion(self) -> tuple[str, ...]:
+        return ("adhesion",) if isinstance(self.contact, AdhesiveThorntonNing) else ()
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        return (PLASTIC, *self._adhesion, *(law.mechanism for law in self._hysteretic))
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
+        return ("elastic", *sorted(names.union(self._adhesion)))
+
+    @property
+    def discrete(self) -> bool:
+        return True
+
+    @property
+    def yields(self) -> bool:
+        return True
+
+    def refined(self, factor: int) -> SmoothPlasticContact:
+        return dataclasses.replace(self, refinement=factor)
+
+    def fresh(self) -> Pressed:
+        return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)
+
+    def extreme(self, bonded: tuple[bool, ...]) -> Pressed:
+        """Memory with all of some bonds, the body being as the first impact left it."""
+        lowest = self.fresh()[0] if self.left is None else self.left[0][0]
+        return lowest, jnp.asarray(bonded[1:], dtype=float)
+
+    def worn(self, memory: Pressed, separation: jax.Array) -> SmoothPlasticContact:
+        return dataclasses.replace(self, left=(memory, separation))
+
+    def branches(self) -> tuple[Pressed, ...]:
+        """First that of a body that never touched, then all combinations of bonds."""
+        if self.left is None:
+            return (self.fresh(),)
+        combinations = product((False, True), repeat=len(self.mechanisms) - 1)
+        return (self.fresh(), *(self.extreme((True, *reversed(bits))) for bits in combinations))
+
+    def branch_of(self, memory: Pressed, parting: jax.Array) -> jax.Array:
+        lowest, flags = memory
+        weights = 2 ** np.arange(len(self.mechanisms) - 1)
+        bonds = jnp.sum(jnp.where(flags > 0.5, weights, 0))
+        return jnp.where(jnp.isinf(lowest), 0, 1 + bonds)
+
+    def state(self, separation: jax.Array, memory: Pressed) -> State:
+        lowest, flags = self.remember(memory, separation)
+        deepest = jnp.maximum(-lowest, 0.0)
+        gap = separation + self.contact.residual(deepest)
+        held = list(flags > 0.5)
+        each = {name: jnp.zeros_like(separation) for name in self.components}
+        if isinstance(self.contact, AdhesiveThorntonNing):
+            tip, on = self._tip(deepest), held.pop(0)
+            each.update(tip.components(gap, on))
+            stored = jnp.where(on, tip.bonded_energy(gap), 0.0)
+            grown = tip.formation_loss / self._tip(jnp.zeros(())).formation_loss
+            counts = [jnp.where(on, 1.0, 1.0 - grown)]
+        else:
+            overlap = jnp.maximum(-separation, 0.0)
+            each["elastic"] = self.contact.force(overlap, deepest)
+            stored, counts = self.contact.recoverable(overlap, deepest), []
+        kept, flatness = self.contact.dissipated(deepest), self._flatness(deepest)
+        deeper = separation <= memory[0]
+        for law in terms(self.law):
+            on = held.pop(0) if law.hysteretic else jnp.zeros((), bool)
+            grown = flatness**law.radius_power
+            whole, flat = law.components(separation, on), law.components(gap, on)
+            for name, part in flat.items():
+                each[name] = each[name] + jnp.where(deeper, whole[name], grown * part)
+            energy = jnp.where(on, law.bonded_energy(gap), law.energy(gap))
+            stored = stored + grown * energy
+            kept = kept + self._flattening(law, deepest, grown)
+            if law.hysteretic:
+                counts.append(jnp.where(on, grown, 0.0))
+        parts = jnp.stack(list(each.values()))
+        return State(
+            force=jnp.sum(parts),
+            stored=stored,
+            central=separation,
+            bonds=jnp.stack([kept, *counts]),
+            parts=parts,
+            touching=jnp.where(gap < 0.0, 1.0, 0.0),
+            error=jnp.full_like(separation, 1e-16),
+            size=jnp.zeros_like(separation),
+            elastic=self.elastic_part(parts),
+            field=jnp.zeros(0),
+        )
+
+    def remember(self, memory: Pressed, separation: jax.Array) -> Pressed:
+        lowest = jnp.minimum(memory[0], separation)
+        deepest = jnp.maximum(-lowest, 0.0)
+        gap = separation + self.contact.residual(deepest)
+        near = jnp.where(separation <= memory[0], separation, gap)
+        rows = []
+        for law, flag in zip(self._bonds(deepest), memory[1], strict=True):
+            kept = jnp.logical_and(flag > 0.5, gap < law.breaking_gap)
+            rows.append(jnp.where(jnp.logical_or(near <= law.forming_gap, kept), 1.0, 0.0))
+        return lowest, jnp.stack(rows) if rows else jnp.zeros((0,))
+
+    def bonded(self, memory: Pressed) -> jax.Array:
+        """Work that is kept counts as bonded once the body has been pressed."""
+        return jnp.append(jnp.isfinite(memory[0]), memory[1] > 0.5)
+
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        rows = [(law.formation_loss, law.rupture_loss) for law in self._bonds(jnp.zeros(()))]
+        formed, broken = zip((jnp.ones(()), -jnp.ones(())), *rows, strict=True)
+        return jnp.stack(formed), jnp.stack(broken)
+
+    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+        ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
+        states = jax.vmap(lambda d: self.state(d, self.fresh()))(ladder)
+        energy = states.stored + states.bonds @ self.losses()[0] + weight * ladder
+        level = energy[0] + kinetic
+        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
+
+    def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
+        """All kinks, before and after the first impact, with panels that narrow to each."""
+        rungs = _RUNGS * self.refinement
+        ladder = jnp.maximum(high, -low) * _RATIO ** (-np.arange(0.0, rungs) / self.refinement)
+        kink = self._kinks()
+        turn = low if self.left is None else self.left[1] - _BELOW * jnp.abs(self.left[1])
+        ends = [turn[None], kink, *((kink[:, None] + way * ladder).ravel() for way in (-1.0, 1.0))]
+        return jnp.sort(jnp.clip(jnp.concatenate([*ends, low[None], high[None]]), low, high))
+
+    @property
+    def reach(self) -> jax.Array:
+        laws = (*self._bonds(jnp.zeros(())), *terms(self.law))
+        return jnp.max(jnp.stack([jnp.zeros(()), *(law.reach for law in laws)]))
+
+    def _tip(self, deepest: jax.Array) -> Jkr:
+        """The elastic contact of an adhesive tip that was pressed flat."""
+        contact = self.contact
+        assert isinstance(contact, AdhesiveThorntonNing)
+        return Jkr(contact.tip_radius(deepest), contact.modulus, contact.work)
+
+    def _bonds(self, deepest: jax.Array) -> tuple[Law, ...]:
+        """The laws that bond, at the gap of the tip as it was left."""
+        return (*((self._tip(deepest),) if self._adhesion else ()), *self._hysteretic)
+
+    def _flatness(self, deepest: jax.Array) -> jax.Array:
+        """How much more a tip pulls, to the power of its radius in a law, that was pressed."""
+        if isinstance(self.contact, AdhesiveThorntonNing):
+            return self.contact.tip_radius(deepest) / self.contact.radius
+        pressed = deepest > 0.0
+        back = jnp.where(pressed, deepest - self.contact.residual(deepest), 1.0)
+        return jnp.where(pressed, deepest / back, 1.0)
+
+    def _flattening(self, law: Law, deepest: jax.Array, grown: jax.Array) -> jax.Array:
+        """Energy [J] of a law beside contact that a tip loses by becoming flatter.
+
+        Without what it adds to the formation of a bond.
+        """
+        lost = law.bonded_energy(-deepest)
+        lost = lost - grown * law.bonded_energy(self.contact.residual(deepest) - deepest)
+        if law.hysteretic:
+            lost = lost - (grown - 1.0) * law.formation_loss
+        return jnp.where(deepest > self.contact.yield_overlap, lost, 0.0)
+
+    def _kinks(self) -> jax.Array:
+        """Separations [m] at which a curve is not smooth."""
+        begin = self.contact.yield_overlap
+        overlaps = self.contact.kinks if isinstance(self.contact, PlasticContact) else (begin,)
+        marks: list[jax.Array | float] = [0.0, *(-overlap for overlap in overlaps)]
+        marks += _gaps(terms(self.law))
+        if self.left is not None:
+            deepest = jnp.maximum(-self.left[0][0], 0.0)
+            gaps = [0.0, *_gaps((*self._bonds(deepest), *terms(self.law)))]
+            marks += [gap - self.contact.residual(deepest) for gap in gaps]
+        return jnp.stack([jnp.asarray(mark, float) for mark in marks])
+
+
+def _gaps(laws: tuple[Law, ...]) -> list[jax.Array | float]:
+    """Gaps [m] other than 0 at which laws have kinks, bonds form or break, each once."""
+    found = {
+        id(gap): gap
+        for law in laws
+        for gap in (*law.kinks, *((law.forming_gap, law.breaking_gap) if law.hysteretic else ()))
+    }
+    return [gap for gap in found.values() if isinstance(gap, jax.Array) or gap != 0.0]
+
+
+_SMALLEST = 1e-16  # m; far below any deformation that a continuum has
+_RUNGS = 36  # panels on each side of a kink
+_RATIO = 3.0  # of their lengths
+# Of the turn: a panel ends so far below it, where the curve that it leaves on begins. An end in
+# the very place would have the body turn in the rounding of its energy.
+_BELOW = 1e-9

@@ -1,0 +1,101 @@
+"""Asperities beyond yield: how many they are, and what keeping them elastic would have said."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._jax import jnp
+from .case import Case
+from .case.plasticity import Plasticity
+from .case.yielding import plastic_contact
+from .errors import InputError
+from .laws.plastic import KogutEtsion, PlasticContact
+from .roughness import Gaussian
+
+FITTED = 110.0
+"""Overlap over that of yield up to which the laws were fitted."""
+
+SHARE = 0.01
+"""Share of the touching asperities beyond yield from which it is said."""
+
+
+def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[str]:
+    """A line on what a case that yields would have returned, had nothing yielded.
+
+    Parameters
+    ----------
+    case
+        The case.
+    restitution, elastic
+        Restitution of its first impact, and of that without yielding where it is known.
+    """
+    if case.plasticity_model == "none" or elastic is None:
+        return []
+    found = f"{float(restitution):.3g}" if np.isfinite(restitution) else "nothing"
+    without = "what the first impact would have returned could not be computed"
+    if np.isfinite(elastic):
+        without = f"the first impact would have returned e = {elastic:.5g}"
+    return [f"kept elastic, {without}; with yielding ({case.plasticity_model}) it returns {found}"]
+
+
+def yielded(case: Case, modulus: float, central: float) -> list[str]:
+    """Lines on the share of touching asperities that is beyond yield, and how far they are.
+
+    Parameters
+    ----------
+    case
+        The case.
+    modulus
+        Contact modulus E* [Pa].
+    central
+        Separation at the axis at closest approach [m].
+    """
+    rough = case.asperities
+    if rough is None or not case.has_strength:
+        return []
+    law = _law(case, rough.asperity_radius, modulus)
+    overlap, heights = float(law.yield_overlap), Gaussian(rough.rms_height, rough.mean_height)
+    places = jnp.asarray([central, central + overlap])
+    touching, beyond = (float(heights.tail(2, place)) for place in places)
+    share = beyond / touching if touching > 0.0 else 0.0
+    if share < SHARE:
+        return []
+    advice = ": [plasticity] lets them yield" if _could_yield(case) else ""
+    out = [
+        f"{100.0 * share:.3g} % of the touching asperities are beyond yield at closest approach "
+        f"(overlaps above {overlap * 1e9:.3g} nm, by {_model(case)}){advice}"
+    ]
+    mean, tip = float(heights.tail(3, places[0])) / touching, rough.asperity_radius
+    if case.plasticity_model != "none" and mean > min(FITTED * overlap, tip):
+        out.append(
+            f"the mean overlap of touching asperities, {mean * 1e9:.3g} nm, is "
+            f"{mean / overlap:.3g} times that of yield and {mean / tip:.3g} tip radii: the laws "
+            f"were fitted up to {FITTED:g} times, on tips much larger than the overlap"
+        )
+    return out
+
+
+def _model(case: Case) -> str:
+    """Name of the law in use, or of the one by which the share is told where nothing yields."""
+    return "kogut-etsion" if case.plasticity_model == "none" else case.plasticity_model
+
+
+def _law(case: Case, tip: float, modulus: float) -> PlasticContact:
+    """The law in use, or Kogut and Etsion's where nothing yields."""
+    if case.plasticity_model != "none":
+        return plastic_contact(case, tip, modulus)
+    soft = case.yielding
+    return KogutEtsion(tip, modulus, soft.hardness, soft.poisson)
+
+
+def _could_yield(case: Case) -> bool:
+    """Whether a [plasticity] table would be taken by a case that has none."""
+    if case.plasticity_model != "none":
+        return False
+    table = Plasticity(model="kogut-etsion")
+    try:
+        table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
+        table.refuse_under(case.counterface, case.roughness)
+    except InputError:
+        return False
+    return True

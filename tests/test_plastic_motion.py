@@ -1,0 +1,117 @@
+"""Impacts of rough bodies whose asperities yield, from a case to its result."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.case import load
+from asperity.case.build import build
+from asperity.errors import InputError
+from asperity.records import read as read_record
+
+CASE = """
+[body]
+radius = "20 um"
+material = "silica"
+[counterface]
+material = "silicon"
+deformation = "rigid"
+[roughness]
+asperity_density = "1e14 1/m^2"
+asperity_radius = "200 nm"
+rms_height = "5 nm"
+[adhesion]
+model = "dmt"
+work = "30 mJ/m^2"
+range = "0.3 nm"
+[plasticity]
+model = "kogut-etsion"
+hardness = "2 GPa"
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.5
+temperature = "20 degC"
+contact_angle = "50 deg"
+[impact]
+speed = "30 mm/s"
+[numerics]
+max_impacts = 4
+tolerance = 1e-7
+"""
+
+
+@pytest.fixture(scope="module")
+def case():
+    return load(CASE)
+
+
+@pytest.fixture(scope="module")
+def solved(case):
+    return asperity.solve(case, name="yielding")
+
+
+def lost_by_impact(result, mechanism):
+    """Energy lost to a mechanism until each deepest and each highest point."""
+    times, values = result.time, result.energies[f"lost_{mechanism}"]
+    places = np.searchsorted(times, result.events["apex_time"]) - 1
+    return values[places]
+
+
+def test_the_first_impact_keeps_energy_and_later_ones_none(solved):
+    kept = lost_by_impact(solved, "plastic")
+    assert kept[0] > 0.05 * solved.ledger["initial"]
+    assert np.abs(np.diff(kept)).max() < 1e-8 * kept[0]
+
+
+def test_the_second_impact_loses_less_than_the_first(solved):
+    first, second = solved.measures["restitution"][:2]
+    assert first < 0.9 < second
+
+
+def test_the_ledger_closes(solved):
+    assert solved.ledger["closure"] < 1e-7
+
+
+def test_the_run_says_how_many_yield_and_what_elastic_asperities_would_return(solved):
+    text = "\n".join(solved.warnings)
+    assert "% of the touching asperities are beyond yield" in text
+    assert "kept elastic, the first impact would have returned e = 0.9" in text
+    assert "keeps them elastic" not in text
+
+
+def test_a_record_holds_the_plastic_loss_and_comes_back(solved, tmp_path):
+    solved.save(tmp_path)
+    again = read_record(tmp_path / "record.nc")
+    assert again.ledger["lost"]["plastic"] == solved.ledger["lost"]["plastic"]
+    assert np.array_equal(again.energies["lost_plastic"], solved.energies["lost_plastic"])
+    assert again.case == solved.case
+
+
+def test_the_turn_of_the_first_impact_is_where_its_energy_is_spent(case, solved):
+    """Work of the pressure on first approach by a quadrature of its own, against the speed."""
+    problem = build(case)
+    contact, body = problem.contact, problem.body
+    force = jax.jit(lambda d: contact.state(d, contact.fresh()).force)
+    deepest = float(solved.events["deepest_separation"][0])
+    work, _ = quad(
+        lambda d: float(force(jnp.asarray(d))), deepest, float(body.release), epsrel=1e-9,
+        points=[deepest + k * 5e-9 for k in (0.5, 1.0, 2.0, 3.0)], limit=200,
+    )  # fmt: skip
+    gained = float(body.kinetic + body.weight * (body.release - deepest))
+    assert work == pytest.approx(gained, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"counterface.deformation": "half-space"}, "`deformation` must be 'rigid' where"),
+        ({"plasticity.hardness": "0 GPa"}, "positive"),
+    ],
+)
+def test_what_cannot_yield_is_refused(case, changes, words):
+    with pytest.raises(InputError) as caught:
+        case.replace(changes)
+    assert words in str(caught.value)
