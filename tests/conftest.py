@@ -1,11 +1,16 @@
 """For the whole session: one thread a worker, a compile cache, no screen, steady examples."""
 
+import gc
 import os
 import tempfile
 from pathlib import Path
 
 import hypothesis
 import platformdirs
+import pytest
+
+MAPS = 15_000
+"""Memory maps of a worker above which it drops what it has compiled; at 65530 Linux kills it."""
 
 
 def _compile_cache(worker: str) -> Path:
@@ -32,3 +37,23 @@ if _worker != "alone":
 hypothesis.settings.register_profile("here", deadline=None)
 hypothesis.settings.register_profile("ci", deadline=None, derandomize=True)
 hypothesis.settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+
+def _memory_maps() -> int:
+    """Memory maps of this process, a few for each compiled function; 0 where none can be told."""
+    try:
+        return Path("/proc/self/maps").read_bytes().count(b"\n")
+    except OSError:
+        return 0
+
+
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Between two modules, forget what was compiled where there is much of it."""
+    if (nextitem is not None and item.path == nextitem.path) or _memory_maps() < MAPS:
+        return
+    import equinox as eqx
+    import jax
+
+    eqx.clear_caches()
+    jax.clear_caches()
+    gc.collect()

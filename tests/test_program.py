@@ -124,3 +124,13 @@ def test_ahead_gives_the_shapes_and_the_call_the_values(folder):
 def test_an_error_of_the_function_reaches_the_caller(folder):
     with pytest.raises(TypeError):
         Program(double)(LAW, X, "two")
+
+
+def test_a_long_session_keeps_only_the_kinds_used_last_in_memory(folder, monkeypatch):
+    """Linux gives a process 65530 memory maps, and each compiled kind takes hundreds."""
+    monkeypatch.setattr(program, "HELD", 2)
+    long_lived = Program(double)
+    for factor in (2, 3, 2, 4, 2, 3):
+        assert long_lived(LAW, X, factor).twice.tolist() == [0.0, factor, 2.0 * factor]
+        assert len(long_lived._held) <= 2
+    assert traced == [2, 3, 4]  # what was dropped was found on disk

@@ -13,6 +13,7 @@ import contextlib
 import hashlib
 import os
 import threading
+from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import cache
@@ -29,6 +30,13 @@ Answer = TypeVar("Answer")
 Record = TypeVar("Record")
 
 _OURS = f"{__package__}."
+
+HELD = 16
+"""Compiled forms of one program that are kept in memory, those used last.
+
+Each takes some 250 of the 65530 memory maps that Linux gives a process; one that runs out of
+them dies. What is dropped is read from disk again.
+"""
 
 _OPTIONS = {"xla_cpu_use_fusion_emitters": False, "xla_backend_optimization_level": 1}
 """Half the time to compile; the programs run as fast."""
@@ -56,7 +64,7 @@ class Program(Generic[P, Answer]):
 
     def __init__(self, function: Callable[P, Answer]) -> None:
         self._function = function
-        self._held: dict[Any, _Held] = {}
+        self._held: OrderedDict[Any, _Held] = OrderedDict()
         self._lock = threading.Lock()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Answer:
@@ -79,6 +87,9 @@ class Program(Generic[P, Answer]):
             held = self._held.get(key)
             if held is None:
                 held = self._held[key] = _Held(self._lowered(fixed, shapes, str(key)))
+                if len(self._held) > HELD:
+                    self._held.popitem(last=False)
+            self._held.move_to_end(key)
             lowered, held.lowered = held.lowered, None
         if lowered is not None:
             if aside:
