@@ -17,6 +17,8 @@ from asperity.film import SqueezeFilm
 from asperity.impact import Body, simulate
 from asperity.interface import Interface
 from asperity.laws import Bradley, ConstantVolume, Dmt, Hertz, Jkr, Law, Maugis, Meniscus
+from asperity.laws.plastic import KogutEtsion
+from asperity.plastic_interface import PlasticInterface
 from asperity.roughness import Gaussian
 from asperity.shapes import Sphere
 
@@ -66,14 +68,34 @@ def _rough(make: Callable[[float], Law]) -> float:
     return _motions(RigidContact(plane, Sphere(20e-6)), 20e-6, jnp.linspace(1e-3, 1e-2, 20))
 
 
+def _yielding() -> str:
+    """20 motions of 20 impacts on asperities that yield, over those on elastic ones."""
+    tip, heights, density = 50e-9, Gaussian(2e-9), 1e14
+    beside = Dmt(tip, 0.2 * WORK) + Meniscus(tip, TENSION, 1.4, 0.5e-9)  # weak: all bounce
+    contact = KogutEtsion(tip, MODULUS, 0.1 * MODULUS, 0.3)
+    planes = (
+        Interface(Hertz(tip, MODULUS) + beside, heights, density),
+        PlasticInterface(contact, beside, heights, density),
+    )
+    speeds = jnp.linspace(0.05, 0.1, 20)
+    elastic, plastic = (
+        _motions(RigidContact(plane, Sphere(20e-6)), 20e-6, speeds, impacts=20) for plane in planes
+    )
+    return f"{plastic / elastic:8.2f}"
+
+
 def _motions(
-    contact: Any, radius: float, speeds: jax.Array, film: SqueezeFilm | None = None
+    contact: Any,
+    radius: float,
+    speeds: jax.Array,
+    film: SqueezeFilm | None = None,
+    impacts: int = IMPACTS,
 ) -> float:
     mass = 2000.0 * 4.0 / 3.0 * pi * radius**3
 
     def one(speed: jax.Array) -> jax.Array:
         body = Body(mass, 9.81, 100e-9, speed, film)
-        motion = simulate(contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
+        motion = simulate(contact, body, tolerance=Tolerance(max_impacts=impacts))
         return motion.impacts.apex_time
 
     batch = jax.jit(jax.vmap(one))
@@ -88,6 +110,9 @@ def rows() -> list[tuple[str, str]]:
         base = taken if name == "Hertz + DMT" else base
         ratios = " ".join(f"{ratio:8.2f}" for ratio in taken / base)
         out.append((f"{name}: values, smooth motions, rough motions", ratios))
+    out.append(
+        ("Kogut-Etsion + DMT + meniscus: rough motions of 20 impacts, to elastic", _yielding())
+    )
     gas = _smooth(LAWS["Hertz + DMT"], FILM) / base[1]
     out.append(("Hertz + DMT through gas: smooth motions", f"{gas:8.2f}"))
     return out

@@ -91,7 +91,7 @@ def result_of(
     made = int(np.sum(motion.impacts.made))
     measures = _padded(flight, body)
     series, lost = _sampled(case, flight, body)
-    at_depth = AtDepth.of(flight.contact, motion)
+    at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
     check_surface(case, problem, at_depth)
     regime = _regime(case, problem, at_depth)
     forces, energies = _histories(flight.contact, motion, body, series, lost)
@@ -234,9 +234,9 @@ def _histories(
     forces["contact"] = rows[:, FORCE]
     forces["weight"] = np.full(len(rows), -weight)
     forces["total"] = rows[:, FORCE] - weight
-    if body.film is not None:
-        forces["gas"] = -np.asarray(body.film.drag(rows[:, CENTRAL])) * series.speed
-        forces["total"] = forces["total"] + forces["gas"]
+    for k, name in enumerate(body.mechanisms):
+        forces[name] = -series.drag[:, k] * series.speed
+        forces["total"] = forces["total"] + forces[name]
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
         "potential": weight * (series.separation - _zero_height(motion.datum)),
@@ -250,7 +250,7 @@ def _histories(
 def _losses_along(
     contact: Contact, motion: Motion, body: Body, series: Series
 ) -> dict[str, np.ndarray]:
-    """Energy lost by mechanism at every sample: by bonds made and broken until then, and gas."""
+    """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
     formation, rupture = (np.asarray(x) for x in contact.losses())
     bonds = series.rows[:, quantities(contact).bonds]
     impact, rising = series.phase // 2, series.phase % 2 == 1
@@ -260,7 +260,7 @@ def _losses_along(
     change = bonds - begun
     laws = len(contact.mechanisms)
     lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
-    lost[:, laws:] += series.heat[:, None]
+    lost[:, laws:] += series.heat
     return _by_name(contact, body, lost)
 
 

@@ -120,11 +120,6 @@ class Interface(eqx.Module):
         """Whether what was pressed once stays changed. Without values."""
         return False
 
-    @property
-    def yield_overlap(self) -> jax.Array:
-        """Overlap [m] at which an asperity begins to yield."""
-        return jnp.asarray(jnp.inf)
-
     def touched(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
         return jnp.asarray(False)

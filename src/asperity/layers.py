@@ -8,6 +8,7 @@ import equinox as eqx
 
 from ._jax import jax, jnp
 from .errors import InputError
+from .flattened import Flattened
 from .interface import Interface, Means, Memory
 from .laws.base import Law, terms
 from .plastic_interface import PlasticInterface
@@ -105,9 +106,10 @@ class Layers(eqx.Module):
         return any(part.yields for part in self.parts)
 
     @property
-    def yield_overlap(self) -> jax.Array:
-        """Overlap [m] at which an asperity begins to yield."""
-        return jnp.min(jnp.stack([part.yield_overlap for part in self.parts]))
+    def rungs(self) -> jax.Array:
+        """See :attr:`PlasticInterface.rungs`."""
+        parts = [part for part in self.parts if isinstance(part, PlasticInterface)]
+        return jnp.concatenate([part.rungs for part in parts])
 
     def touched(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
@@ -137,6 +139,35 @@ class Layers(eqx.Module):
     ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`."""
         each = [part.measure(separation, own, lift, near) for part, own in self._shares(memory)]
+        return self._together(each, separation)
+
+    def first_approach(self, separation: jax.Array, lift: int = 0) -> Means:
+        """The means of :meth:`measure` for surfaces that were never closer."""
+        each = [
+            part.first_approach(separation, lift)
+            if isinstance(part, PlasticInterface)
+            else part.measure(separation, part.fresh(), lift)
+            for part in self.parts
+        ]
+        return self._together(each, separation)
+
+    def flattened(self, memory: Memory, lift: int) -> tuple[Flattened | None, ...]:
+        """What a first approach leaves of each; see :meth:`PlasticInterface.flattened`."""
+        return tuple(
+            part.flattened(own, lift) if isinstance(part, PlasticInterface) else None
+            for part, own in self._shares(memory)
+        )
+
+    def as_flattened(self, pressed: tuple[Flattened | None, ...]) -> Layers:
+        """The interfaces from then on."""
+        return Layers(
+            [
+                part.as_flattened(left) if isinstance(part, PlasticInterface) else part
+                for part, left in zip(self.parts, pressed, strict=True)
+            ]
+        )
+
+    def _together(self, each: list[Means], separation: jax.Array) -> Means:
         zero = jnp.zeros_like(separation)
         sums = dict.fromkeys(self.components, zero)
         touching = zero

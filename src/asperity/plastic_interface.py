@@ -2,23 +2,38 @@
 
 from __future__ import annotations
 
+import dataclasses
+from typing import NamedTuple
+
 import equinox as eqx
 import numpy as np
 
 from ._jax import jax, jnp
 from .errors import InputError
+from .first_loading import NODES, Loaded, first_loading
+from .flattened import HIGHEST, Flattened, contact_means, flatten, in_reach, power_means
 from .interface import Means, Memory
-from .laws.base import Law, Real, quantity, terms
+from .laws.base import Law, Real, TruncatedPower, quantity, terms
 from .laws.plastic import PlasticContact
-from .quadrature import Near, points
+from .plastic_means import Asperities, means_at
+from .quadrature import Near
 from .roughness.heights import Heights
 
 PLASTIC = "plastic"
 """Mechanism of the work that asperities keep."""
 
-_EVEN = 5  # pieces over the heights, besides those that kinks ask for
-_RUNGS = 3  # of a ladder of pieces from where contact begins
-_NODES = 12
+_FEW_NODES = 4  # where a bound is asked for alone
+_MISSED = 0.01  # of it, at most
+_LADDER = 28  # panels on which contacts spring back that are not tabulated
+
+
+class _Ask(NamedTuple):
+    """A mean that is asked for: a term of the force or energy of a law, or a count of bonds."""
+
+    name: str
+    term: TruncatedPower
+    size: float
+    counts: bool
 
 
 class PlasticInterface(eqx.Module):
@@ -35,6 +50,8 @@ class PlasticInterface(eqx.Module):
         Distribution of the heights before anything touched.
     density
         Asperities per area [1/m^2].
+    pressed
+        What a closest approach left, for :meth:`measure` at separations and memories after it.
 
     Raises
     ------
@@ -62,6 +79,7 @@ class PlasticInterface(eqx.Module):
     law: Law
     heights: Heights
     density: Real = quantity()
+    pressed: Flattened | None = None
 
     def __check_init__(self) -> None:
         for law in terms(self.law):
@@ -118,9 +136,13 @@ class PlasticInterface(eqx.Module):
         return True
 
     @property
-    def yield_overlap(self) -> jax.Array:
-        """Overlap [m] at which an asperity begins to yield."""
-        return self.contact.yield_overlap
+    def rungs(self) -> jax.Array:
+        """Separations above the closest approach [m] between which contacts spring back."""
+        if self.pressed is not None:
+            return self.pressed.rungs
+        last = 2.0 * jnp.asarray(self.heights.rms)
+        first = jnp.minimum(0.3 * self.contact.yield_overlap, 0.05 * last)
+        return first * (last / first) ** (np.arange(_LADDER) / (_LADDER - 1))
 
     def touched(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
@@ -141,8 +163,12 @@ class PlasticInterface(eqx.Module):
 
     def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
-        means = self.measure(separation, self.fresh(), lift)
-        return means.energy + means.bonds[0]
+        if not self._in_powers:
+            means = self.measure(separation, self.fresh(), lift)
+        else:
+            means = self._approached(separation, lift, _FEW_NODES)
+        work = means.energy + means.bonds[0]
+        return work - _MISSED * jnp.abs(work)
 
     def fresh(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one row a mechanism."""
@@ -164,10 +190,66 @@ class PlasticInterface(eqx.Module):
         self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights; see :meth:`~asperity.interface.Interface.measure`."""
+        if self.pressed is not None:
+            return self._measure_pressed(self.pressed, separation, memory)
         shape = jnp.shape(separation)
         rows = tuple(jnp.ravel(jnp.broadcast_to(b, shape)) for b in memory)
         each = jax.vmap(lambda h, b: self._measure_one(h, b, lift))(jnp.ravel(separation), rows)
         return Means(*(jnp.moveaxis(x, 0, -1).reshape(*x.shape[1:], *shape) for x in each))
+
+    def first_approach(self, separation: jax.Array, lift: int = 0) -> Means:
+        """The means of :meth:`measure` for surfaces that were never closer."""
+        if not self._in_powers:
+            return self.measure(separation, self.fresh(), lift)
+        return self._approached(separation, lift, NODES)
+
+    def _approached(self, separation: jax.Array, lift: int, nodes: int) -> Means:
+        """:meth:`first_approach` by so many nodes on a piece."""
+
+        def one(h: jax.Array) -> Loaded:
+            return first_loading(self.contact, self.heights, self._sizes, h, lift, nodes)
+
+        shape = jnp.shape(separation)
+        loaded = jax.vmap(one)(jnp.ravel(separation))
+        loaded = jax.tree_util.tree_map(lambda x: x.reshape(*shape, *x.shape[1:]), loaded)
+        edges = [jnp.asarray(law.forming_gap if law.hysteretic else -jnp.inf)
+                 for law in terms(self.law)]  # fmt: skip
+        asked = self._asked(edges)
+        whole = self.heights.mean_powers(tuple(ask.term for ask in asked), lift, separation)
+        sums: dict[str, jax.Array] = {"elastic": loaded.force, "energy": loaded.recoverable}
+        for ask, value in zip(asked, whole, strict=True):
+            # While it goes deeper than ever, a tip pulls as if it were whole.
+            if ask.name == "energy" or ask.counts:
+                gained = loaded.gained[..., self._sizes.index(ask.size), :]
+                sums[ask.name] = sums.get(ask.name, 0.0) + in_reach(ask.term, gained)
+            sums[ask.name] = sums.get(ask.name, 0.0) + value
+        return self._means(sums, self._kept(loaded.dissipated, loaded.gained), separation)
+
+    def flattened(self, memory: Memory, lift: int) -> Flattened | None:
+        """What a first approach leaves, tabulated; its closest approach is in the memory.
+
+        None where a law is no sum of truncated powers, whose means are then integrated anew at
+        every separation.
+        """
+        if not self._in_powers:
+            return None
+        gaps = [law.breaking_gap for law in self.hysteretic]
+        reach = jnp.max(jnp.stack([self.last_kink, *(jnp.asarray(gap, float) for gap in gaps)]))
+        return flatten(self.contact, self.heights, self._sizes, (memory[0], reach), lift)
+
+    def as_flattened(self, pressed: Flattened | None) -> PlasticInterface:
+        """The interface from then on."""
+        return dataclasses.replace(self, pressed=pressed)
+
+    @property
+    def _in_powers(self) -> bool:
+        """Whether the laws beside contact are sums of powers that are tabulated."""
+        found = [law.powers(jnp.zeros(())) for law in terms(self.law)]
+        whole = np.arange(HIGHEST + 1.0)
+        return all(
+            powers is not None and all(term.exponent in whole for part in powers for term in part)
+            for powers in found
+        )
 
     def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
@@ -183,65 +265,57 @@ class PlasticInterface(eqx.Module):
         broken = [jnp.zeros(()), *(jnp.asarray(law.rupture_loss) for law in self.hysteretic)]
         return jnp.stack(formed), jnp.stack(broken)
 
-    def _measure_one(self, separation: jax.Array, memory: Memory, lift: int) -> Means:
-        """The means at one separation."""
-        low = jnp.minimum(memory[0], separation)
-        edges = self._edges(separation, memory)
-        begin = self._height(separation, low)
-        height, weight = points(self._bounds(separation, low, begin, edges, lift), _NODES)
-        share = self.density * weight * self.heights.tail(lift, height)
-        deepest = jnp.maximum(height - low, 0.0)
-        overlap = jnp.maximum(height - separation, 0.0)
-        gap = separation - height + self.contact.residual(deepest)
-        flatter = self._flatter(deepest)
-        # While it goes deeper than ever, a tip pulls as if it were whole.
-        pulling = jnp.where(separation <= memory[0], 1.0, flatter)
-        sums = dict.fromkeys(self.components, jnp.zeros(()))
-        sums["elastic"] = jnp.sum(share * self.contact.force(overlap, deepest))
-        energy = jnp.sum(share * self.contact.recoverable(overlap, deepest))
-        kept = self._kept(low, lift)
-        counts = []
-        for law, edge in zip(terms(self.law), edges, strict=True):
-            held, size = gap < edge, law.radius_power
-            for name, part in law.components(gap, held).items():
-                sums[name] = sums[name] + jnp.sum(share * pulling**size * part)
-            stored = jnp.where(held, law.bonded_energy(gap), law.energy(gap))
-            energy = energy + jnp.sum(share * flatter**size * stored)
+    def _measure_pressed(self, pressed: Flattened, separation: jax.Array, memory: Memory) -> Means:
+        """The means after a closest approach."""
+        asked = self._asked(self._edges(separation, memory))
+        powers = [(ask.term, self._sizes.index(ask.size)) for ask in asked]
+        values = power_means(pressed, powers, separation)
+        rows = jnp.concatenate([contact_means(pressed, separation), values])
+        sums = _summed(("elastic", "energy", *(ask.name for ask in asked)), rows)
+        return self._means(sums, self._kept(pressed.dissipated, pressed.gained), separation)
+
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        """Powers of the tip radius that the laws beside contact have, 0 among them."""
+        return tuple(sorted({0.0, *(law.radius_power for law in terms(self.law))}))
+
+    def _asked(self, edges: list[jax.Array]) -> list[_Ask]:
+        """The truncated powers whose means are those of the laws, bonded up to ``edges``."""
+        asked = [_Ask("touching", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
+        for k, (law, edge) in enumerate(zip(terms(self.law), edges, strict=True)):
+            size, powers = law.radius_power, law.powers(edge)
+            assert powers is not None
+            for name, part in zip((law.mechanism, "energy"), powers, strict=True):
+                asked += [_Ask(name, term, size, counts=False) for term in part]
             if law.hysteretic:
-                counts.append(jnp.sum(share * jnp.where(held, flatter**size, 0.0)))
-        return Means(
-            parts=jnp.stack([sums[name] for name in self.components]),
-            energy=energy,
-            bonds=jnp.stack([kept, *counts]),
-            touching=self.density * self.heights.tail(lift + 1, begin),
-        )
+                asked.append(_Ask(f"bonds {k}", TruncatedPower(1.0, 0.0, edge), size, counts=True))
+        return asked
 
-    def _kept(self, low: jax.Array, lift: int) -> jax.Array:
-        """Energy per area that contact down to a separation keeps.
-
-        And what conservative laws beside it gain by flatter tips, which goes the same way.
-        """
-        last = jnp.maximum(self.heights.highest_beside(jnp.minimum(low, self.heights.top)), low)
-        first = low if lift else jnp.clip(low, self.heights.bottom, last)
-        uneven = jnp.clip(first, self.heights.bottom, last)
-        even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
-        kinks = jnp.stack([first, *(low + kink for kink in self.contact.kinks)])
-        bounds = jnp.sort(jnp.clip(jnp.concatenate([even, kinks]), first, last))
-        height, weight = points(bounds, _NODES)
-        share = self.density * weight * self.heights.tail(lift, height)
-        deepest = jnp.maximum(height - low, 0.0)
-        kept = jnp.sum(share * self.contact.dissipated(deepest))
+    def _kept(self, dissipated: jax.Array, gained: jax.Array) -> jax.Array:
+        """What one asperity per area keeps, by what its contact and the flatter tips give."""
         for law in terms(self.law):
             if not law.hysteretic:
-                gain = self._flatter(deepest) ** law.radius_power - 1.0
-                kept = kept - jnp.sum(share * gain) * law.energy(jnp.zeros(()))
-        return kept
+                gain = gained[..., self._sizes.index(law.radius_power), 0]
+                dissipated = dissipated - gain * law.energy(jnp.zeros(()))
+        return dissipated
 
-    def _flatter(self, deepest: jax.Array) -> jax.Array:
-        """Factor by which the radius of a tip has grown, of its deepest overlap [m]."""
-        pressed = deepest > 0.0
-        sprung = jnp.where(pressed, deepest - self.contact.residual(deepest), 1.0)
-        return jnp.where(pressed, deepest / sprung, 1.0)
+    def _means(self, sums: dict[str, jax.Array], kept: jax.Array, separation: jax.Array) -> Means:
+        """The means put together, from those of one asperity per area."""
+        names = [f"bonds {k}" for k, law in enumerate(terms(self.law)) if law.hysteretic]
+        zero = jnp.zeros_like(separation)
+        return Means(
+            parts=self.density * jnp.stack([sums.get(name, zero) for name in self.components]),
+            energy=self.density * sums["energy"],
+            bonds=self.density * jnp.stack([kept + zero, *(sums[name] for name in names)]),
+            touching=self.density * sums["touching"],
+        )
+
+    def _measure_one(self, separation: jax.Array, memory: Memory, lift: int) -> Means:
+        """The means at one separation, by integration."""
+        asperities = Asperities(self.contact, self.law, self.heights)
+        edges = self._edges(separation, memory)
+        sums = means_at(asperities, separation, memory[0], edges, lift)
+        return self._means(sums, sums["kept"], separation)
 
     def _edges(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
         """Gap [m] below which asperities are bonded, for each law."""
@@ -251,48 +325,18 @@ class PlasticInterface(eqx.Module):
             for law in terms(self.law)
         ]
 
-    def _height(self, effective: jax.Array, low: jax.Array) -> jax.Array:
-        """Height [m] of the asperities that have come to an ``effective`` height."""
-        recovered = jnp.maximum(effective - low, 0.0)
-        return jnp.minimum(effective, low) + self.contact.deepest(recovered)
 
-    def _bounds(
-        self,
-        separation: jax.Array,
-        low: jax.Array,
-        begin: jax.Array,
-        edges: list[jax.Array],
-        lift: int,
-    ) -> jax.Array:
-        """Ends of pieces of the heights between which everything is smooth."""
-        laws = terms(self.law)
-        pairs = zip(laws, edges, strict=True)
-        gaps = [jnp.asarray(k, float) for law in laws for k in law.kinks if not _at_touch(k)]
-        gaps += [jnp.maximum(edge, 0.0) for law, edge in pairs if law.hysteretic]
-        marks = [self._height(separation - gap, low) for gap in gaps]
-        first = jnp.min(jnp.stack([begin, *marks]))
-        if lift == 0:
-            first = jnp.maximum(first, self.heights.bottom)
-        highest = self.heights.highest_beside(jnp.minimum(begin, self.heights.top))
-        last = jnp.maximum(highest, first)
-        uneven = jnp.maximum(first, self.heights.bottom)
-        even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
-        reach = last - begin
-        yielding = self.contact.yield_overlap
-        rung = jnp.minimum(0.25 * self.heights.rms, jnp.maximum(begin - low, yielding))
-        rung = jnp.clip(rung, 0.0, jnp.maximum(reach, 0.0))
-        ratio = jnp.where(rung > 0.0, reach / jnp.where(rung > 0.0, rung, 1.0), 1.0)
-        ladder = begin + rung * ratio ** (np.arange(_RUNGS) / _RUNGS)
-        kinks = low + jnp.stack(self.contact.kinks)
-        ends = [even, ladder, kinks, jnp.stack([begin, first, *marks])]
-        return jnp.sort(jnp.clip(jnp.concatenate(ends), first, last))
+def _summed(names: tuple[str, ...], rows: jax.Array) -> dict[str, jax.Array]:
+    """Sums of the rows of each name.
+
+    As one product, or XLA would compute the rows again for all that follows from them.
+    """
+    each = tuple(dict.fromkeys(names))
+    chosen = np.asarray([[name == one for name in names] for one in each], float)
+    sums = jnp.tensordot(chosen, rows, axes=1)
+    return dict(zip(each, sums, strict=True))
 
 
 def _bond_gap(law: Law, threshold: jax.Array, separation: jax.Array) -> jax.Array:
     """Gap below which asperities are bonded."""
     return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)
-
-
-def _at_touch(kink: jax.Array | float) -> bool:
-    """Whether a kink lies where bodies touch, by what is known without values."""
-    return isinstance(kink, float) and kink == 0.0

@@ -114,11 +114,6 @@ class RadiusClasses(eqx.Module):
         """Whether what was pressed once stays changed. Without values."""
         return self.stacked.yields
 
-    @property
-    def yield_overlap(self) -> jax.Array:
-        """Overlap [m] at which an asperity begins to yield."""
-        return self.stacked.yield_overlap
-
     def touched(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
         return self.stacked.touched(memory)

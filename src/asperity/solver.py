@@ -16,6 +16,7 @@ from .contact import Contact
 from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
+from .impact.creeping import fly_creeping
 from .impact.datum import Datum
 from .impact.delayed import fly as fly_late
 from .impact.history import ENDS, FLYING
@@ -70,10 +71,10 @@ def solve(
     limits = Limits.of(case.tolerance)
     contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, drawn=True)
     _check_release(problem, table)
-    if problem.late is None:
+    if problem.late is None and problem.creep is None:
         flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
     else:
-        flight = _fly_late(problem, contact, (table, datum), limits, tell, stop)
+        flight = _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
     tell(0.9, "measures")
     stopped = flight.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     result = result_of(case, name, problem, flight, None if stopped else _kept_elastic(case))
@@ -180,7 +181,7 @@ def _prepared(
     """
     for factor in _REFINEMENTS:
         contact = problem.contact.refined(factor)
-        if problem.late is None or not drawn:
+        if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn)
         table, datum = _prepare(contact, problem.body)
         if float(table.error) <= max(tolerance, contact.blur):
@@ -263,7 +264,7 @@ def _fly(
     return Flight(Motion(impacts, progress, table, datum, origin), contact, outcome)
 
 
-def _fly_late(
+def _fly_stepped(
     problem: Problem,
     contact: Contact,
     prepared: tuple[Table, Datum],
@@ -271,16 +272,19 @@ def _fly_late(
     tell: Report,
     stop: threading.Event | None,
 ) -> Flight:
-    """The motion with menisci that take time to form, step by step."""
-    assert problem.late is not None
+    """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
+    body, creep, late = problem.body, problem.creep, problem.late
 
     def made(count: int) -> None:
         tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
 
     try:
-        motion, trajectory, outcome = fly_late(
-            contact, problem.late, problem.body, prepared, limits, made, stop
-        )
+        if creep is not None:
+            flown = fly_creeping(contact, creep, body, prepared, limits, made, stop)
+        else:
+            assert late is not None
+            flown = fly_late(contact, late, body, prepared, limits, made, stop)
     except Ended as error:
         raise SimulationError("stopped before the first impact") from error
+    motion, trajectory, outcome = flown
     return Flight(motion, contact, outcome, trajectory)

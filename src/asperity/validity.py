@@ -26,6 +26,7 @@ from .regimes import (
     tabor_number,
 )
 from .surroundings import gas_warnings, liquid_warnings
+from .wave_limits import wave_warnings
 from .yielding import yielded
 
 APART = 1e-6
@@ -56,9 +57,13 @@ class AtDepth(NamedTuple):
     central: float
 
     @classmethod
-    def of(cls, contact: Contact, motion: Motion) -> AtDepth:
-        """Read off the curve of first approach."""
-        row = read_row(motion.table, 0, float(motion.impacts.deepest[0]))
+    def of(cls, contact: Contact, motion: Motion, trajectory: Trajectory | None = None) -> AtDepth:
+        """Read off the curve of first approach, or off a motion that was stepped in time."""
+        deepest = float(motion.impacts.deepest[0])
+        if trajectory is None:
+            row = read_row(motion.table, 0, deepest)
+        else:
+            row = trajectory.series.rows[np.argmin(np.abs(trajectory.series.separation - deepest))]
         elastic = row[FORCE] - row[PULL]
         return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
 
@@ -87,6 +92,7 @@ def warnings_of(
         *yielded(case, problem.modulus, at_depth.central),
         *liquid_warnings(case, regime),
         *gas_warnings(case, at_depth.central, motion),
+        *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
         *_shape(case, motion),
         *_ledger(motion),
     ]

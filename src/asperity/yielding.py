@@ -41,6 +41,8 @@ def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[
 def yielded(case: Case, modulus: float, central: float) -> list[str]:
     """Lines on the share of touching asperities that is beyond yield, and how far they are.
 
+    And on what is taken to yield, where that is not known.
+
     Parameters
     ----------
     case
@@ -50,6 +52,12 @@ def yielded(case: Case, modulus: float, central: float) -> list[str]:
     central
         Separation at the axis at closest approach [m].
     """
+    beyond = _beyond(case, modulus, central)
+    return [*beyond, *_taken(case)] if beyond or case.plasticity_model != "none" else []
+
+
+def _beyond(case: Case, modulus: float, central: float) -> list[str]:
+    """Lines on asperities beyond yield, as for :func:`yielded`."""
     rough = case.asperities
     if rough is None or not case.has_strength:
         return []
@@ -73,6 +81,21 @@ def yielded(case: Case, modulus: float, central: float) -> list[str]:
             f"were fitted up to {FITTED:g} times, on tips much larger than the overlap"
         )
     return out
+
+
+def _taken(case: Case) -> list[str]:
+    """A line where one solid counts as the softer because nothing is known of the other."""
+    table, solids = case.plasticity, (case.body_solid, case.counterface_solid)
+    if table and (table.hardness or table.yield_strength or table.yield_pressure):
+        return []
+    known = [solid.hardness is not None or solid.yield_strength is not None for solid in solids]
+    if all(known) or not any(known):
+        return []
+    softer, other = (solids[known.index(knows)].name for knows in (True, False))
+    return [
+        f"{softer} is taken to be the softer solid, which yields: neither hardness nor yield "
+        f"strength of {other} is known, and were it softer the contact would yield sooner"
+    ]
 
 
 def _model(case: Case) -> str:

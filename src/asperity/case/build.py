@@ -16,6 +16,7 @@ from ..contact import (
     SmoothContact,
     SmoothPlasticContact,
 )
+from ..contact.creep import Creep
 from ..contact.late import LATE, LateContact
 from ..film import SqueezeFilm
 from ..impact import Body
@@ -41,6 +42,7 @@ from ..laws.meniscus import Formation
 from ..layers import Layers, Surfaces
 from ..materials import contact_modulus
 from ..plastic_interface import PlasticInterface
+from ..radiation import WaveRadiation
 from ..radius_classes import CLASSES
 from ..regimes import AdhesionChoice, choose_adhesion, tabor_number
 from ..roughness import Gaussian
@@ -79,6 +81,8 @@ class Problem(NamedTuple):
         The contact with menisci that take time to form; None where they form at once.
     class_error
         Relative error that classes of tip radius make in the work of bonds; 0 without classes.
+    creep
+        How the bulk creeps; ``contact`` is then that of the relaxed bulk. None where it does not.
     """
 
     contact: Contact
@@ -88,6 +92,7 @@ class Problem(NamedTuple):
     adhesion: AdhesionChoice
     late: LateContact | None = None
     class_error: float = 0.0
+    creep: Creep | None = None
 
 
 def build(case: Case) -> Problem:
@@ -122,9 +127,20 @@ def build(case: Case) -> Problem:
     if release is None:
         release = float(contact.reach) + CLEARANCE
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case))
+    body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case), _waves(case))
     late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
-    return Problem(contact, body, modulus, tip, adhesion, late, off)
+    creep = _creep(case, contact)
+    contact = contact if creep is None else creep.relaxed()
+    return Problem(contact, body, modulus, tip, adhesion, late, off, creep)
+
+
+def _creep(case: Case, contact: Contact) -> Creep | None:
+    """How the bulk under a contact creeps, if it does."""
+    table = case.viscoelasticity
+    if table is None or table.model == "none":
+        return None
+    ratio, time = _given(table.relaxed_modulus_ratio), _given(table.relaxation_time)
+    return Creep(contact, ratio, time)
 
 
 def _class_error(case: Case, adhesion: str, modulus: float) -> float:
@@ -209,6 +225,14 @@ def _film(case: Case) -> SqueezeFilm | None:
         assert case.asperities is not None
         closest = case.asperities.rms_height
     return SqueezeFilm(case.body.radius, gas.film_viscosity, gas.film_slip_length, closest)
+
+
+def _waves(case: Case) -> WaveRadiation | None:
+    """What the contact radiates into the counterface; None where that is left out."""
+    if case.waves is None or case.waves.model == "none":
+        return None
+    solid = case.counterface_solid
+    return WaveRadiation.into(solid.youngs_modulus, solid.poisson, _given(solid.density))
 
 
 def _published(

@@ -19,6 +19,8 @@ from asperity.case.publication import Publication
 from asperity.case.roughness import Roughness
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
+from asperity.case.viscoelasticity import Viscoelasticity
+from asperity.case.waves import Waves
 from asperity.errors import InputError, Tolerance
 from asperity.units import shown
 
@@ -48,6 +50,8 @@ class Case(Table):
     capillary: Capillary = Field(default_factory=lambda: Capillary(model="none"))
     plasticity: Plasticity | None = Field(None, json_schema_extra={"rare": True})
     gas: Gas | None = Field(None, json_schema_extra={"rare": True})
+    waves: Waves | None = Field(None, json_schema_extra={"rare": True})
+    viscoelasticity: Viscoelasticity | None = Field(None, json_schema_extra={"rare": True})
     impact: Impact
     publication: Publication | None = Field(None, json_schema_extra={"rare": True})
     numerics: Numerics = Field(default_factory=Numerics)
@@ -78,6 +82,10 @@ class Case(Table):
             )
         self._bounded_liquid()
         self._late_liquid()
+        if self.waves is not None:
+            self.waves.refuse_beside(self.counterface_solid, self.capillary, self.publication)
+        if self.viscoelasticity is not None:
+            self.viscoelasticity.refuse_beside(self)
         if self.plasticity is not None and self.plasticity_model != "none":
             self.plasticity.refuse_beside(
                 self.adhesion, self.capillary, self.roughness, self.publication

@@ -150,15 +150,20 @@ class Contact(eqx.Module):
         """Index of the branch on which it comes to rest: of approach, once it has yielded."""
         return int(self.yields)
 
-    def worn(self, memory: Memory, separation: jax.Array) -> Contact:
-        """The contact as its first impact leaves it, that turned at a separation [m]."""
+    def left_by(self, memory: Memory, separation: jax.Array) -> Any:
+        """What a first impact leaves, that turned at a separation [m]; arrays for :meth:`after`."""
+        return ()
+
+    def after(self, left: Any) -> Contact:
+        """The contact as its first impact left it."""
         return self
 
     def branches(self) -> tuple[Memory, ...]:
         """Memories of the outermost branches.
 
         On a smooth body all combinations of bonds. Else the first has no bonds and the last has
-        all; a contact that yields begins with the branch of its first approach.
+        all. A contact that yields has that of its first approach alone, and the others once it
+        has had its first impact (:meth:`after`).
         """
         laws = len(self.mechanisms)
         if self.discrete:

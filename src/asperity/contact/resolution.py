@@ -31,15 +31,12 @@ class Resolution(NamedTuple):
         Number of these pieces, for each law.
     shared
         Even pieces of the quadratures that the places of one panel share.
-    back
-        Panels within two rms heights above the deepest point of asperities that yielded.
     """
 
     panels: int
     nodes: int
     pieces: int
     shared: int = EVEN
-    back: int = 28
 
 
 def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:

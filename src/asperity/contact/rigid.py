@@ -12,11 +12,16 @@ import numpy as np
 from .._jax import jax, jnp
 from ..interface import Means
 from ..interface import Memory as Thresholds
-from ..layers import Surfaces
+from ..layers import Layers, Surfaces
+from ..plastic_interface import PlasticInterface
 from ..quadrature import Near
 from ..shapes import Sphere
 from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
 from .resolution import LINEAR, Resolution, resolution
+
+Left = tuple[Thresholds, jax.Array, Any]
+
+Yielding = PlasticInterface | Layers
 
 FAR = 2
 """Panels beyond the reach of the forces, in geometric progression."""
@@ -35,7 +40,7 @@ class RigidContact(Contact):
         How finely its curves are cut (static); by default as its forces ask for.
     left
         Memory and separation [m] at the deepest point of the first impact, where asperities
-        that yield have had one.
+        that yield have had one, and what it left of them.
 
     Notes
     -----
@@ -47,14 +52,14 @@ class RigidContact(Contact):
     interface: Surfaces
     shape: Sphere
     resolved: Resolution = eqx.field(static=True)
-    left: tuple[Thresholds, jax.Array] | None
+    left: Left | None
 
     def __init__(
         self,
         interface: Surfaces,
         shape: Sphere,
         resolved: Resolution | None = None,
-        left: tuple[Thresholds, jax.Array] | None = None,
+        left: Left | None = None,
     ) -> None:
         self.interface = interface
         self.shape = shape
@@ -79,8 +84,7 @@ class RigidContact(Contact):
 
     def refined(self, factor: int) -> RigidContact:
         now = self.resolved
-        panels, shared, back = (factor * n for n in (now.panels, now.shared, now.back))
-        finer = now._replace(panels=panels, shared=shared, back=back)
+        finer = now._replace(panels=factor * now.panels, shared=factor * now.shared)
         return dataclasses.replace(self, resolved=finer)
 
     def fresh(self) -> Thresholds:
@@ -93,8 +97,13 @@ class RigidContact(Contact):
     def yields(self) -> bool:
         return self.interface.yields
 
-    def worn(self, memory: Thresholds, separation: jax.Array) -> RigidContact:
-        return dataclasses.replace(self, left=(memory, separation))
+    def left_by(self, memory: Thresholds, separation: jax.Array) -> Left:
+        assert isinstance(self.interface, Yielding)
+        return memory, separation, self.interface.flattened(memory, 1)
+
+    def after(self, left: Left) -> RigidContact:
+        assert isinstance(self.interface, Yielding)
+        return dataclasses.replace(self, left=left, interface=self.interface.as_flattened(left[2]))
 
     def branches(self) -> tuple[Thresholds, ...]:
         if not self.yields:
@@ -102,7 +111,7 @@ class RigidContact(Contact):
         if self.left is None:
             return (self.fresh(),)
         ways = (False, True) if self.interface.hysteretic else (False,)
-        return (self.fresh(), *(self.interface.swept(self.left[0], way) for way in ways))
+        return tuple(self.interface.swept(self.left[0], way) for way in ways)
 
     def branch_of(self, memory: Thresholds, parting: jax.Array) -> jax.Array:
         if not self.yields:
@@ -125,11 +134,17 @@ class RigidContact(Contact):
         """The contact at rows of places [m], those of a row near one another."""
 
         def row(places: jax.Array) -> State:
-            means = self.interface.measure(places, memory, 1, near)
+            means = self._means(near, places, memory)
             parts, bonds = means.parts.T, means.bonds.T
             return jax.vmap(self._state)(places, means._replace(parts=parts, bonds=bonds))
 
         return jax.vmap(row)(places)
+
+    def _means(self, near: Near, places: jax.Array, memory: Thresholds) -> Means:
+        """At places near one another, on a branch or on the way to it."""
+        if isinstance(self.interface, Yielding) and self.yields and self.left is None:
+            return self.interface.first_approach(places, 1)
+        return self.interface.measure(places, memory, 1, near)
 
     def _state(self, separation: jax.Array, means: Means) -> State:
         parts = self._measure * means.parts
@@ -156,14 +171,23 @@ class RigidContact(Contact):
         self, memory: Thresholds, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
-        if not self.interface.hysteretic:
-            return None
-        steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
+        if not self.interface.hysteretic or (self.yields and self.left is None):
+            return None  # a first approach comes from no reversal
         ends = self.interface.merging(memory, parting)
-        marks = [start + (end - start) * steps for end in ends]
+        marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
         places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
         return Way(enter, leave, self._states(Near(level=False), places, memory))
+
+    def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
+        """Ends of pieces on the way; they narrow towards where asperities were pressed flat."""
+        if self.left is None:
+            steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
+            return start + (end - start) * steps
+        assert isinstance(self.interface, Yielding)
+        low, high = jnp.minimum(start, end), jnp.maximum(start, end)
+        rungs = self.left[1] + self.interface.rungs
+        return jnp.append(jnp.clip(rungs, low, high), end)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
@@ -180,13 +204,18 @@ class RigidContact(Contact):
         return ends if self.left is None else self.around_turn(ends, self.left[1])
 
     def around_turn(self, ends: jax.Array, turn: jax.Array) -> jax.Array:
-        """Ends of panels, with more just above the deepest point, where asperities spring back."""
-        rms = self.interface.heights.rms
-        first = jnp.minimum(0.3 * self.interface.yield_overlap, 0.1 * rms)
-        count = self.resolved.back
-        rungs = first * (2.0 * rms / first) ** (np.arange(count) / (count - 1))
+        """Ends of panels, with more above the deepest point, where asperities spring back.
+
+        And above where bonds of those that were hardly pressed form or break.
+        """
+        assert isinstance(self.interface, Yielding)
+        bends = [jnp.asarray(law.breaking_gap, float) for law in self.interface.hysteretic]
+        starts = turn + jnp.stack([jnp.zeros(()), *bends])
         # Not at the turn itself, where rounding would make a body turn that has just turned.
-        marks = jnp.append(turn + rungs, turn - 1e-9 * rms)
+        below = turn - 1e-9 * self.interface.heights.rms
+        marks = jnp.concatenate(
+            [(starts[:, None] + self.interface.rungs).ravel(), starts[1:], below[None]]
+        )
         return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
 
     @property

@@ -113,15 +113,18 @@ class SmoothPlasticContact(Contact):
         lowest = self.fresh()[0] if self.left is None else self.left[0][0]
         return lowest, jnp.asarray(bonded[1:], dtype=float)
 
-    def worn(self, memory: Pressed, separation: jax.Array) -> SmoothPlasticContact:
-        return dataclasses.replace(self, left=(memory, separation))
+    def left_by(self, memory: Pressed, separation: jax.Array) -> tuple[Pressed, jax.Array]:
+        return memory, separation
+
+    def after(self, left: tuple[Pressed, jax.Array]) -> SmoothPlasticContact:
+        return dataclasses.replace(self, left=left)
 
     def branches(self) -> tuple[Pressed, ...]:
-        """First that of a body that never touched, then all combinations of bonds."""
+        """That of a body that never touched; after that, all combinations of bonds."""
         if self.left is None:
             return (self.fresh(),)
         combinations = product((False, True), repeat=len(self.mechanisms) - 1)
-        return (self.fresh(), *(self.extreme((True, *reversed(bits))) for bits in combinations))
+        return tuple(self.extreme((True, *reversed(bits))) for bits in combinations)
 
     def branch_of(self, memory: Pressed, parting: jax.Array) -> jax.Array:
         lowest, flags = memory

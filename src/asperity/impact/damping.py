@@ -1,10 +1,11 @@
-"""The phases of a motion through a gas: one piece after the other, until the body turns."""
+"""The phases of a motion with drag: one piece after the other, until the body turns."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from .._jax import jax, jnp
+from ..laws.base import Real
 from ..program import kept
 from .drag import SHARES, Stretch, course_on, turning_place
 from .history import Body
@@ -27,7 +28,7 @@ class Gone(NamedTuple):
 
 @kept
 class Passage(NamedTuple):
-    """A phase through gas.
+    """A phase with drag.
 
     Attributes
     ----------
@@ -36,9 +37,9 @@ class Passage(NamedTuple):
     duration
         Time that it takes [s].
     lost
-        Energy left in the gas [J].
+        Energy taken by each drag [J].
     kinetic, times, heats
-        Kinetic energy [J], time since the start [s] and energy left in the gas [J] where each
+        Kinetic energy [J], time since the start [s] and energy taken by each drag [J] where each
         piece is entered.
     crept
         Whether the body came so close to rest without a turn that the phase ends there.
@@ -63,7 +64,7 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     Parameters
     ----------
     body
-        The body, with its film.
+        The body, with its film or its waves.
     pieces
         The polynomials ahead of it, all that there are.
     kinetic
@@ -71,8 +72,8 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     """
     work = work_along(pieces, kinetic, body.weight)
     count = pieces.low.shape[0]
-    zero = jnp.zeros(())
-    first = Gone(kinetic, zero, zero, jnp.asarray(True), jnp.asarray(0), kinetic)
+    none = jnp.zeros(len(body.mechanisms))
+    first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
     gone, entered = jax.lax.scan(
         lambda gone, k: _over(body, work, gone, k), first, jnp.arange(count)
     )
@@ -124,6 +125,7 @@ def fall_to_rest(
 
     A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
     time. Such a phase ends at ``goal``, where what is left of the energy goes to the gas too.
+    Waves alone never do that: their drag acts in contact, and is weak.
 
     Parameters
     ----------
@@ -135,6 +137,8 @@ def fall_to_rest(
         Separation, a little outside it, that counts as rest [m].
     """
     whole = pass_through(body, pieces, kinetic)
+    if body.film is None:
+        return whole
     turn = whole.turn
     here = jnp.argmax(pieces.leave <= goal)
     near = turn.place > resting - (goal - resting)
@@ -142,22 +146,40 @@ def fall_to_rest(
     place = jnp.where(crept, goal, pieces.leave[here])
     work = work_along(pieces, kinetic, body.weight)
     course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
+    # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
+    still = slow_at(body, course.kinetic, turn.fastest, (resting, goal))
+    crept = crept & (still | jnp.logical_not(whole.followed))
     stop = Turn(here, goal, jnp.asarray(True), turn.fastest, jnp.zeros(()))
-    ends = (
-        stop,
-        whole.times[here] + course.duration,
-        whole.heats[here] + course.lost + course.kinetic,
-    )
+    lost = whole.heats[here] + course.lost
+    ends = (stop, whole.times[here] + course.duration, lost.at[0].add(course.kinetic))
     turned = (turn, whole.duration, whole.lost)
     turn, duration, lost = jax.tree_util.tree_map(lambda a, b: jnp.where(crept, a, b), ends, turned)
     followed = crept | whole.followed
     return whole._replace(turn=turn, duration=duration, lost=lost, crept=crept, followed=followed)
 
 
-def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, ...]:
-    """A body on pieces that it passes: places, times, speeds and energy left in the gas.
+def slow_at(body: Body, kinetic: Real, fastest: Real, rest: tuple[Real, Real]) -> jax.Array:
+    """Whether a body comes to ``rest[1]`` too slowly to rise far from its rest again.
 
-    Each of shape (pieces, POINTS + 1), at SHARES of every piece and at its end.
+    Parameters
+    ----------
+    body
+        The body.
+    kinetic, fastest
+        Kinetic energy there, and the largest on the way [J].
+    rest
+        Separations of the equilibrium and of what counts as there [m].
+    """
+    height = rest[1] - rest[0]
+    share = height / (body.release - rest[0])
+    return kinetic < jnp.maximum(body.weight * height, share * fastest)
+
+
+def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, ...]:
+    """A body on pieces that it passes: places, times, speeds; and by drag energy taken and drag.
+
+    Each of shape (pieces, POINTS + 1), the last two with an axis of drags more, at SHARES of
+    every piece and at its end.
     """
     work = work_along(pieces, kinetic, body.weight)
     entered = pass_through(body, pieces, kinetic).kinetic
@@ -167,20 +189,22 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
         course = course_on(body, piece, entry, piece.leave)
         places = piece.enter + (piece.leave - piece.enter) * SHARES
         last = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
+        places, speeds = jnp.append(places, piece.leave), jnp.append(course.speed, last)
         return (
-            jnp.append(places, piece.leave),
+            places,
             jnp.append(course.time, course.duration),
-            jnp.append(course.speed, last),
-            jnp.append(course.heat, course.lost),
+            speeds,
+            jnp.column_stack([course.heat, course.lost]).T,
+            piece.drags(body, places, speeds).T,
         )
 
-    places, times, speeds, heats = jax.vmap(one)(jnp.arange(entered.shape[0]), entered)
+    places, times, speeds, heats, drags = jax.vmap(one)(jnp.arange(entered.shape[0]), entered)
 
     def summed(values: jax.Array) -> jax.Array:
-        before = jnp.cumsum(values[:, -1]) - values[:, -1]
+        before = jnp.cumsum(values[:, -1], axis=0) - values[:, -1]
         return values + before[:, None]
 
-    return places, summed(times), speeds, summed(heats)
+    return places, summed(times), speeds, summed(heats), drags
 
 
 def cut(pieces: Pieces, parting: jax.Array, place: jax.Array) -> Pieces:

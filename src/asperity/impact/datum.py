@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
+from ..polynomials import chebyshev_sum, local
 from ..program import kept
-from .polynomials import chebyshev_sum, local
 from .table import FORCE, STORED, Table
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
@@ -45,10 +45,7 @@ def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
     )
     x = local(table.ends[panel], table.ends[panel + 1], place)
     excess = chebyshev_sum(values[panel, :, FORCE], x) - weight
-    slope = jax.lax.stop_gradient(_slope(values[panel, :, FORCE], x, table.ends, panel))
-    correction = excess / jnp.where(slope == 0.0, 1.0, slope)
-    # Bisection has the value; this Newton step carries the derivative.
-    place = place - (correction - jax.lax.stop_gradient(correction))
+    place = _carrying(place, excess, _slope(values[panel, :, FORCE], x, table.ends, panel))
     x = local(table.ends[panel], table.ends[panel + 1], place)
     stored = chebyshev_sum(values[panel, :, STORED], x)
     return Datum(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
@@ -56,13 +53,26 @@ def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
 
 def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
     """Outermost separation [m] at which any branch carries 1e-6 of the peak force."""
-    places = [
-        _outermost(
-            table.ends, values[..., FORCE], lambda force: jnp.abs(force) > _NEGLIGIBLE * peak
-        )[0]
-        for values in jax.lax.stop_gradient(table.values)
-    ]
-    return jnp.max(jnp.stack(places))
+    forces = table.values[..., FORCE]
+    return jnp.max(jnp.stack([_end(table.ends, force, _NEGLIGIBLE * peak) for force in forces]))
+
+
+def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:
+    """The outermost separation [m] at which the size of a branch's force is above ``least``."""
+    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) > least)
+    x = local(ends[panel], ends[panel + 1], place)
+    carried = chebyshev_sum(force[panel], x)
+    # Where the force jumps over that size there is no root to follow, only an end of a panel.
+    meets = jnp.abs(jnp.abs(carried) - least) < 1e-3 * least
+    slope = jnp.where(meets, jnp.sign(carried) * _slope(force[panel], x, ends, panel), 0.0)
+    return _carrying(place, jnp.where(meets, jnp.abs(carried) - least, 0.0), slope)
+
+
+def _carrying(place: jax.Array, excess: jax.Array, slope: jax.Array) -> jax.Array:
+    """A place found by bisection, with the derivative that a Newton step to it has."""
+    slope = jax.lax.stop_gradient(slope)
+    correction = excess / jnp.where(slope == 0.0, 1.0, slope)
+    return place - (correction - jax.lax.stop_gradient(correction))
 
 
 def _outermost(

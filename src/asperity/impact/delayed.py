@@ -16,12 +16,12 @@ from .._jax import jax, jnp
 from ..contact.base import Contact
 from ..contact.late import LateContact
 from ..errors import Outcome
+from ..polynomials import NODES
 from .collocation import Here
 from .datum import Datum
 from .history import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
 from .legs import CREPT, FAILED, LEFT, TURNED, Course, Ended, Leg, Place, Samples, leg
 from .motion import LEAST_LOSS
-from .polynomials import NODES
 from .stepping import Frame
 from .table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, quantities, read_row
 from .trajectory import Trajectory

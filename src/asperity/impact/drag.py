@@ -1,4 +1,4 @@
-"""A phase of a motion through a gas: the drag takes energy on the way.
+"""A phase of a motion with drag, of a gas or of radiated waves: it takes energy on the way.
 
 Along a piece of the way the speed v obeys m v^2/2 + (work of the drag c v) = energy, E(x), that
 the other forces give. With x = L sin^2(pi y/2) both ends of a phase, where v starts or ends as
@@ -14,9 +14,9 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..polynomials import DERIVATIVE, chebyshev_sum, local
 from .history import Body
 from .phase import Work
-from .polynomials import chebyshev_sum, local
 from .table import CENTRAL
 
 POINTS = 24
@@ -55,7 +55,7 @@ class Course(NamedTuple):
     speed
         Speed [m/s] at SHARES of it.
     time, heat
-        Time [s] and energy left in the gas [J] until there.
+        Time [s], and energy taken by each drag [J], shape (drags, POINTS), until there.
     duration, lost
         The same over all of it.
     kinetic
@@ -107,6 +107,21 @@ class Stretch(NamedTuple):
         """Force of contact and weight at a place [N], positive apart."""
         return chebyshev_sum(self.force, local(self.low, self.high, place)) - weight
 
+    def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
+        """Each drag [N s/m] at places [m] and about these speeds [m/s], (drags, places)."""
+        x = local(self.low, self.high, places)
+        found = []
+        if body.film is not None:
+            found.append(body.film.drag(chebyshev_sum(self.central, x)))
+        if body.waves is not None:
+            width = self.high - self.low
+            rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
+            slope = rate * (DERIVATIVE @ self.force)
+            bend = rate * (DERIVATIVE[:-1, :-1] @ slope)
+            stiffness, change = chebyshev_sum(slope, x), chebyshev_sum(bend, x)
+            found.append(body.waves.drag(stiffness, change, speed))
+        return jnp.stack(found)
+
     @property
     def ahead(self) -> jax.Array:
         """1 outwards, -1 inwards, 0 for an empty piece."""
@@ -115,8 +130,6 @@ class Stretch(NamedTuple):
 
 def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -> Course:
     """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
-    film = body.film
-    assert film is not None
     span = stop - piece.enter
     places = piece.enter + span * SHARES
     energy = kinetic + piece.energy(places, body.weight)
@@ -125,12 +138,15 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
     most = jnp.where(most > 0.0, most, 1.0)
     unit = jnp.sqrt(2.0 * most / body.mass)
     length = jnp.abs(span) * _PACE
-    central = chebyshev_sum(piece.central, local(piece.low, piece.high, places))
-    drag = 2.0 * film.drag(central) * length / (body.mass * unit)
-    # u^2 + (the integral of drag u) = share, in u = speed / unit.
-    u, solved = _reduced_speeds(energy / most, drag)
-    heat = most * (_UNTIL @ (drag * u))
-    lost = most * (_WHOLE @ (drag * u))
+    share = energy / most
+    # The speed that it would have without drag on this piece: no more than a cut-off needs.
+    free = unit * jnp.sqrt(jnp.where(share > 0.0, share, 1.0)) * (share > 0.0)
+    drags = 2.0 * piece.drags(body, places, free) * length / (body.mass * unit)
+    # u^2 + (the integral of the drags u) = share, in u = speed / unit.
+    u, solved = _reduced_speeds(share, jnp.sum(drags, axis=0))
+    heat = most * ((drags * u) @ _UNTIL.T)
+    lost = most * ((drags * u) @ _WHOLE)
+    left = last - jnp.sum(lost)
     pace = jnp.where(u > 0.0, length / (unit * jnp.where(u > 0.0, u, 1.0)), 0.0)
     empty = span == 0.0
     return Course(
@@ -139,8 +155,8 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
         heat=heat,
         duration=_WHOLE @ pace,
         lost=jnp.where(empty, 0.0, lost),
-        kinetic=jnp.where(empty, kinetic, last - lost),
-        passed=empty | (solved & (last - lost > 0.0)),
+        kinetic=jnp.where(empty, kinetic, left),
+        passed=empty | (solved & (left > 0.0)),
         fastest=jnp.where(empty, kinetic, jnp.max(_FINE @ (most * u**2))),
     )
 

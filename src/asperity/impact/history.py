@@ -12,6 +12,7 @@ from ..errors import Outcome, Tolerance
 from ..film import SqueezeFilm
 from ..laws.base import Real, quantity
 from ..program import kept
+from ..radiation import WaveRadiation
 from .datum import Datum
 from .table import Pieces, Table
 
@@ -42,6 +43,8 @@ class Body(eqx.Module):
         Speed towards the surface at time 0 [m/s], 0 or more.
     film
         The gas that it squeezes; None in a vacuum.
+    waves
+        The waves that its contact radiates; None where they are left out.
     """
 
     mass: Real = quantity()
@@ -49,11 +52,18 @@ class Body(eqx.Module):
     release: Real = quantity()
     speed: Real = quantity(0.0)
     film: SqueezeFilm | None = None
+    waves: WaveRadiation | None = None
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
-        """Names of the losses that are not the contact's."""
-        return () if self.film is None else ("gas",)
+        """Names of the losses that are not the contact's: drags, that of the gas first."""
+        gas = () if self.film is None else ("gas",)
+        return gas if self.waves is None else (*gas, "waves")
+
+    @property
+    def damped(self) -> bool:
+        """Whether a drag takes energy on the way."""
+        return bool(self.mechanisms)
 
     @property
     def weight(self) -> jax.Array:
@@ -133,7 +143,7 @@ class Impacts(NamedTuple):
     touching, bonds
         Expected asperities in contact, and bonds by law, at the deepest point.
     lost
-        Energy lost until the apex, since the release [J]: by law, then in the gas if any.
+        Energy lost until the apex, since the release [J]: by law, then by drag.
     closure
         Largest change of the sum of all energies since the release [J].
     pull_work

@@ -12,6 +12,7 @@ from ..contact.base import Contact
 from ..contact.late import LateContact
 from ..program import Program
 from .collocation import NODES_IN_TIME, Here
+from .damping import slow_at
 from .datum import Datum
 from .stepping import BOND, MARK, SWITCH, TURN, Frame, Taken, take
 from .table import quantities
@@ -250,9 +251,11 @@ def _creeps(course: Course, near: Leg, way: Leg) -> bool:
     """Whether a body that came near its rest stays there."""
     still, goal = course.rest
     place = float(way.place.here.separation)
+    kinetic = _kinetic(course.frame, near.place)
     if way.fate == TURNED:
-        return place > still - (goal - still)
-    slow = _kinetic(course.frame, way.place) < _SPENT * _kinetic(course.frame, near.place)
+        slow = bool(slow_at(course.frame.body, kinetic, way.fastest, course.rest))
+        return slow and place > still - (goal - still)
+    slow = _kinetic(course.frame, way.place) < _SPENT * kinetic
     return slow and place > still
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
-from ..contact.base import Contact, Held, Memory
+from ..contact.base import Contact, Held
 from ..errors import Outcome, Tolerance
 from .damping import fall_to_rest
 from .datum import Datum, find_datum
@@ -24,11 +24,15 @@ from .table import (
     outer_row,
     quantities,
     tabulate,
+    tabulate_again,
 )
 from .turning import find_turn
 
 LEAST_LOSS = 1e-9
 """Share of the impact energy: a cycle that loses less repeats for ever."""
+
+LEAST_RISE = 1e-9
+"""Share of the fall: a body that rises less stays where it turned."""
 
 
 def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
@@ -40,9 +44,10 @@ def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
     high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
-    table = (
-        _worn_table(contact, body, low, high) if contact.yields else (tabulate(contact, low, high))
-    )
+    if contact.yields:
+        table = _worn_table(contact, body, low, high)
+    else:
+        table = tabulate(contact, low, high)
     if contact.datum is None:
         return table, find_datum(table, body.weight, contact.resting)
     return table, Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
@@ -53,19 +58,11 @@ def _worn_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -
 
     Nothing that follows goes deeper than the first impact: it has lost energy since.
     """
-
-    def pressed(left: tuple[Memory, jax.Array], _: None) -> tuple[tuple[Memory, jax.Array], Table]:
-        worn = contact.worn(*left)
-        table = tabulate(worn, low, high)
-        progress, _origin = start(worn, body, table)
-        rest = find_datum(table, body.weight, 0).equilibrium
-        after, _leg_down = _leg(worn, body, table, (rest, rest), progress, jnp.asarray(False))
-        return (after.memory, after.place), table
-
-    # One body of code for both tables: half to compile.
-    _, tables = jax.lax.scan(pressed, (contact.fresh(), body.release), None, length=2)
-    last: Table = jax.tree_util.tree_map(lambda leaf: leaf[1], tables)
-    return last
+    before = tabulate(contact, low, high)
+    progress, _origin = start(contact, body, before)
+    rest = find_datum(before, body.weight, 0).equilibrium
+    after, _fall = _leg(contact, body, before, (rest, rest), progress, jnp.asarray(False))
+    return tabulate_again(contact, before, after.memory, after.place)
 
 
 def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:
@@ -174,14 +171,14 @@ def _leg(
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = contact.branch_of(progress.memory, parting)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
-    if body.film is None:
+    if not body.damped:
         turn, heat = find_turn(ahead), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
         way = join(table, branch, inner, progress.place, parting)
         goal = jnp.where(parting, jnp.inf, rest[1])
         passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
-        turn, heat = in_order(ahead, passage.turn), passage.lost[None]
+        turn, heat = in_order(ahead, passage.turn), passage.lost
         crept, followed = passage.crept, passage.followed
         time = progress.time + passage.duration
     row = row_at(ahead, turn)
@@ -231,13 +228,14 @@ def _impact(
     first = jnp.where(progress.made == 0, height, progress.first)
     energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
+    risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
     sound = fall.turn.found & jnp.all(both.followed) & jnp.isfinite(mechanical[1])
     outcome = _outcome(
         (
             (jnp.logical_not(sound), Outcome.FAILED),
             (fall.crept, Outcome.REST),
             # Flattened tips may pull at once by more than what they press.
-            (jnp.logical_and(contact.yields, end.place <= fall.turn.place), Outcome.REST),
+            (jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen), Outcome.REST),
             (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
             (rise.time >= limits.time, Outcome.TIME_LIMIT),
             (height < limits.rest * first, Outcome.REST),

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from .polynomials import antiderivative, chebyshev_sum, local
+from ..polynomials import antiderivative, chebyshev_sum, local
 from .table import DRIVE, RATE, RISE, Pieces, Table
 
 

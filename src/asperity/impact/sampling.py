@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
+from ..polynomials import chebyshev_sum, local
 from ..program import Program
 from .damping import cut, follow
 from .history import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
-from .polynomials import chebyshev_sum, local
-from .table import RATE, RISE, Pieces, Table, join, read_row
+from .table import CENTRAL, RATE, RISE, Pieces, Table, join, read_row
 
 _BATCH = 16  # phases a compiled call
 _SAMPLES = 40  # on a phase, and again on its part in contact
@@ -28,8 +28,9 @@ class Series(NamedTuple):
         [s], [m] and [m/s], shape (samples,).
     rows
         Quantities of the contact (see :mod:`.table`), shape (samples, rows).
-    heat
-        Energy left in a gas since the phase began [J], shape (samples,).
+    heat, drag
+        By drag: energy taken since the phase began [J], and force over speed [N s/m], shape
+        (samples, drags).
     phase
         Index of the phase of each sample, two an impact.
     """
@@ -39,6 +40,7 @@ class Series(NamedTuple):
     speed: np.ndarray
     rows: np.ndarray
     heat: np.ndarray
+    drag: np.ndarray
     phase: np.ndarray
 
 
@@ -58,12 +60,15 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         parts.append([np.stack(pair, axis=1)[:count] for pair in zip(*drawn, strict=True)])
     joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
     phase = np.broadcast_to(np.arange(2 * made).reshape(made, 2, 1), joined[0].shape)
-    time, separation, speed, heat, kept = (a.ravel() for a in (*joined[:3], *joined[4:]))
-    values = joined[3].reshape(time.size, -1)
-    keep = kept.astype(bool)
+    time, separation, speed = (a.ravel() for a in joined[:3])
+    values, heat, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
+    keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
-    release = (0.0, body.release, -body.speed, row, 0.0, 0)
-    rest = (time, separation, speed, values, heat, phase.ravel())
+    still, acting = np.zeros((2, len(body.mechanisms)))
+    if body.film is not None:
+        acting[0] = body.film.drag(row[CENTRAL])  # waves need contact
+    release = (0.0, body.release, -body.speed, row, still, acting, 0)
+    rest = (time, separation, speed, values, heat, drag, phase.ravel())
     return Series(
         *(
             np.concatenate([np.asarray(a)[None], b[keep]])
@@ -107,9 +112,9 @@ _draw = Program(_draw_all)
 def _draw_one(
     body: Body, table: Table, phase: Phase, parting: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
-    """Time, separation, speed, rows, heat and whether to keep, in the order of time."""
+    """Time, separation, speed, rows, heat, drag and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, parting)
-    if body.film is not None:
+    if body.damped:
         return _draw_damped(body, pieces, phase, parting)
     work = work_along(pieces, phase.kinetic, body.weight)
     ahead = jnp.where(parting, 1.0, -1.0)
@@ -138,7 +143,8 @@ def _draw_one(
         ends[1:],
         ahead * jnp.sqrt(2.0 * kinetic / body.mass),
         rows,
-        jnp.zeros_like(spans),
+        jnp.zeros((spans.size, 0)),
+        jnp.zeros((spans.size, 0)),
         spans != 0.0,
     )
 
@@ -146,9 +152,9 @@ def _draw_one(
 def _draw_damped(
     body: Body, pieces: Pieces, phase: Phase, parting: jax.Array
 ) -> tuple[jax.Array, ...]:
-    """The same through a gas."""
+    """The same with drag."""
     passed = cut(pieces, parting, phase.stop)
-    places, times, speeds, heats = follow(body, passed, phase.kinetic)
+    places, times, speeds, heats, drags = follow(body, passed, phase.kinetic)
     x = local(passed.low[:, None], passed.high[:, None], places)
     rows = chebyshev_sum(jnp.moveaxis(passed.values, 1, 0)[:, :, None], x[..., None])
     filled = jnp.broadcast_to((passed.enter != passed.leave)[:, None], places.shape)
@@ -157,7 +163,8 @@ def _draw_damped(
         places.ravel(),
         jnp.where(parting, 1.0, -1.0) * speeds.ravel(),
         rows.reshape(places.size, -1),
-        heats.ravel(),
+        heats.reshape(places.size, -1),
+        drags.reshape(places.size, -1),
         filled.ravel(),
     )
 

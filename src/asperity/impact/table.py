@@ -7,15 +7,16 @@ so that no equation is solved inside the motion and work is integrated exactly.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..contact.base import Contact, Memory, State
+from ..polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, local
 from ..program import kept
-from .polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, local
 
 LOOKS = 24
 """Places of a panel at which the kinetic energy is looked at, its ends among them."""
@@ -99,6 +100,8 @@ class Table(NamedTuple):
         from outside to there: an estimate of the interpolation error.
     residual
         Largest error estimate of the contact itself.
+    left
+        What the first impact left of a contact that yields; empty without one.
     """
 
     ends: jax.Array
@@ -106,6 +109,7 @@ class Table(NamedTuple):
     works: Works
     error: jax.Array
     residual: jax.Array
+    left: Any = ()
 
     @property
     def looks(self) -> jax.Array:
@@ -159,6 +163,39 @@ def quantities(contact: Contact) -> Quantities:
 
 def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     """Solve a contact on its outermost branches between two separations [m]."""
+    return _tabulated(contact, low, high, lambda ends, places, values: values)
+
+
+def tabulate_again(contact: Contact, before: Table, memory: Memory, turn: jax.Array) -> Table:
+    """Solve a contact that yields as its first impact leaves it.
+
+    Parameters
+    ----------
+    contact
+        The contact before that impact.
+    before
+        Its table, of its first approach alone. That branch comes first in the new table too,
+        and stands for all others below the deepest point, which nothing reaches again.
+    memory, turn
+        Memory and separation [m] at the deepest point.
+    """
+    left = contact.left_by(memory, turn)
+
+    def joined(ends: jax.Array, places: jax.Array, values: jax.Array) -> jax.Array:
+        first = _read_again(before, places)
+        deeper = (ends[1:] <= turn)[:, None, None]
+        return jnp.concatenate([first[None], jnp.where(deeper, first, values)])
+
+    table = _tabulated(contact.after(left), before.ends[0], before.ends[-1], joined)
+    return table._replace(left=left)
+
+
+def _tabulated(
+    contact: Contact,
+    low: jax.Array,
+    high: jax.Array,
+    joined: Callable[[jax.Array, jax.Array, jax.Array], jax.Array],
+) -> Table:
     ends = jax.lax.stop_gradient(contact.panels(low, high))
     memories = contact.branches()
     stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
@@ -173,6 +210,7 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
         values, errors = jax.lax.map(one, stacked)
     else:
         values, errors = (x[None] for x in one(memories[0]))
+    values = joined(ends, places, values)
     force = values[..., FORCE]
     width = jnp.diff(ends)
     tail = jnp.max(jnp.abs(force[..., -2:]), axis=-1) * width
@@ -182,6 +220,15 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     work = work + _LEAST * jnp.max(work)
     error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
     return Table(ends, values, _works(ends, values), jnp.max(error), jnp.max(errors))
+
+
+def _read_again(table: Table, places: jax.Array) -> jax.Array:
+    """Coefficients of the first branch of a table on panels with these nodes, within its own."""
+    panel = jax.vmap(table.panel_at)(jnp.mean(places, axis=1))
+    x = local(table.ends[panel, None], table.ends[panel + 1, None], places)
+    coefficients = jnp.moveaxis(table.values[0, panel], 1, 0)
+    rows = chebyshev_sum(coefficients[:, :, None, :], x[..., None])
+    return jnp.einsum("kn,pnq->pkq", _to_coefficients(NODES), rows)
 
 
 def _works(ends: jax.Array, values: jax.Array) -> Works:
@@ -200,20 +247,23 @@ def _works(ends: jax.Array, values: jax.Array) -> Works:
 
 def _fit(states: State) -> jax.Array:
     """Coefficients [piece, NODES, rows] of states at the Chebyshev points of pieces."""
-    nodes = states.force.shape[1]
-    to_coefficients = np.zeros((NODES, nodes))
-    to_coefficients[:nodes] = np.linalg.inv(
-        chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1)
-    )
     rows = jax.vmap(jax.vmap(rows_of))(states)
-    return jnp.einsum("kn,pnq->pkq", to_coefficients, rows)
+    return jnp.einsum("kn,pnq->pkq", _to_coefficients(rows.shape[1]), rows)
+
+
+def _to_coefficients(nodes: int) -> np.ndarray:
+    """From values at so many Chebyshev points to NODES coefficients."""
+    out = np.zeros((NODES, nodes))
+    out[:nodes] = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1))
+    return out
 
 
 def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
 ) -> Pieces:
     """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
-    way = contact.way(memory, start, parting, (table.ends[0], table.ends[-1]))
+    now = contact.after(table.left) if table.left else contact
+    way = now.way(memory, start, parting, (table.ends[0], table.ends[-1]))
     if way is None:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))

@@ -12,6 +12,7 @@ from .history import Body
 from .legs import Leg, Samples
 from .sampling import Series
 from .stepping import KNOTS, TO_SERIES
+from .table import CENTRAL
 
 
 class Trajectory(NamedTuple):
@@ -22,7 +23,7 @@ class Trajectory(NamedTuple):
     series
         Its samples.
     lost
-        Energy lost since the release [J], by law, then in the gas if any, shape (samples, names).
+        Energy lost since the release [J], by law, then by drag, shape (samples, names).
     """
 
     series: Series
@@ -31,18 +32,23 @@ class Trajectory(NamedTuple):
     @classmethod
     def of(cls, body: Body, release: Samples, legs: list[Leg]) -> Trajectory:
         """The trajectory of a motion from its release, two legs an impact."""
-        parts, heats, phases = [release], [np.zeros(1)], [np.zeros(1, int)]
+        drags = len(body.mechanisms)
+        parts, heats, phases = [release], [np.zeros((1, drags))], [np.zeros(1, int)]
+        laws = release.lost.shape[1] - drags
         for number, way in enumerate(legs):
-            begun = parts[-1].lost[-1, -1]
+            begun = parts[-1].lost[-1, laws:]
             for samples in way.samples:
                 parts.append(samples)
-                heats.append(samples.lost[:, -1] - begun)
+                heats.append(samples.lost[:, laws:] - begun)
                 phases.append(np.full(samples.time.size, number))
         whole = Samples.joined(parts)
-        heat = np.concatenate(heats) * (body.film is not None)
+        drag = np.zeros((whole.time.size, drags))
+        if body.film is not None:
+            drag[:, 0] = body.film.drag(whole.rows[:, CENTRAL])
         series = Series(
-            whole.time, whole.separation, whole.speed, whole.rows, heat, np.concatenate(phases)
-        )
+            whole.time, whole.separation, whole.speed, whole.rows, np.concatenate(heats), drag,
+            np.concatenate(phases),
+        )  # fmt: skip
         return cls(series, whole.lost)
 
     def until(self, limit: float) -> Trajectory:

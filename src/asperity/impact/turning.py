@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
+from ..polynomials import chebyshev_sum, local
 from .phase import Ahead, Turn, kinetic_along
-from .polynomials import chebyshev_sum, local
 from .table import LOOKS
 
 _SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]

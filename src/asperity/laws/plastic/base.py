@@ -79,6 +79,16 @@ class PlasticContact(eqx.Module):
         deep = jnp.maximum(deepest, self.yield_overlap)
         return self.loading_force(deep) * power(self._share(overlap, deep), self.exponent(deep))
 
+    def unloading(self, deepest: jax.Array) -> tuple[jax.Array, jax.Array]:
+        """Logarithm of the force [N] one yield overlap above the residual, and the exponent.
+
+        Of the curve that unloads from ``deepest``, continued to there.
+        """
+        deep = jnp.maximum(deepest, self.yield_overlap)
+        order = self.exponent(deep)
+        span = (deep - self.residual(deep)) / self.yield_overlap
+        return jnp.log(self.loading_force(deep)) - order * jnp.log(span), order
+
     def recoverable(self, overlap: jax.Array, deepest: jax.Array) -> jax.Array:
         """Energy [J] that unloading from this overlap gives back."""
         deep = jnp.maximum(deepest, self.yield_overlap)
@@ -86,6 +96,13 @@ class PlasticContact(eqx.Module):
         whole = self.loading_force(deep) * (deep - self.residual(deep)) / order
         share = self._share(overlap, deep)
         return whole * share * power(share, order - 1.0)
+
+    def returned(self, deepest: jax.Array) -> jax.Array:
+        """Energy [J] that unloading from ``deepest`` gives back on the whole."""
+        deep = jnp.maximum(deepest, self.yield_overlap)
+        span = deep - self.residual(deep)
+        back = self.loading_force(deep) * span / (self.exponent(deep) + 1.0)
+        return jnp.where(deepest > self.yield_overlap, back, self.loading_work(deepest))
 
     def dissipated(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] lost by a contact that has been as deep as ``deepest``."""

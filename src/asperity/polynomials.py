@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from .._jax import jax, jnp
+from ._jax import jax, jnp
 
 NODES = 16
 """Coefficients of each polynomial."""
 
 ANTIDERIVATIVE = np.array([chebyshev.chebint(row) for row in np.eye(NODES)]).T
 """From coefficients to those of the integral over x."""
+
+DERIVATIVE = np.array([chebyshev.chebder(row) for row in np.eye(NODES)]).T
+"""From coefficients to those of the derivative with x, one fewer."""
 
 
 def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:

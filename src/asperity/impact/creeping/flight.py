@@ -1,0 +1,115 @@
+"""Fall, touch, rebound on a bulk that creeps: every impact from the release to the end."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from ...contact.base import Contact
+from ...contact.creep import Creep
+from ...contact.elastic import ElasticContact
+from ...errors import Outcome
+from ..datum import Datum
+from ..history import Body, Limits, Motion
+from ..legs import FAILED, TURNED, Ended, Samples
+from ..table import Table
+from ..trajectory import Trajectory
+from .record import Bounced, Ledger, Way
+from .rough import RoughBounce, first_mesh
+from .smooth import SmoothBounce
+
+_FIT = 0.05  # how closely the mesh fits the pressure at the first deepest point
+_PASSES = 5  # of that fit
+
+
+class Bouncing(Protocol):
+    """A body that is followed from one turning point to the next."""
+
+    def start(self) -> Samples:
+        """The sample of the release."""
+
+    def way(self, inwards: bool) -> tuple[str, Samples]:
+        """The samples until the body turns, and how they end."""
+
+
+def fly_creeping(
+    contact: Contact,
+    creep: Creep,
+    body: Body,
+    prepared: tuple[Table, Datum],
+    limits: Limits,
+    tell: Callable[[int], None],
+    stop: threading.Event | None = None,
+) -> tuple[Motion, Trajectory, Outcome]:
+    """Motion of a body from its release until it rests, escapes, reaches a limit or is stopped.
+
+    Parameters
+    ----------
+    contact
+        The contact when its bulk has relaxed, with a ``viscous`` loss.
+    creep
+        How it relaxes.
+    body
+        The body and its release, outside contact.
+    prepared
+        The table of ``contact``, and the datum.
+    limits
+        Ends of the motion.
+    tell
+        Called with the number of impacts, after each.
+    stop
+        Set from another thread, it ends the motion at the last whole impact.
+
+    Raises
+    ------
+    Ended
+        If it is stopped before the first impact is over.
+    """
+
+    def asked() -> None:
+        if stop is not None and stop.is_set():
+            raise Ended
+
+    ledger = Ledger(contact, body, prepared, limits)
+    bouncing = _bouncing(creep, ledger, asked)
+    last = bouncing.start()
+    done: list[Bounced] = []
+    outcome = None
+    while outcome is None:
+        try:
+            asked()
+            fall = Way(*bouncing.way(inwards=True))
+            rise = Way(fall.fate, _none(last))
+            if fall.fate == TURNED:
+                rise = Way(*bouncing.way(inwards=False))
+        except Ended:
+            if not done:
+                raise
+            outcome = Outcome.INTERRUPTED
+            break
+        done.append(Bounced(last, fall, rise))
+        last = done[-1].end
+        outcome = ledger.outcome(done)
+        tell(len(done))
+    return *ledger.motion(done, outcome), outcome
+
+
+def _none(like: Samples) -> Samples:
+    return Samples(*(column[:0] for column in like))
+
+
+def _bouncing(creep: Creep, ledger: Ledger, asked: Callable[[], None]) -> Bouncing:
+    """The body at its release, on a mesh that fits the first impact where there is one."""
+    if not isinstance(creep.contact, ElasticContact):
+        return SmoothBounce(creep, ledger)
+    table, _ = ledger.prepared
+    size = first_mesh(creep, float(table.ends[0]))
+    for _ in range(_PASSES):
+        trial: Any = RoughBounce(creep, ledger.body, size, ledger.ends, asked)
+        trial.start()
+        fate, _ = trial.way(inwards=True)
+        if fate == FAILED or abs(trial.fit - 1.0) <= _FIT:
+            break
+        size *= trial.fit
+    return RoughBounce(creep, ledger.body, size, ledger.ends, asked)

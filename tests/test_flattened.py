@@ -1,0 +1,188 @@
+"""Asperities that were pressed flat, tabulated once, beside integrals at every separation."""
+
+import dataclasses
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+import asperity.first_loading as module
+import asperity.flattened as tabulated
+from asperity._jax import jax, jnp
+from asperity.contact import RigidContact
+from asperity.errors import Tolerance
+from asperity.first_loading import first_loading
+from asperity.impact import Body, simulate
+from asperity.interface import Interface
+from asperity.laws import Dmt, KelvinFilling
+from asperity.laws.base import Sum
+from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
+from asperity.layers import Layers
+from asperity.plastic_interface import PlasticInterface
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+from plastic_asperities import (
+    BATCH,
+    BESIDE,
+    BETA,
+    DMT,
+    NU,
+    REACH,
+    SIGMA,
+    E,
+    N,
+    asperities,
+    every_yield,
+    hardness,
+    worst,
+)
+
+CLOSEST = [3.0, 0.0, -30.0]  # rms
+LAWS = {
+    "kogut-etsion": KogutEtsion(BETA, E, hardness(0.1), NU),
+    "jackson-green": JacksonGreen(BETA, E, 0.01 * E, NU),
+    "thornton-ning": ThorntonNing(BETA, E, 0.02 * E),
+}
+
+
+@eqx.filter_jit
+def both(interface, separation, memory):
+    """Means by integration and by the table of what the closest approach left."""
+    tabulated = interface.as_flattened(interface.flattened(memory, 1))
+    rows = tuple(jnp.broadcast_to(b, separation.shape) for b in memory)
+    return interface.measure(separation, rows, 1), tabulated.measure(separation, rows, 1)
+
+
+def differences(interface, closest):
+    """Largest error of each mean over separations and bonds, relative to its size."""
+    above = np.append(np.geomspace(1e-3, 6.0, BATCH - 2), [10.0, 25.0]) * SIGMA
+    separation = jnp.asarray(closest * SIGMA + above)
+    errors = {}
+    for threshold in (-np.inf, closest * SIGMA + 0.3 * REACH, np.inf):
+        bonds = [jnp.asarray(threshold)] * len(interface.hysteretic)
+        exact, found = both(interface, separation, (jnp.asarray(closest * SIGMA), *bonds))
+        for name in exact._fields:
+            row = worst(getattr(found, name), getattr(exact, name), 1e-4)
+            errors[name] = max(errors.get(name, 0.0), row)
+    return errors
+
+
+@every_yield
+@pytest.mark.parametrize("closest", CLOSEST)
+def test_a_table_of_what_was_flattened_is_the_integral_over_all_asperities(closest, overlap):
+    errors = differences(asperities("dmt + meniscus", overlap), closest)
+    assert max(errors.values()) < 2e-7, errors
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_it_is_so_for_every_law(law):
+    interface = PlasticInterface(LAWS[law], BESIDE["dmt + meniscus"], Gaussian(SIGMA), N)
+    errors = differences(interface, 0.0)
+    assert max(errors.values()) < 2e-7, errors
+
+
+def test_more_points_change_nothing(monkeypatch):
+    """What is tabulated, and the first approach, are as close as their tolerance says."""
+    coarse = asperities("dmt + meniscus", 0.03)
+    place = jnp.asarray(0.2 * SIGMA)
+    memory = coarse.remember(coarse.fresh(), place)
+
+    separation = place + jnp.geomspace(0.01, 2.0, 8) * SIGMA
+    rows = tuple(jnp.full(8, b) for b in memory)
+
+    def at_places():
+        left = jax.jit(lambda: coarse.flattened(memory, 1))()
+        contact, heights = coarse.contact, coarse.heights
+        first = jax.jit(lambda h: first_loading(contact, heights, (0.0, 1.0), h, 1, module.NODES))
+        return coarse.as_flattened(left).measure(separation, rows, 1), first(place)
+
+    means, first = at_places()
+    monkeypatch.setattr(tabulated, "_EVEN", 14)
+    monkeypatch.setattr(tabulated, "_RUNGS", 8)
+    monkeypatch.setattr(module, "NODES", 40)
+    finer, first_finer = at_places()
+    for name in means._fields:
+        assert worst(getattr(means, name), getattr(finer, name), 1e-4) < 3e-8, name
+    for name in first._fields:
+        assert worst(getattr(first, name), getattr(first_finer, name), 1e-4) < 1e-9, name
+
+
+@every_yield
+@pytest.mark.parametrize("lift", [0, 1])
+def test_the_first_approach_is_that_of_surfaces_that_remember_nothing(lift, overlap):
+    interface = asperities("dmt + meniscus", overlap)
+    separation = jnp.linspace(-3.0, 4.0, BATCH) * SIGMA
+    fresh = tuple(jnp.full(BATCH, b) for b in interface.fresh())
+    exact = eqx.filter_jit(interface.measure)(separation, fresh, lift)
+    found = eqx.filter_jit(interface.first_approach)(separation, lift)
+    for name in exact._fields:
+        assert worst(getattr(found, name), getattr(exact, name), 1e-3) < 1e-7, name
+
+
+@every_yield
+def test_the_work_of_approach_is_a_bound(overlap):
+    """By few points, and never more than the work itself."""
+    interface = asperities("dmt", overlap)
+    separation = jnp.linspace(-20.0, 4.0, BATCH) * SIGMA
+    means = eqx.filter_jit(interface.first_approach)(separation, 1)
+    work = means.energy + means.bonds[0]
+    bound = eqx.filter_jit(interface.work_of_approach)(separation, 1)
+    assert np.all(np.asarray(bound) < np.asarray(work))
+    np.testing.assert_allclose(bound, work, rtol=0.03)
+
+
+class Unknown(Dmt):
+    """A law of which no powers are known."""
+
+    def powers(self, bond_gap):
+        return None
+
+    def force(self, gap):
+        return Dmt(self.radius, self.work_of_adhesion).force(gap)
+
+    def energy(self, gap):
+        return Dmt(self.radius, self.work_of_adhesion).energy(gap)
+
+
+@pytest.fixture(scope="module")
+def flown():
+    """Losses and apexes of three impacts."""
+    body = Body(2e-12, 9.81, 60e-9, 0.2)
+
+    def fly(interface):
+        motion = simulate(
+            RigidContact(interface, Sphere(20e-6)), body, tolerance=Tolerance(max_impacts=3)
+        )
+        return motion.impacts.lost, motion.impacts.apex, motion.impacts.closure / motion.release
+
+    return jax.jit(fly)
+
+
+def test_a_law_without_powers_is_integrated_and_moves_the_body_alike(flown):
+    known = asperities("dmt + meniscus", 0.1)
+    beside = Sum((Unknown(DMT.radius, DMT.work_of_adhesion), *known.law.parts[1:]))
+    unknown = dataclasses.replace(known, law=beside)
+    assert unknown.flattened(unknown.fresh(), 1) is None
+    lost, apex, closure = flown(known)
+    assert np.all(np.diff(apex) < 0.0)  # it bounces
+    lost_too, apex_too, closure_too = flown(unknown)
+    np.testing.assert_allclose(lost_too, lost, rtol=1e-6)
+    np.testing.assert_allclose(apex_too, apex, atol=1e-6 * SIGMA)
+    assert np.max(closure) < 1e-8
+    assert np.max(closure_too) < 1e-7
+
+
+def test_liquid_on_the_surface_lies_beside_what_was_flattened():
+    yielding = asperities("dmt", 0.1)
+    filling = Interface(KelvinFilling(0.0728, 0.5, 0.5e-9), Gaussian(2.0 * SIGMA), 1.0)
+    layers = Layers((yielding, filling))
+    memory = layers.remember(layers.fresh(), jnp.asarray(0.5 * SIGMA))
+    place = jnp.asarray([0.7, 1.5]) * SIGMA
+    exact, found = both(layers, place, memory)
+    for name in exact._fields:
+        assert worst(getattr(found, name), getattr(exact, name), 1e-3) < 1e-7, name
+    rows = tuple(jnp.full(2, b) for b in layers.fresh())
+    fresh = eqx.filter_jit(layers.measure)(place, rows, 1)
+    first = eqx.filter_jit(layers.first_approach)(place, 1)
+    for name in exact._fields:
+        assert worst(getattr(first, name), getattr(fresh, name), 1e-3) < 1e-7, name

@@ -1,0 +1,59 @@
+"""Derivatives through a whole impact of asperities that yield, against differences."""
+
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+from asperity._jax import jax, jnp
+from asperity.contact import RigidContact
+from asperity.errors import Tolerance
+from asperity.impact import Body, simulate
+from asperity.laws import Dmt, Meniscus
+from asperity.laws.plastic import KogutEtsion
+from asperity.measures import measure
+from asperity.plastic_interface import PlasticInterface
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+
+RADIUS, TIP, E, DENSITY = 20e-6, 200e-9, 55e9, 1e14  # m, m, Pa, 1/m^2
+MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
+BESIDE = Dmt(TIP, 0.03) + Meniscus(TIP, 0.0728, radians(50.0), 0.78e-9)
+START = {"hardness": 2e9, "rms height": 5e-9, "speed": 0.03}  # Pa, m, m/s
+ONE = Tolerance(max_impacts=1)
+
+
+def impact(logarithms):
+    """What the first impact gives, by logarithms of factors on hardness, rms height and speed.
+
+    Its restitution, deepest point, apex, end of contact, and losses by mechanism.
+    """
+    hardness, rms, speed = (
+        value * jnp.exp(x) for value, x in zip(START.values(), logarithms, strict=True)
+    )
+    contact = KogutEtsion(TIP, E, hardness, 0.25)
+    interface = PlasticInterface(contact, BESIDE, Gaussian(rms), DENSITY)
+    body = Body(MASS, 9.81, 40e-9, speed)
+    motion = simulate(RigidContact(interface, Sphere(RADIUS)), body, tolerance=ONE)
+    rows, measures = motion.impacts, measure(motion, body)
+    return jnp.stack([measures.restitution[0], rows.deepest[0], rows.apex[0],
+                      measures.reference, *rows.lost[0]])  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def along():
+    """What the first impact gives at a place, and its slope there along a direction."""
+    return jax.jit(lambda place, way: jax.jvp(impact, (place,), (way,)))
+
+
+@pytest.mark.parametrize("quantity", START)
+def test_derivatives_of_a_first_impact_are_those_of_differences(along, quantity):
+    way = jnp.asarray([float(name == quantity) for name in START])
+    (restitution, *_), slopes = along(jnp.zeros(3), way)
+    assert 0.6 < float(restitution) < 0.7
+    step = 1e-3
+    near, far = (
+        (along(n * step * way, way)[0] - along(-n * step * way, way)[0]) / (2.0 * n * step)
+        for n in (1, 2)
+    )
+    np.testing.assert_allclose(slopes, (4.0 * near - far) / 3.0, rtol=1e-6)

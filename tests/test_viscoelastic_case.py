@@ -1,0 +1,194 @@
+"""The table [viscoelasticity]: from a file to a run, and what cannot stand beside it."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import asperity
+from asperity import solver
+from asperity.case import load
+from asperity.case.build import build
+from asperity.cli import app
+from asperity.contact.creep import CreptContact
+from asperity.materials import contact_modulus
+from asperity.plots.style import COLOURS
+
+CREEPS = """
+[viscoelasticity]
+model = "standard-linear-solid"
+relaxed_modulus_ratio = 0.4
+relaxation_time = "500 ns"
+"""
+SMOOTH = """
+[body]
+radius = "20 um"
+youngs_modulus = "3 GPa"
+poisson = 0.34
+density = "1050 kg/m^3"
+[counterface]
+material = "silica"
+[impact]
+release_gap = "5 um"
+[numerics]
+max_impacts = 3
+"""
+ROUGH = """
+[roughness]
+asperity_density = "10 1/um^2"
+asperity_radius = "100 nm"
+rms_height = "5 nm"
+"""
+ADHESION = '[adhesion]\nmodel = "dmt"\nwork = "20 mJ/m^2"\nrange = "0.2 nm"\n'
+WATER = """
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.5
+temperature = "20 degC"
+contact_angle = "60 deg"
+"""
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def ran(*words):
+    answer = CliRunner().invoke(app, [*words])
+    assert answer.exit_code == 0, answer.output
+    return answer.stdout
+
+
+def refusal(text):
+    """The one line with which the command refuses a case; its exit code is 2."""
+    Path("drop.toml").write_text(text)
+    answer = CliRunner().invoke(app, ["run", "drop.toml"])
+    assert answer.exit_code == 2, answer.output
+    assert answer.stderr.count("\n") == 1
+    return answer.stderr
+
+
+def put(text, table, line):
+    return text.replace(f"[{table}]\n", f"[{table}]\n{line}\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (CREEPS.replace("0.4", "0"), "`relaxed_modulus_ratio` must lie in (0, 1]; got 0"),
+        (CREEPS.replace("0.4", "1.5"), "(0, 1]; got 1.5"),
+        (CREEPS.replace('"500 ns"', '"0 s"'), "`relaxation_time` must be positive; got '0 s'"),
+        (CREEPS.replace('"500 ns"', "5e-7"), "`relaxation_time` must be text with a number"),
+        (CREEPS.replace("relaxed_modulus_ratio = 0.4\n", ""), "modulus_ratio` must be given"),
+        (CREEPS.replace('relaxation_time = "500 ns"\n', ""), "`relaxation_time` must be given"),
+        (CREEPS.replace("standard-linear-solid", "maxwell"), "linear-solid'; got 'maxwell'"),
+        (CREEPS + ADHESION, "adhesion.model (line"),
+        (CREEPS + WATER, "capillary.model (line"),
+        (CREEPS + '[plasticity]\nmodel = "thornton-ning"\n', "plasticity.model (line"),
+        (
+            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\nclosest_gap = "1 nm"\n',
+            "gas (line",
+        ),
+        (CREEPS + '[waves]\nmodel = "hunter"\n', "waves.model (line"),
+        (CREEPS + ROUGH + "[publication]\n", "publication"),
+    ],
+)  # fmt: skip
+def test_what_cannot_creep_is_refused_in_one_line(text, said):
+    assert said in refusal(SMOOTH + text)
+
+
+def test_a_rigid_bulk_and_menisci_that_take_time_are_refused():
+    rigid = put(SMOOTH + CREEPS + ROUGH, "counterface", 'deformation = "rigid"')
+    assert "counterface.deformation (line" in refusal(rigid)
+    late = put(SMOOTH + CREEPS + ROUGH + WATER, "capillary", 'formation_time = "1 us"')
+    assert "formation_time" in refusal(late)
+
+
+def test_without_a_model_the_bulk_is_elastic():
+    case = load(SMOOTH + '[viscoelasticity]\nmodel = "none"\n')
+    assert build(case).creep is None
+    assert build(load(SMOOTH)).creep is None
+
+
+def test_a_case_with_creep_reads_back_and_knows_both_moduli():
+    case = load(SMOOTH + CREEPS)
+    assert load(case.toml()) == case
+    problem = build(case)
+    modulus = contact_modulus(case.body_solid, case.counterface_solid)
+    assert isinstance(problem.contact, CreptContact)
+    assert float(problem.contact.told.law.modulus) == pytest.approx(0.4 * modulus)
+    assert float(problem.creep.contact.law.modulus) == pytest.approx(modulus)
+    assert problem.modulus == pytest.approx(modulus)
+
+
+def test_a_smooth_sphere_runs_to_a_record_its_pictures_and_its_json():
+    Path("drop.toml").write_text(SMOOTH + CREEPS)
+    said = ran("run", "drop.toml")
+    assert "lost to viscous" in said
+    files = {path.name for path in Path("drop-out").iterdir()}
+    assert {"record.nc", "summary.txt", "motion.png", "forces.png", "energy.png"} <= files
+    found = json.loads(ran("run", "drop.toml", "--json", "--force"))
+    assert found["outcome"] == "max_impacts"
+    assert found["ledger"]["closure"] < 1e-8
+    assert set(found["ledger"]["lost"]) == {"viscous"}
+    assert all(0.3 < e < 0.9 for e in found["measures"]["restitution"])
+    Path("drop-out/energy.png").unlink()
+    ran("plot", "drop-out/record.nc")
+    assert Path("drop-out/energy.png").exists()
+    again = json.loads(ran("run", "drop-out/record.nc", "--json"))
+    assert again["measures"] == found["measures"]
+
+
+def test_creep_has_a_colour_of_its_own():
+    others = [colour for name, colour in COLOURS.items() if name != "lost_viscous"]
+    assert COLOURS["lost_viscous"] not in others
+
+
+def test_the_curve_is_that_of_the_relaxed_bulk():
+    case = load(SMOOTH + CREEPS)
+    found = solver.curve(case)
+    modulus = 0.4 * contact_modulus(case.body_solid, case.counterface_solid)
+    overlap = np.maximum(-found.rigid_separation, 0.0)
+    hertz = 4.0 / 3.0 * modulus * math.sqrt(case.body.radius) * overlap**1.5
+    np.testing.assert_allclose(found.force_approach, hertz, atol=1e-8 * hertz.max())
+    assert found.loss == 0.0
+
+
+def test_a_smooth_case_may_be_assessed():
+    Path("drop.toml").write_text(SMOOTH + CREEPS)
+    assert json.loads(ran("regime", "drop.toml", "--json"))
+
+
+def test_a_rough_sphere_with_adhesion_and_menisci_runs():
+    result = solver.solve(load(SMOOTH + CREEPS + ROUGH + ADHESION + WATER))
+    assert result.ledger["closure"] < 1e-6
+    lost = result.ledger["lost"]
+    assert lost["viscous"] > 0.0
+    assert lost["capillary"] > 0.0
+    assert 0.3 < result.measures["restitution"][0] < 0.98
+    total = sum(result.energies.values())
+    kinetic = np.max(result.energies["kinetic"])
+    assert np.max(np.abs(total - result.ledger["initial"])) < 1e-6 * kinetic
+    assert {"elastic", "adhesion", "capillary", "contact"} <= set(result.forces)
+    assert not any("ledger" in line for line in result.warnings)
+    curve = solver.curve(result.case)
+    assert curve.loss > 0.0
+
+
+def test_it_may_be_stopped():
+    import threading
+
+    stop = threading.Event()
+
+    def watch(fraction, text):
+        if text == "impact 1":
+            stop.set()
+
+    result = solver.solve(load(SMOOTH + CREEPS), stop=stop, progress=watch)
+    assert result.outcome is asperity.errors.Outcome.INTERRUPTED
+    assert len(result.measures["restitution"]) == 1

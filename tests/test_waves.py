@@ -1,0 +1,213 @@
+"""A case whose contact radiates waves: its motion, its ledger, what is refused and warned of."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import asperity
+from asperity._jax import jax
+from asperity.case import load
+from asperity.case.build import build
+from asperity.errors import InputError
+from asperity.wave_limits import wave_warnings
+
+ROUGH = load("""
+schema = 1
+[body]
+radius = "5 um"
+material = "silica"
+[counterface]
+material = "silicon"
+deformation = "rigid"
+[roughness]
+asperity_density = "60 1/um^2"
+asperity_radius = "0.1 um"
+rms_height = "5 nm"
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.6
+temperature = "20 degC"
+contact_angle = "30 deg"
+[gas]
+viscosity = "18.2 uPa s"
+slip_length = "75 nm"
+[waves]
+model = "hunter"
+[impact]
+speed = "0.5 m/s"
+release_gap = "100 nm"
+gravity = "1e6 m/s^2"
+[numerics]
+max_impacts = 2
+""")
+SMOOTH = ROUGH.replace(
+    {
+        "roughness": None,
+        "gas": None,
+        "capillary": None,
+        "counterface.deformation": "half-space",
+        "adhesion.model": "jkr",
+        "adhesion.work": "50 mJ/m^2",
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return asperity.solve(ROUGH)
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return build(ROUGH)
+
+
+def _leg(problem, start, speed, memory):
+    """Place of the next turn of an integration in time, in nm and us."""
+    contact, body = problem.contact, problem.body
+    force = jax.jit(jax.value_and_grad(lambda d: contact.state(d, memory).force))
+    central = jax.jit(lambda d: body.film.drag(contact.state(d, memory).central))
+    mass, weight, waves = (float(x) for x in (body.mass, body.weight, body.waves.coefficient))
+
+    def rate(_, y):
+        place = y[0] * 1e-9
+        push, slope = (float(x) for x in force(place))
+        drag = float(central(place)) + waves * slope**2
+        return [y[1], (push - weight - drag * y[1] * 1e-3) / mass * 1e-3]
+
+    def turns(_, y):
+        return y[1]
+
+    turns.terminal, turns.direction = True, 1.0 if speed < 0.0 else -1.0
+    found = solve_ivp(rate, (0, 1e3), [start * 1e9, speed * 1e3], "DOP853", events=turns,
+                      rtol=1e-10, atol=1e-10)  # fmt: skip
+    return found.y_events[0][0][0] * 1e-9, found.t_events[0][0] * 1e-6
+
+
+def test_motion_is_that_of_an_integration_in_time_with_gas_and_waves(problem, result):
+    memory, time = problem.contact.fresh(), 0.0
+    place, speed = float(problem.body.release), -0.5
+    for name in ("deepest", "apex"):
+        place, taken = _leg(problem, place, speed, memory)
+        memory, time = problem.contact.remember(memory, place), time + taken
+        speed = 1e-9 if name == "deepest" else -1e-9
+        assert result.events[f"{name}_separation"][0] == pytest.approx(place, rel=1e-6)
+        assert result.events[f"{name}_time"][0] == pytest.approx(time, rel=1e-6)
+
+
+def test_waves_are_booked_apart_from_gas_and_menisci(result):
+    lost = result.ledger["lost"]
+    assert set(lost) == {"capillary", "gas", "waves"}
+    assert all(energy > 0.0 for energy in lost.values())
+    assert result.ledger["closure"] < 1e-9
+    whole = sum(result.energies.values())
+    assert np.ptp(whole) < 1e-9 * result.ledger["initial"]
+    assert result.energies["lost_waves"][-1] == pytest.approx(lost["waves"], rel=1e-9)
+    assert np.all(np.diff(result.energies["lost_waves"]) > -1e-15 * lost["waves"])
+
+
+def test_the_force_of_waves_is_part_of_the_total(result):
+    forces = result.forces
+    parts = sum(forces[name] for name in ("contact", "weight", "gas", "waves"))
+    np.testing.assert_allclose(forces["total"], parts, rtol=1e-12)
+    assert np.all(forces["waves"] * result.speed <= 0.0)
+
+
+def _from_forces(result, coefficient):
+    """What the drawn force radiates: the integral of its rate squared, by differences."""
+    time, force = result.time, result.forces["contact"]
+    steps = np.diff(time)
+    moved = steps > 0.0
+    return coefficient * np.sum(np.diff(force)[moved] ** 2 / steps[moved])
+
+
+def test_loss_is_that_of_the_drawn_force(problem, result):
+    found = _from_forces(result, float(problem.body.waves.coefficient))
+    assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
+
+
+def test_a_rough_half_space_radiates_too():
+    case = ROUGH.replace(
+        {
+            "gas": None,
+            "counterface.deformation": "half-space",
+            "numerics.max_impacts": 1,
+        }
+    )
+    result = asperity.solve(case)
+    found = _from_forces(result, float(build(case).body.waves.coefficient))
+    assert set(result.ledger["lost"]) == {"capillary", "waves"}
+    assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
+    assert result.ledger["closure"] < 1e-8
+
+
+@pytest.mark.parametrize("table", [None, {"model": "none"}])
+def test_without_waves_there_are_none(table):
+    assert build(ROUGH.replace({"waves": table})).body.mechanisms == ("gas",)
+
+
+def test_the_counterface_carries_the_waves_not_the_body(problem):
+    coefficient = float(problem.body.waves.coefficient)
+    other = build(ROUGH.replace({"body.material": "gold"})).body.waves
+    assert float(other.coefficient) == coefficient
+    other = build(ROUGH.replace({"counterface.material": "silica"})).body.waves
+    assert float(other.coefficient) > coefficient
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"waves.model": "huntr"}, "did you mean 'hunter'?"),
+        (
+            {"counterface": {"youngs_modulus": "100 GPa", "poisson": 0.2}},
+            "`density` must be given for the counterface with [waves] model = 'hunter'",
+        ),
+        ({"capillary.formation_time": "1 us"}, "`formation_time` must be absent with [waves]"),
+        ({"gas": None, "publication": {}}, "[waves] must not be given with a [publication] table"),
+    ],
+)
+def test_what_waves_cannot_be_computed_from_is_refused(changes, words):
+    with pytest.raises(InputError) as caught:
+        ROUGH.replace(changes)
+    assert words in str(caught.value)
+
+
+def test_a_table_that_says_none_refuses_nothing():
+    own = {"youngs_modulus": "100 GPa", "poisson": 0.2}
+    ROUGH.replace({"waves.model": "none", "counterface": own, "capillary.formation_time": None})
+
+
+def _warned(case, share, force):
+    """The warnings of a first impact that radiates a share, with a force [N] at its depth."""
+    problem = build(case)
+    energy = 0.5 * float(problem.body.mass) * 0.5**2
+    laws = np.full(len(problem.contact.mechanisms), 1e-3 * energy)
+    impacts = SimpleNamespace(fastest=[energy], lost=np.append(laws, share * energy)[None])
+    motion = SimpleNamespace(impacts=impacts)
+    return wave_warnings(case, problem, force, -1e-9, motion)
+
+
+def test_little_waves_of_a_smooth_body_are_warned_of_for_its_bonds_alone():
+    (line,) = _warned(SMOOTH, 0.01, 1e-5)
+    assert "part of the energy lost to adhesion" in line
+
+
+def test_strong_waves_are_warned_of():
+    assert any("radiates 20 %" in line for line in _warned(SMOOTH, 0.2, 1e-5))
+
+
+def test_quick_forces_are_warned_of():
+    lines = _warned(SMOOTH, 0.01, 1e-1)
+    assert any("shear waves cross the contact's radius" in line for line in lines)
+    assert any("it is left ringing" in line for line in lines)
+
+
+def test_menisci_of_rough_bodies_do_not_snap_at_once():
+    assert _warned(ROUGH.replace({"gas": None}), 0.01, 1e-5) == []
+
+
+def test_a_body_that_pulls_alone_is_not_judged():
+    assert _warned(SMOOTH, 0.2, 0.0) == []
