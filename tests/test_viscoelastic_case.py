@@ -14,6 +14,7 @@ from asperity.case import load
 from asperity.case.build import build
 from asperity.cli import app
 from asperity.contact.creep import CreptContact
+from asperity.errors import SimulationError
 from asperity.materials import contact_modulus
 from asperity.plots.style import COLOURS
 
@@ -192,3 +193,9 @@ def test_it_may_be_stopped():
     result = solver.solve(load(SMOOTH + CREEPS), stop=stop, progress=watch)
     assert result.outcome is asperity.errors.Outcome.INTERRUPTED
     assert len(result.measures["restitution"]) == 1
+
+
+def test_a_bulk_too_soft_and_quick_to_follow_fails_with_the_reason():
+    soft = SMOOTH.replace("= 3\n", "= 10\n") + CREEPS.replace("0.4", "1e-4")
+    with pytest.raises(SimulationError, match="could not be followed: its relaxation"):
+        asperity.solve(load(soft.replace('"500 ns"', '"1 ns"')))

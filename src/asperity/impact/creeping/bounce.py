@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...errors import SimulationError
 from .dent import Dent
 from .flight_times import flight_times
 from .foundation import (
@@ -182,11 +183,18 @@ class Bounce:
         if phase.way == RECEDES:
             events.append(_event(phase.touching, -1.0))
         stiff = self.solid.time < _STIFF
-        done = solve_ivp(
-            phase.rates, (self.time, self.time + self._span()), self.state,
-            method="Radau" if stiff else "DOP853", rtol=_TOLERANCE, atol=_LEAST,
-            events=events, dense_output=True,
-        )  # fmt: skip
+        try:
+            done = solve_ivp(
+                phase.rates, (self.time, self.time + self._span()), self.state,
+                method="Radau" if stiff else "DOP853", rtol=_TOLERANCE, atol=_LEAST,
+                events=events, dense_output=True,
+            )  # fmt: skip
+        except ValueError as error:  # of SciPy's search for the root of an event
+            raise SimulationError(
+                "the edge of a creeping contact could not be followed: its relaxation, in "
+                f"{self.solid.time:.2g} of the time of the impact to {self.solid.ratio:.2g} of the "
+                "modulus, is too quick and too deep beside the motion"
+            ) from error
         track = self._tracked(phase, done)
         phase.follow(done.sol, done.t[-1])
         self.time, self.state = float(done.t[-1]), done.y[:, -1].copy()
