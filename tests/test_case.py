@@ -190,7 +190,11 @@ def test_the_example_of_every_key_is_read(place, name, field):
     if place[0] == "plasticity":
         table["plasticity"] = {"model": "thornton-ning"}
     if place[0] == "viscoelasticity":
-        table["viscoelasticity"] = {"relaxed_modulus_ratio": 0.1, "relaxation_time": "1 s"}
+        table["viscoelasticity"] = {
+            "model": "standard-linear-solid",
+            "relaxed_modulus_ratio": 0.1,
+            "relaxation_time": "1 s",
+        }
     if place[0] == "gas":
         by_number = name in ("viscosity", "slip_length")
         given = {"viscosity": "18 uPa s", "slip_length": "0 nm"} if by_number else {

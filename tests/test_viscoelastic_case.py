@@ -14,7 +14,6 @@ from asperity.case import load
 from asperity.case.build import build
 from asperity.cli import app
 from asperity.contact.creep import CreptContact
-from asperity.errors import SimulationError
 from asperity.materials import contact_modulus
 from asperity.plots.style import COLOURS
 
@@ -81,8 +80,8 @@ def put(text, table, line):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (CREEPS.replace("0.4", "0"), "`relaxed_modulus_ratio` must lie in (0, 1]; got 0"),
-        (CREEPS.replace("0.4", "1.5"), "(0, 1]; got 1.5"),
+        (CREEPS.replace("0.4", "0"), "`relaxed_modulus_ratio` must lie in [0.001, 1]; got 0"),
+        (CREEPS.replace("0.4", "1.5"), "[0.001, 1]; got 1.5"),
         (CREEPS.replace('"500 ns"', '"0 s"'), "`relaxation_time` must be positive; got '0 s'"),
         (CREEPS.replace('"500 ns"', "5e-7"), "`relaxation_time` must be text with a number"),
         (CREEPS.replace("relaxed_modulus_ratio = 0.4\n", ""), "modulus_ratio` must be given"),
@@ -195,7 +194,10 @@ def test_it_may_be_stopped():
     assert len(result.measures["restitution"]) == 1
 
 
-def test_a_bulk_too_soft_and_quick_to_follow_fails_with_the_reason():
-    soft = SMOOTH.replace("= 3\n", "= 10\n") + CREEPS.replace("0.4", "1e-4")
-    with pytest.raises(SimulationError, match="could not be followed: its relaxation"):
-        asperity.solve(load(soft.replace('"500 ns"', '"1 ns"')))
+def test_body_and_edge_that_turn_together_are_one_turn():
+    """Where rounding puts the edge first the turn must not be lost: two impacts would be one."""
+    case = load(SMOOTH.replace("= 3\n", "= 6\n") + CREEPS.replace("0.4", "0.03"))
+    result = asperity.solve(case.replace({"viscoelasticity.relaxation_time": "5 ns"}))
+    restitution = np.asarray(result.measures["restitution"], float)
+    assert np.all(np.diff(restitution) > 0.0)  # slower and slower, by less and less
+    assert 0.7 < restitution[0] < restitution[-1] < 0.85

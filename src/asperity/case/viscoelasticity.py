@@ -22,11 +22,10 @@ class Viscoelasticity(Table):
         "",
         "How the bulk relaxes: 'none', or 'standard-linear-solid'.",
         "standard-linear-solid",
-        default="none",
     )
-    relaxed_modulus_ratio: Annotated[float, Number("(0, 1]")] | None = entry(
+    relaxed_modulus_ratio: Annotated[float, Number("[0.001, 1]")] | None = entry(
         "1",
-        "Modulus after a long time over that of a sudden load, in (0, 1].",
+        "Modulus after a long time over that of a sudden load, in [0.001, 1].",
         0.5,
         default=None,
         shown=True,

@@ -17,7 +17,7 @@ class Waves(Table):
     """Elastic waves into the counterface; without this table none take energy."""
 
     model: Literal["none", "hunter"] = entry(
-        "", "Waves that the contact radiates: 'none', or 'hunter'.", "hunter", default="none"
+        "", "Waves that the contact radiates: 'none', or 'hunter'.", "hunter"
     )
 
     def refuse_beside(

@@ -202,13 +202,16 @@ class Bounce:
             return FAILED, track
         if done.status == 0:
             return (CREPT if self._rests() else ""), track
-        if done.t_events[0].size:
+        # Edge and body often turn together, and rounding may put either first.
+        edge_turned = bool(done.t_events[1].size)
+        turned = bool(done.t_events[0].size) or (edge_turned and abs(self.state[SPEED]) < _SLOW)
+        if turned:
             self.state[SPEED] = 0.0
         if len(events) > 2 and done.t_events[2].size:
             self._part()
-        elif done.t_events[1].size or self._turns_with_body(inwards):
+        elif edge_turned or self._turns_with_body(inwards):
             self._reverse()
-        return (TURNED if done.t_events[0].size else ""), track
+        return (TURNED if turned else ""), track
 
     def _span(self) -> float:
         return max(_SPAN, 2.0 * self.solid.time / self.solid.ratio)
