@@ -25,6 +25,7 @@ material = "silicon carbide"
 [impact]
 speed = "0.1 m/s"
 """
+NOTHING = '[plasticity]\nmodel = "none"\n'
 YIELDS = '[plasticity]\nmodel = "kogut-etsion"\n'
 ROUGH = """
 [roughness]
@@ -42,6 +43,8 @@ contact_angle = "30 deg"
 ELASTIC = Solid("elastic", 100e9, 0.1)
 SOFT = Solid("soft", 200e9, 0.4, hardness=1e9)
 HARD = Solid("hard", 50e9, 0.2, hardness=5e9)
+
+UNUSED = Plasticity(model="none")
 
 stresses = st.floats(1e6, 1e10)
 
@@ -84,7 +87,7 @@ def in_numbers(table, line):
 
 def test_without_the_table_nothing_yields():
     assert builtin("published-exact").plasticity_model == "none"
-    assert load(SMOOTH + "[plasticity]\n").plasticity_model == "none"
+    assert load(SMOOTH + NOTHING).plasticity_model == "none"
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -96,37 +99,37 @@ def test_a_law_is_named_and_what_yields_is_known(model):
 
 @pytest.mark.parametrize("solids", [(SOFT, HARD), (HARD, SOFT), (SOFT, ELASTIC), (ELASTIC, SOFT)])
 def test_the_softer_solid_yields_whatever_its_modulus_and_its_place(solids):
-    assert yielding_of(Plasticity(), solids).hardness == SOFT.hardness
-    assert yielding_of(Plasticity(), solids).poisson == SOFT.poisson
+    assert yielding_of(UNUSED, solids).hardness == SOFT.hardness
+    assert yielding_of(UNUSED, solids).poisson == SOFT.poisson
 
 
 def test_a_yield_strength_alone_says_how_soft_a_solid_is():
     softest = Solid("softest", 300e9, 0.35, yield_strength=0.3e9)
-    found = yielding_of(Plasticity(), (SOFT, softest))
+    found = yielding_of(UNUSED, (SOFT, softest))
     assert found == Yielding(2.8 * 0.3e9, 0.3e9, 1.61 * 0.3e9, 0.35)
 
 
 @given(stresses)
 def test_hardness_and_yield_strength_follow_from_each_other(stress):
-    by_strength = yielding_of(Plasticity(), (Solid("a", 1e11, 0.3, yield_strength=stress), ELASTIC))
+    by_strength = yielding_of(UNUSED, (Solid("a", 1e11, 0.3, yield_strength=stress), ELASTIC))
     hardness = by_strength.hardness
-    by_hardness = yielding_of(Plasticity(), (ELASTIC, Solid("a", 1e11, 0.3, hardness=hardness)))
+    by_hardness = yielding_of(UNUSED, (ELASTIC, Solid("a", 1e11, 0.3, hardness=hardness)))
     assert by_hardness.yield_strength == pytest.approx(stress)
     assert by_hardness.yield_pressure == pytest.approx(by_strength.yield_pressure)
 
 
 def test_the_tables_values_come_first_and_one_stands_for_both():
     both = Solid("both", 1e11, 0.3, hardness=3e9, yield_strength=1e9)
-    harder = yielding_of(load(SMOOTH + '[plasticity]\nhardness = "8 GPa"').plasticity, (both, HARD))
+    harder = yielding_of(load(SMOOTH + NOTHING + 'hardness = "8 GPa"').plasticity, (both, HARD))
     assert (harder.hardness, harder.yield_strength) == (8e9, 8e9 / 2.8)
-    table = load(SMOOTH + '[plasticity]\nyield_strength = "2 GPa"').plasticity
+    table = load(SMOOTH + NOTHING + 'yield_strength = "2 GPa"').plasticity
     assert yielding_of(table, (both, HARD)) == Yielding(5.6e9, 2e9, 3.22e9, 0.3)
-    table = load(SMOOTH + '[plasticity]\nyield_strength = "2 GPa"\nhardness = "4 GPa"').plasticity
+    table = load(SMOOTH + NOTHING + 'yield_strength = "2 GPa"\nhardness = "4 GPa"').plasticity
     assert yielding_of(table, (both, HARD)) == Yielding(4e9, 2e9, 3.22e9, 0.3)
 
 
 def test_the_table_is_enough_where_no_material_has_a_strength_and_the_less_stiff_yields():
-    table = load(SMOOTH + '[plasticity]\nyield_strength = "1 GPa"').plasticity
+    table = load(SMOOTH + NOTHING + 'yield_strength = "1 GPa"').plasticity
     stiff = Solid("stiff", 300e9, 0.2)
     assert yielding_of(table, (stiff, ELASTIC)) == Yielding(2.8e9, 1e9, 1.61e9, ELASTIC.poisson)
 
@@ -207,7 +210,7 @@ OWN = '[materials.glass]\nyoungs_modulus = "1 GPa"\npoisson = 0.4\ndensity = "1 
 BAD = [
     (SMOOTH.replace('"silica"', '"silicon"') + YIELDS, "plasticity.hardness (line 9): "
      "`hardness` or `yield_strength` must be given with model = 'kogut-etsion'", "got nothing"),
-    (SMOOTH + "[plasticity]\n" + TWO, "plasticity.hardness (line 10): `hardness` must be at least "
+    (SMOOTH + NOTHING + TWO, "plasticity.hardness (line 11): `hardness` must be at least "
      "the yield strength (2000 MPa)", "got 1000 MPa"),
     (in_numbers("body", TWO), "body.hardness (line 3)", BELOW),
     (in_numbers("counterface", TWO), "counterface.hardness", BELOW),
@@ -231,7 +234,7 @@ BAD = [
     (SMOOTH + YIELDS + 'yield_strength = "3 m"', "plasticity.yield_strength", "got '3 m'"),
     (SMOOTH + YIELDS + 'yield_pressure = "2 GPa"', "plasticity.yield_pressure (line 11): "
      "`yield_pressure` must be absent without model = 'thornton-ning'", "got 2000 MPa"),
-    (SMOOTH + '[plasticity]\nyield_pressure = "2 GPa"', "plasticity.yield_pressure", "absent"),
+    (SMOOTH + NOTHING + 'yield_pressure = "2 GPa"', "plasticity.yield_pressure", "absent"),
     (SMOOTH + '[plasticity]\nmodel = "kogut"', "plasticity.model (line 10): `model` must be one of "
      "'none', 'kogut-etsion', 'jackson-green' or 'thornton-ning'", "got 'kogut'"),
     (SMOOTH + YIELDS + 'yield_strenght = "1 GPa"', "plasticity.yield_strenght (line 11)",
@@ -298,3 +301,12 @@ def test_a_sphere_that_adhesion_alone_makes_yield_is_refused_with_the_least_pres
     with pytest.raises(InputError, match=r"at least .* MPa, or the body yields by adhesion alone"):
         build(case.replace({"plasticity.yield_pressure": "1 MPa", "adhesion.work": "0.2 J/m^2"}))
     assert build(case).contact.mechanisms[:2] == ("plastic", "adhesion")
+
+
+@pytest.mark.parametrize(
+    "table", ['[plasticity]\nhardness = "1 GPa"\n', "[waves]\n", "[viscoelasticity]\n"]
+)
+def test_a_table_of_losses_must_say_which_model(table):
+    """A table without one would be read and left unused."""
+    with pytest.raises(InputError, match="`model` is missing"):
+        load(SMOOTH + table)

@@ -15,6 +15,7 @@ from asperity.case.build import build
 from asperity.cli import app
 from asperity.contact.creep import CreptContact
 from asperity.materials import contact_modulus
+from asperity.plots import style
 from asperity.plots.style import COLOURS
 
 CREEPS = """
@@ -201,3 +202,7 @@ def test_body_and_edge_that_turn_together_are_one_turn():
     restitution = np.asarray(result.measures["restitution"], float)
     assert np.all(np.diff(restitution) > 0.0)  # slower and slower, by less and less
     assert 0.7 < restitution[0] < restitution[-1] < 0.85
+
+
+def test_no_mechanism_of_a_users_own_takes_the_colour_of_another():
+    assert not set(style._SPARE) & set(COLOURS.values())

@@ -94,7 +94,7 @@ def warnings_of(
         *gas_warnings(case, at_depth.central, motion),
         *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
         *_shape(case, motion),
-        *_ledger(motion),
+        *_ledger(problem, motion),
     ]
 
 
@@ -152,7 +152,9 @@ def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
     rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
     hertz = 0.0
     if case.counterface.deformation != "rigid":
-        hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / problem.modulus)
+        relaxed = 1.0 if problem.creep is None else float(problem.creep.ratio)
+        modulus = relaxed * problem.modulus
+        hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / modulus)
     width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
     if width > side:
         raise InputError(
@@ -266,12 +268,13 @@ def _shape(case: Case, motion: Motion) -> list[str]:
     ]
 
 
-def _ledger(motion: Motion) -> list[str]:
+def _ledger(problem: Problem, motion: Motion) -> list[str]:
+    what = "way between the branches" if problem.creep is None else "creeping contact"
     rows = motion.impacts
     off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
     if off <= CLOSED:
         return []
     return [
         f"the energy ledger closes to {off:.1g} of the impact energy only, not to {CLOSED:.0e}: "
-        "the way between the branches is not resolved"
+        f"the {what} is not resolved"
     ]

@@ -34,7 +34,6 @@ class Plasticity(Table):
         "",
         "Law of a contact that yields: 'none', 'kogut-etsion', 'jackson-green' or 'thornton-ning'.",
         "kogut-etsion",
-        default="none",
     )
     hardness: fields.Modulus | None = entry(
         "Pa", "Hardness, in place of the softer material's.", "1 GPa", default=None

@@ -231,7 +231,7 @@ class Case(Table):
         """
         table = self.plasticity
         if table is None or table.model == "none":
-            table = Plasticity()
+            table = Plasticity(model="none")
         return yielding_of(table, (self.body_solid, self.counterface_solid))
 
     @property

@@ -58,7 +58,7 @@ COLOURS = {
 """Okabe and Ito's colours, which the colour-blind can tell apart; the same thing has the same
 colour in every picture."""
 
-_SPARE = ("#444444", "#8C6D31", "#7F3C8D")
+_SPARE = ("#444444", "#A05195", "#5B8C5A")  # of mechanisms of one's own
 
 _LOOK: Any = {
     "font.size": 8.0,
