@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from asperity.errors import InputError
 from asperity.materials import GAS_CONSTANT
 
@@ -72,7 +74,7 @@ class Gas:
         molecules (Chapman and Cowling 1970).
         """
         per_kilogram = GAS_CONSTANT / self.molar_mass * temperature
-        speed = math.sqrt(8.0 / math.pi * per_kilogram)
+        speed = np.sqrt(8.0 / math.pi * per_kilogram)
         return self.viscosity(temperature) * per_kilogram / (0.499 * pressure * speed)
 
     def slip_length(self, pressure: float, temperature: float) -> float:

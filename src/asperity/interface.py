@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import NamedTuple
 
 import equinox as eqx
@@ -93,12 +94,12 @@ class Interface(eqx.Module):
     @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return jnp.max(jnp.stack([law.reach for law in terms(self.law)]))
+        return reduce(jnp.maximum, [law.reach for law in terms(self.law)])
 
     @property
     def last_kink(self) -> jax.Array:
         """Gap [m] beyond which all laws are smooth."""
-        return jnp.max(jnp.stack([law.last_kink for law in terms(self.law)]))
+        return reduce(jnp.maximum, [law.last_kink for law in terms(self.law)])
 
     def fresh(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 
 import equinox as eqx
 
@@ -74,7 +75,7 @@ class Layers(eqx.Module):
     @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return jnp.max(jnp.stack([part.reach for part in self.parts]))
+        return reduce(jnp.maximum, [part.reach for part in self.parts])
 
     @property
     def last_kink(self) -> jax.Array:

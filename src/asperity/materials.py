@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from asperity.errors import InputError
 
 GAS_CONSTANT = 8.31446261815324
@@ -197,14 +199,14 @@ def kelvin_radius(liquid: Liquid, humidity: float, temperature: float) -> float:
     _positive("temperature", temperature)
     if humidity == 0.0:
         return 0.0
-    energy = GAS_CONSTANT * temperature * -math.log(humidity)
+    energy = GAS_CONSTANT * temperature * -np.log(humidity)
     return liquid.tension * liquid.molar_volume / energy
 
 
 def water_tension(temperature: float) -> float:
     """Surface tension of water [N/m] at a temperature [K]. IAPWS R1-76(2014), eq. 1."""
     reduced = 1.0 - temperature / 647.096
-    return float(235.8e-3 * reduced**1.256 * (1.0 - 0.625 * reduced))
+    return 235.8e-3 * reduced**1.256 * (1.0 - 0.625 * reduced)
 
 
 def water_density(temperature: float) -> float:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ._jax import jax, jnp
 from .errors import Outcome
-from .impact import Body, Motion
+from .impact import Body, Impacts, Motion, Table
 from .impact.damping import kinetic_at
 from .impact.datum import end_of_contact
 from .impact.history import ENDS, Phase
@@ -67,7 +67,12 @@ Passing = tuple[jax.Array, jax.Array]
 """Kinetic energies [J] at the end of contact on the way in and out, per impact."""
 
 
-def measure(motion: Motion, body: Body, passing: Passing | None = None) -> Measures:
+def measure(
+    motion: Motion,
+    body: Body,
+    passing: Passing | None = None,
+    reference: jax.Array | None = None,
+) -> Measures:
     """Measures of a motion; see :class:`Measures`.
 
     Parameters
@@ -75,11 +80,12 @@ def measure(motion: Motion, body: Body, passing: Passing | None = None) -> Measu
     motion, body
         The motion, and what moved.
     passing
-        For a motion in gas that was stepped in time: its energies at the end of contact.
+        For a motion in gas of which no phases are kept: its energies at the end of contact.
+    reference
+        The end of contact [m], where it is known: :func:`contact_ends`, which needs the table.
     """
     rows, datum, end = motion.impacts, motion.datum, motion.end
-    peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
-    reference = end_of_contact(motion.table, peak)
+    reference = contact_ends(motion.table, rows) if reference is None else reference
     outside = reference < body.release
     escaped = end.outcome == ENDS.index(Outcome.ESCAPED)
     last = jnp.arange(rows.made.shape[0]) == end.made - 1
@@ -124,6 +130,26 @@ def measure(motion: Motion, body: Body, passing: Passing | None = None) -> Measu
     )
 
 
+def contact_ends(table: Table, rows: Impacts) -> jax.Array:
+    """Where the contact of a motion ends [m]: its force is 1e-6 of the largest there."""
+    peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
+    return end_of_contact(table, peak)
+
+
+def passing_at(body: Body, table: Table, rows: Impacts, place: jax.Array) -> Passing:
+    """Kinetic energies [J] with which each impact passes a place [m] outside contact."""
+
+    def passing(phase: Phase, parting: bool) -> jax.Array:
+        way = jnp.asarray(parting)
+        pieces = join(table, phase.branch, phase.inner, phase.start, way)
+        return kinetic_at(body, pieces, phase.kinetic, way, place)
+
+    return (
+        jax.vmap(lambda phase: passing(phase, False))(rows.fall),
+        jax.vmap(lambda phase: passing(phase, True))(rows.rise),
+    )
+
+
 def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
     """The values of the impact before, ``first`` before the first."""
     return jnp.concatenate([jnp.asarray(first, dtype=jnp.float64)[None], values[:-1]])
@@ -138,21 +164,6 @@ def _captures(motion: Motion, body: Body, reference: jax.Array, gone: jax.Array)
     rows = motion.impacts
     held = reference if body.film is None else jnp.fmin(reference, motion.datum.equilibrium)
     return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
-
-
-def _passing(motion: Motion, body: Body, place: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Kinetic energies [J] at a place outside contact, on the way in and out, per impact."""
-
-    def passing(phase: Phase, parting: bool) -> jax.Array:
-        way = jnp.asarray(parting)
-        pieces = join(motion.table, phase.branch, phase.inner, phase.start, way)
-        return kinetic_at(body, pieces, phase.kinetic, way, place)
-
-    rows = motion.impacts
-    return (
-        jax.vmap(lambda phase: passing(phase, False))(rows.fall),
-        jax.vmap(lambda phase: passing(phase, True))(rows.rise),
-    )
 
 
 def _restitution(
@@ -179,7 +190,7 @@ def _restitution(
     before = _shift(after, motion.release - zero)
     if body.film is not None:
         # Gas takes energy beyond the reference too: count what passes there.
-        kinetic_in, kinetic_out = passing or _passing(motion, body, reference)
+        kinetic_in, kinetic_out = passing or passing_at(body, motion.table, rows, reference)
         before = jnp.where(outside, kinetic_in, before)
         after = jnp.where(outside, kinetic_out, after)
     back = jnp.logical_or(rows.apex >= reference, gone)

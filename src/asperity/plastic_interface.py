@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import reduce
 from typing import NamedTuple
 
 import equinox as eqx
@@ -118,7 +119,7 @@ class PlasticInterface(eqx.Module):
     @property
     def reach(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return jnp.max(jnp.stack([jnp.zeros(()), *(law.reach for law in terms(self.law))]))
+        return reduce(jnp.maximum, [law.reach for law in terms(self.law)], jnp.zeros(()))
 
     @property
     def last_kink(self) -> jax.Array:

@@ -14,7 +14,7 @@ import hashlib
 import os
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from functools import cache
 from pathlib import Path
@@ -22,6 +22,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import equinox as eqx
 import jaxlib.version
+import numpy as np
 
 from ._jax import jax
 
@@ -38,8 +39,11 @@ Each takes some 250 of the 65530 memory maps that Linux gives a process; one tha
 them dies. What is dropped is read from disk again.
 """
 
-_OPTIONS = {"xla_cpu_use_fusion_emitters": False, "xla_backend_optimization_level": 1}
-"""Half the time to compile; the programs run as fast."""
+QUICKLY: dict[str, bool | int] = {
+    "xla_cpu_use_fusion_emitters": False,
+    "xla_backend_optimization_level": 1,
+}
+"""Options of XLA for half the time to compile; a single motion runs as fast."""
 
 
 def kept(record: type[Record]) -> type[Record]:
@@ -60,18 +64,28 @@ class Program(Generic[P, Answer]):
     function
         A function that JAX can trace. Its answer is made of arrays, tuples and records that
         :func:`kept` knows.
+    options
+        XLA's options.
     """
 
-    def __init__(self, function: Callable[P, Answer]) -> None:
+    def __init__(
+        self,
+        function: Callable[P, Answer],
+        options: Mapping[str, bool | int] = QUICKLY,
+    ) -> None:
         self._function = function
+        self._options = dict(options)
         self._held: OrderedDict[Any, _Held] = OrderedDict()
         self._lock = threading.Lock()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Answer:
+        return self.ready(*args, **kwargs)()
+
+    def ready(self, *args: P.args, **kwargs: P.kwargs) -> Callable[[], Answer]:
+        """The call itself, once all is compiled that it needs."""
         fixed, arrays = _split((args, kwargs))
-        held = self._of(fixed, arrays, aside=False)
-        answer: Answer = held.compiled.result()(arrays)
-        return answer
+        compiled = self._of(fixed, arrays, aside=False).compiled.result()
+        return lambda: compiled(arrays)
 
     def ahead(self, *args: Any) -> Any:
         """Trace for such arguments and compile in a thread; the shapes of the answer.
@@ -107,7 +121,7 @@ class Program(Generic[P, Answer]):
             args, kwargs = _join(fixed, arrays)
             return self._function(*args, **kwargs)
 
-        traced = jax.jit(function, compiler_options=_OPTIONS)
+        traced = jax.jit(function, compiler_options=self._options)
         folder = _folder()
         ours = self._function.__module__.startswith(_OURS) and _all_ours(fixed[0])
         if folder is None or not ours:
@@ -118,7 +132,7 @@ class Program(Generic[P, Answer]):
         if exported is None:
             exported = jax.export.export(traced)(shapes)
             _write(file, exported.serialize())
-        return jax.jit(exported.call, compiler_options=_OPTIONS).lower(shapes)
+        return jax.jit(exported.call, compiler_options=self._options).lower(shapes)
 
 
 _compiling: list[threading.Thread] = []
@@ -150,7 +164,7 @@ class _Held:
 
 
 def _is_traced(leaf: Any) -> bool:
-    return eqx.is_array(leaf) or isinstance(leaf, jax.ShapeDtypeStruct)
+    return eqx.is_array(leaf) or isinstance(leaf, jax.ShapeDtypeStruct | np.ndarray)
 
 
 def _split(args: Any) -> tuple[Any, list[Any]]:

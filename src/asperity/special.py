@@ -66,6 +66,16 @@ def height_integrals(orders: tuple[float, ...], separations: jax.Array) -> jax.A
 @partial(jax.jit, static_argnums=0)
 def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
     """:func:`height_integrals`, traced once for all its callers."""
+    known = [row for row, order in enumerate(orders) if order == 0.0]
+    if known:
+        # The tail of the Gaussian, for which XLA has a function: a fifth of the time.
+        tail = 0.5 * jax.lax.erfc(separations[np.asarray(known)] * np.sqrt(0.5))
+        others = [row for row, order in enumerate(orders) if order != 0.0]
+        if not others:
+            return tail
+        rest = _evaluate(tuple(orders[row] for row in others), separations[np.asarray(others)])
+        place = np.argsort([*known, *others])
+        return jnp.concatenate([tail, rest])[place]
     table = np.concatenate([np.concatenate(_tables(order)) for order in orders])
     rows = (len(orders),) + (1,) * (separations.ndim - 1)
     order = np.asarray(orders).reshape(rows)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from ..contact import (
     Contact,
@@ -18,6 +19,7 @@ from ..contact import (
 )
 from ..contact.creep import Creep
 from ..contact.late import LATE, LateContact
+from ..contact.resolution import Resolution
 from ..film import SqueezeFilm
 from ..impact import Body
 from ..interface import Interface
@@ -36,9 +38,10 @@ from ..laws import (
     Meniscus,
     PublishedPressure,
 )
-from ..laws.base import Sum
+from ..laws.base import Real, Sum
 from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..laws.meniscus import Formation
+from ..laws.published import FINE
 from ..layers import Layers, Surfaces
 from ..materials import contact_modulus
 from ..plastic_interface import PlasticInterface
@@ -51,8 +54,6 @@ from ..summits import loss_error, measured_surface
 from .yielding import plastic_contact, smooth_contact
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from .asperities import Asperities
     from .forces import Adhesion
     from .publication import Publication
@@ -95,8 +96,15 @@ class Problem(NamedTuple):
     creep: Creep | None = None
 
 
-def build(case: Case) -> Problem:
+def build(case: Case, resolved: Resolution | None = None) -> Problem:
     """The objects that a case describes.
+
+    Parameters
+    ----------
+    case
+        The case.
+    resolved
+        How finely the curves of a rough contact are cut; by default as its forces ask for.
 
     Raises
     ------
@@ -119,13 +127,13 @@ def build(case: Case) -> Problem:
         interface = _interface(case, rough, adhesion.law, modulus)
         shape = Sphere(case.body.radius)
         if case.counterface.deformation == "rigid":
-            contact = RigidContact(interface, shape)
+            contact = RigidContact(interface, shape, resolved)
         else:
-            contact = ElasticContact(interface, shape, modulus, case.numerics.rings)
+            contact = ElasticContact(interface, shape, modulus, case.numerics.rings, resolved)
     impact = case.impact
-    release = impact.release_gap
+    release: Real = impact.release_gap
     if release is None:
-        release = float(contact.reach) + CLEARANCE
+        release = contact.reach + CLEARANCE
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case), _waves(case))
     late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
@@ -242,9 +250,9 @@ def _published(
     liquid, kelvin_radius = case.liquid, case.kelvin_radius
     tension, reach = 0.0, None
     if liquid is not None and kelvin_radius > 0.0:
-        cosine = math.cos(_given(case.capillary.contact_angle))
+        cosine = np.cos(_given(case.capillary.contact_angle))
         tension = assumed.capillary_factor * liquid.tension * cosine
-        reach = None if math.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
+        reach = None if np.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
     work = _given(case.adhesion.work) if case.adhesion.model != "none" else 0.0
     pressure = PublishedPressure(
         density=rough.asperity_density,
@@ -255,6 +263,9 @@ def _published(
         tension=tension,
         edge=assumed.conjunction_ends,
         reach=reach,
+        fine=bool(
+            assumed.polynomials == "exact" and assumed.conjunction_ends <= FINE * assumed.bands
+        ),
         functions=HeightFunctions(float(assumed.polynomials == "printed")),
         bands=assumed.bands,
     )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from asperity import materials as catalogue
@@ -267,13 +268,13 @@ class Case(Table):
         kelvin = self.kelvin_radius
         if film is None or angle is None:
             return kelvin
-        return min(kelvin, film / math.cos(angle))
+        return min(kelvin, film / np.cos(angle))
 
     @property
     def liquid_span(self) -> float:
         """Largest gap that the liquid bridges [m], twice its radius times cos(contact angle)."""
         angle = self.capillary.contact_angle
-        return 0.0 if angle is None else 2.0 * self.liquid_radius * math.cos(angle)
+        return 0.0 if angle is None else 2.0 * self.liquid_radius * np.cos(angle)
 
     @property
     def tolerance(self) -> Tolerance:

@@ -44,6 +44,7 @@ from asperity.cli.arguments import (
     TwoSurfaces,
     Unit,
 )
+from asperity.cli.studying import add_to
 from asperity.cli.terminal import Commands
 
 app = typer.Typer(
@@ -245,21 +246,6 @@ def reproduce(
 
 
 @app.command()
-def plot(
-    record: Annotated[str, typer.Argument(help="A record.nc or curve.nc.")],
-    output: Folder = None,
-    force: Force = False,
-) -> None:
-    """Draw a record's pictures again.
-
-    Beside the record, in place of those there, unless DIR is given.
-    """
-    from asperity.cli.computing import redraw
-
-    redraw(record, output, force=force)
-
-
-@app.command()
 def init(
     file: Annotated[str, typer.Argument(help="File to write.")] = "case.toml",
 ) -> None:
@@ -280,6 +266,9 @@ def materials(
     from asperity.cli.listing import list_materials
 
     list_materials(as_json=as_json)
+
+
+add_to(app)
 
 
 def main() -> None:

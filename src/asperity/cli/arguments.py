@@ -29,24 +29,26 @@ Json = Annotated[
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
 
 
-def _text(name: str, metavar: str, words: str, note: str | None = None) -> Any:
+def optional(name: str, metavar: str, words: str, note: str | None = None) -> Any:
     """An option that takes a text and has no default of its own."""
     shown = f"{words}{f'  [default: {note}]' if note else ''}"
     return typer.Option(f"--{name}", metavar=metavar, help=shown, show_default=False)
 
 
 Size = Annotated[
-    str | None, _text("size", "'X x Y'", "Size of the map where the file does not state it.")
+    str | None, optional("size", "'X x Y'", "Size of the map where the file does not state it.")
 ]
 Unit = Annotated[
     str | None,
-    _text(
+    optional(
         "unit",
         "UNIT",
         "Unit of the heights (of points: of x and y too) where the file does not state it.",
     ),
 ]
-Missing = Annotated[str | None, _text("missing", "refuse|keep|fill", "Missing pixels.", "refuse")]
+Missing = Annotated[
+    str | None, optional("missing", "refuse|keep|fill", "Missing pixels.", "refuse")
+]
 
 SurfaceFiles = Annotated[
     list[str],
@@ -57,20 +59,24 @@ SurfaceFiles = Annotated[
         show_default=False,
     ),
 ]
-Channel = Annotated[str | None, _text("channel", "NAME|N", "Channel of an instrument's file.")]
-Remove = Annotated[str | None, _text("remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt")]
+Channel = Annotated[str | None, optional("channel", "NAME|N", "Channel of an instrument's file.")]
+Remove = Annotated[
+    str | None, optional("remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt")
+]
 Align = Annotated[
     str | None,
-    _text("align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none"),
+    optional("align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none"),
 ]
 Direction = Annotated[
-    str | None, _text("direction", "rows|columns", "What a scan line is.", "rows")
+    str | None, optional("direction", "rows|columns", "What a scan line is.", "rows")
 ]
-Degree = Annotated[int | None, _text("degree", "N", "Degree of a scan line's polynomial.", "1")]
+Degree = Annotated[int | None, optional("degree", "N", "Degree of a scan line's polynomial.", "1")]
 Short = Annotated[
-    str | None, _text("short", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
+    str | None, optional("short", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
 ]
-Long = Annotated[str | None, _text("long", "LENGTH", "Cut wavelengths above this, such as '5 um'.")]
+Long = Annotated[
+    str | None, optional("long", "LENGTH", "Cut wavelengths above this, such as '5 um'.")
+]
 MadeFile = Annotated[
     str,
     typer.Argument(
@@ -78,25 +84,27 @@ MadeFile = Annotated[
     ),
 ]
 MadeSize = Annotated[
-    str | None, _text("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")
+    str | None, optional("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")
 ]
 Points = Annotated[str, typer.Option("--points", metavar="N|NxM", help="Pixels along x and y.")]
 Hurst = Annotated[float, typer.Option("--hurst", metavar="H", help="Hurst exponent.")]
 RollOff = Annotated[
     str | None,
-    _text("roll-off", "LENGTH", "Wavelength above which the spectrum is flat.", "none"),
+    optional("roll-off", "LENGTH", "Wavelength above which the spectrum is flat.", "none"),
 ]
-CutOff = Annotated[str | None, _text("cut-off", "LENGTH", "Shortest wavelength.", "two pixels")]
-RmsHeight = Annotated[str | None, _text("rms-height", "LENGTH", "Rms height; this or --rms-slope.")]
-RmsSlope = Annotated[float | None, _text("rms-slope", "NUMBER", "Rms of the gradient.")]
+CutOff = Annotated[str | None, optional("cut-off", "LENGTH", "Shortest wavelength.", "two pixels")]
+RmsHeight = Annotated[
+    str | None, optional("rms-height", "LENGTH", "Rms height; this or --rms-slope.")
+]
+RmsSlope = Annotated[float | None, optional("rms-slope", "NUMBER", "Rms of the gradient.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of the random numbers.")]
-Skewness = Annotated[float | None, _text("skewness", "S", "Skewness of the heights.", "0")]
+Skewness = Annotated[float | None, optional("skewness", "S", "Skewness of the heights.", "0")]
 Kurtosis = Annotated[
-    float | None, _text("kurtosis", "K", "Kurtosis of the heights.", "3, a Gaussian's")
+    float | None, optional("kurtosis", "K", "Kurtosis of the heights.", "3, a Gaussian's")
 ]
 Heights = Annotated[
     str | None,
-    _text(
+    optional(
         "heights",
         "FILE",
         "Take the distribution of these heights: an .npy of numbers, or "

@@ -191,6 +191,15 @@ class Contact(eqx.Module):
         """
         return jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places)
 
+    def curves(self, ends: jax.Array, places: jax.Array) -> State:
+        """The contact on all :meth:`branches` along a new first axis, else as :meth:`branch`."""
+        memories = self.branches()
+        stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
+        if jax.tree_util.tree_leaves(stacked):
+            return jax.lax.map(lambda memory: self.branch(ends, places, memory), stacked)
+        states = self.branch(ends, places, memories[0])
+        return jax.tree_util.tree_map(lambda leaf: leaf[None], states)
+
     def way(
         self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:

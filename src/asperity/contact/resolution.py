@@ -47,8 +47,14 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         return Resolution(ceil(10 / interface.grain**0.5), 16, 2)
+    lengths = tuple(float(length) for length in _lengths(interface))
+    return resolution_of(interface, lengths, deforms=deforms)
+
+
+def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: bool) -> Resolution:
+    """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
     grain = interface.grain
-    share, kinked, reach, bends = (float(length) for length in _lengths(interface))
+    share, kinked, reach, bends = lengths
     nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
     pieces = ceil(share / 4.5) or 1
     if bends > 1.5:
@@ -72,7 +78,7 @@ def _shared(reach: float, panels: int) -> int:
     return max(EVEN, ceil((step * hypot(reach, LINEAR) + _HEIGHTS) / _PIECE))
 
 
-def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+def lengths_in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
     """How far a bond stretches, and how far forces have kinks and reach, over the rms height.
 
     And how far a bond stretches over the length on which its force changes.
@@ -87,4 +93,4 @@ def _in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.A
     return widest / rms, kinked, reach, most
 
 
-_lengths = Program(_in_rms)
+_lengths = Program(lengths_in_rms)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import reduce
 
 import equinox as eqx
 import numpy as np
@@ -129,7 +130,7 @@ class SmoothContact(Contact):
 
     @property
     def reach(self) -> jax.Array:
-        return jnp.max(jnp.stack([law.reach for law in terms(self.law)]))
+        return reduce(jnp.maximum, [law.reach for law in terms(self.law)])
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has

@@ -197,19 +197,10 @@ def _tabulated(
     joined: Callable[[jax.Array, jax.Array, jax.Array], jax.Array],
 ) -> Table:
     ends = jax.lax.stop_gradient(contact.panels(low, high))
-    memories = contact.branches()
-    stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
     points = chebyshev.chebpts1(NODES)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
-
-    def one(memory: Memory) -> tuple[jax.Array, jax.Array]:
-        states = contact.branch(ends, places, memory)
-        return _fit(states), jnp.max(states.error)
-
-    if jax.tree_util.tree_leaves(stacked):
-        values, errors = jax.lax.map(one, stacked)
-    else:
-        values, errors = (x[None] for x in one(memories[0]))
+    states = contact.curves(ends, places)
+    values, errors = jax.vmap(_fit)(states), states.error
     values = joined(ends, places, values)
     force = values[..., FORCE]
     width = jnp.diff(ends)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
-from ..polynomials import chebyshev_sum, local
+from ..polynomials import DERIVATIVE, chebyshev_sum, local
 from .phase import Ahead, Turn, kinetic_along
 from .table import LOOKS
 
 _SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]
 _POLISH = 60  # halvings and Newton steps of a turning point, at most
 _CLOSE = 4e-15  # relative
+_CLIMBS = 3  # Newton steps to the largest energy, from a place that is near
 
 
 class _Piece(NamedTuple):
@@ -35,6 +37,16 @@ class _Piece(NamedTuple):
     def slope(self, place: jax.Array) -> jax.Array:
         """Force less weight [N]."""
         return chebyshev_sum(self.force, local(self.low, self.high, place)) - self.weight
+
+    def towards_top(self, place: jax.Array) -> jax.Array:
+        """Nearer to where the energy is largest [m], within the piece; else the place itself."""
+        width = self.high - self.low
+        bend = chebyshev_sum(
+            jnp.asarray(DERIVATIVE) @ self.force, local(self.low, self.high, place)
+        )
+        bend = bend * 2.0 / jnp.where(width > 0.0, width, 1.0)
+        step = jnp.where(bend < 0.0, -self.slope(place) / jnp.where(bend < 0.0, bend, 1.0), 0.0)
+        return jnp.clip(place + step, self.low, self.high)
 
 
 def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
@@ -123,8 +135,29 @@ def find_turn(ahead: Ahead) -> Turn:
     here = _piece(ahead, piece)
     place = jnp.where(found, _polish(here, inner, outer), end)
     passed = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
-    fastest = jnp.max(jnp.where(passed, energies, 0.0))
+    fastest = _fastest(ahead, places, jnp.where(passed, energies, 0.0))
     return Turn(piece, place, found, fastest, jnp.where(found, 0.0, here.energy(place)))
+
+
+def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
+    """The largest kinetic energy [J], by Newton's method from the largest that was looked at.
+
+    Within its piece and the one inwards: where two meet, the force may set in.
+    """
+    best = jnp.argmax(energies)
+    on_way = ahead.pieces * _SHARES.size
+    piece = jnp.where(best < on_way, best // _SHARES.size, ahead.pieces + (best - on_way) // LOOKS)
+
+    def climbed(piece: jax.Array) -> jax.Array:
+        here = _piece(ahead, piece)
+        place = jnp.clip(places[best], here.low, here.high)
+        for _ in range(_CLIMBS):
+            place = here.towards_top(place)
+        # At the top the energy does not change with the place.
+        return here.energy(jax.lax.stop_gradient(place))
+
+    inward = jnp.maximum(piece - 1, 0)
+    return reduce(jnp.maximum, (energies[best], climbed(piece), climbed(inward)))
 
 
 def _polish(piece: _Piece, inner: jax.Array, outer: jax.Array) -> jax.Array:

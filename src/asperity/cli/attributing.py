@@ -1,0 +1,112 @@
+"""``asperity sensitivity``: how much of a measure's variance each axis of a study makes."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from asperity.cli.looking import done, written_to
+from asperity.cli.terminal import say, tell
+from asperity.cli.working import progress_bar
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    from asperity.studies.sweep.sensitivity import Sensitivity
+
+SENSITIVITY_FILES = ("sensitivity.png", "sensitivity.svg", "sensitivity.json")
+"""Names of the files that the command may write."""
+
+
+def sensitivity(
+    study: str,
+    *,
+    measure: str,
+    output: str | None,
+    force: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Compute Sobol's indices of a measure over the axes of a study, keep them and say them.
+
+    Parameters
+    ----------
+    study : str
+        The study file.
+    measure : str
+        Name of the measure.
+    output : str or None
+        Folder for the files.
+    force, as_json, quiet : bool
+        The options of these names.
+    """
+    from asperity.records import check_folder, write_folder
+
+    folder = None
+    if output is not None or not as_json:
+        folder = Path(output or f"{Path(study).stem}-sensitivity")
+        check_folder(folder, SENSITIVITY_FILES, force=force)
+    found = _indices(study, measure, quiet=quiet or as_json)
+    text = json.dumps(found.json_object(), allow_nan=False)
+    if as_json:
+        tell(text)
+    elif not quiet:
+        tell("\n".join(_index_lines(found)))
+    if folder is not None:
+        files = done(lambda: importlib.import_module("asperity.plots.sweep.bars").pictures(found))
+        files["sensitivity.json"] = text.encode() + b"\n"
+        written = write_folder(folder, files, SENSITIVITY_FILES, force=force)
+        if not quiet:
+            (say if as_json else tell)(("" if as_json else "\n") + written_to(written))
+
+
+def _indices(file: str, measure: str, *, quiet: bool) -> Sensitivity:
+    """The indices, computed in a thread of its own."""
+    import dataclasses
+
+    from asperity.studies.sweep.sensitivity import check, measured
+    from asperity.studies.sweep.sensitivity import sensitivity as indices
+    from asperity.studies.sweep.study import read
+
+    # A study keeps what is measured and no more; its other measures would cost time alone.
+    study = dataclasses.replace(read(file), keep=(measured(measure).name,), motions=False)
+    try:
+        check(study)
+    except InputError as error:
+        error.file = error.file or file
+        raise
+    batch = importlib.import_module("asperity.studies.sweep.batch")
+    with progress_bar(not quiet) as progress:
+        if progress is not None:
+            cases = study.size * (len(study.axes) + 2)
+            progress(0.0, f"{cases} cases")
+        found: Sensitivity = done(
+            lambda: indices(study, measure, lambda values: batch.evaluate(study, values))
+        )
+    return found
+
+
+def _index_lines(found: Sensitivity) -> list[str]:
+    """The indices as a table."""
+    from asperity.studies.sweep.sensitivity import CONFIDENCE
+
+    wide = max(len(key) for key in found.keys)
+    lines = [
+        f"{found.measure}: share of its variance that each axis makes, {found.cases} cases",
+        "",
+        f"  {'':<{wide}}  {'alone':<24}with others",
+    ]
+    for k, key in enumerate(found.keys):
+        cells = [
+            f"{index.value[k]:6.3f} [{index.low[k]:6.3f}, {index.high[k]:6.3f}]"
+            for index in (found.first, found.total)
+        ]
+        lines.append(f"  {key:<{wide}}  {cells[0]:<24}{cells[1]:<24}".rstrip())
+    total = math.fsum(found.first.value)
+    return [
+        *lines,
+        "",
+        f"  the axes alone make {total:.3f} of it; in brackets {100.0 * CONFIDENCE:g} % intervals",
+    ]

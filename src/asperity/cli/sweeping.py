@@ -1,0 +1,295 @@
+"""``asperity sweep`` and ``asperity merge``: a study into a store, and stores into one."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import threading
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import typer
+
+from asperity.cli.tallying import about, lines, lines_of, progress_of, took
+from asperity.cli.terminal import exit_code_of, say, tell
+from asperity.cli.working import Progress, Work, progress_bar
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    from asperity.studies.sweep.joining import Shard
+    from asperity.studies.sweep.running import Runner, Tally
+    from asperity.studies.sweep.store import Store
+    from asperity.studies.sweep.study import Study
+
+MOST_CASES = 10_000_000
+MOST_BYTES = 2_000_000_000
+"""Larger studies need ``--yes``."""
+
+_NAMED = 8
+"""Tasks that a message names."""
+
+
+class _Request(NamedTuple):
+    """What to compute, where to, and by whom."""
+
+    study: Study
+    file: str
+    path: Path
+    shard: Shard | None
+    workers: int | None
+    scheduler: str | None
+
+
+def sweep(
+    study: str,
+    *,
+    output: str | None = None,
+    resume: bool = False,
+    repair: bool = False,
+    shard: str | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    yes: bool = False,
+    force: bool = False,
+    as_json: bool = False,
+    quiet: bool = False,
+) -> None:
+    """Compute the cases of a study that its store misses, and say what came out.
+
+    Parameters
+    ----------
+    study : str
+        The study's file.
+    output : str or None
+        The store, ./STUDY.zarr unless given.
+    resume : bool
+        Whether to go on with a store that is there.
+    repair : bool
+        Whether to look through a store and compute again what is not as it was written.
+    shard : str or None
+        "i/N" for the i-th of N parts, which goes into a store of its own.
+    workers : int or None
+        Local worker processes; this process computes unless given.
+    scheduler : str or None
+        Address of a dask scheduler whose workers compute.
+    yes : bool
+        Whether a very large study is meant.
+    force, as_json, quiet : bool
+        The options of these names.
+    """
+    from asperity.studies.sweep.running import one_thread
+
+    one_thread()
+    _refuse_both(force=force, resume=resume)
+    _refuse_both(force=force, repair=repair)
+    _refuse_both(workers=workers is not None, scheduler=scheduler is not None)
+    if workers is not None and workers < 1:
+        raise InputError(f"`--workers` must be at least 1; got {workers}")
+    request = _request(study, output, shard, workers, scheduler)
+    if not quiet:
+        for warning in request.study.warnings:
+            say(f"asperity: {warning}")
+    _refuse_huge(request.study, yes)
+    store, tasks = _opened(request, resume=resume, repair=repair, force=force)
+    tally, code = _filled(request, store, tasks, quiet=quiet or as_json)
+    _tell_sweep(request, store, tally, code, as_json=as_json, quiet=quiet)
+    if code:
+        raise typer.Exit(code)
+
+
+def _refuse_both(**options: bool) -> None:
+    """Refuse two options of which one excludes the other."""
+    if all(options.values()):
+        one, other = options
+        raise InputError(f"`--{one}` must be given without `--{other}`; got both")
+
+
+def _request(
+    study: str, output: str | None, part: str | None, workers: int | None, scheduler: str | None
+) -> _Request:
+    from asperity.studies.sweep import joining
+    from asperity.studies.sweep.study import read
+
+    shard = None if part is None else joining.shard(part)
+    path = Path(output or f"{Path(study).stem}.zarr")
+    return _Request(
+        read(study),
+        study,
+        path if shard is None else shard.store(path),
+        shard,
+        workers,
+        scheduler,
+    )
+
+
+def _refuse_huge(study: Study, yes: bool) -> None:
+    """Refuse a study that is large by mistake."""
+    import numpy as np
+
+    a_case = sum(
+        np.dtype(column.dtype).itemsize * (study.width(column.along) if column.along else 1)
+        for column in study.columns
+        if column.along != "byte"  # text, nearly all of it empty
+    )
+    size = study.size * a_case
+    if not yes and (study.size > MOST_CASES or size > MOST_BYTES):
+        raise InputError(
+            f"`--yes` must be given above {MOST_CASES:,} cases or {MOST_BYTES / 1e9:.0f} GB; "
+            f"got {study.size:,} cases, {size / 1e9:.3g} GB"
+        )
+
+
+def _opened(
+    request: _Request, *, resume: bool, repair: bool, force: bool
+) -> tuple[Store, Sequence[int]]:
+    """The store, open for writing, and the tasks wanted of it."""
+    from asperity.studies.sweep.mending import remove
+    from asperity.studies.sweep.store import Store
+
+    study, path = request.study, request.path
+    tasks = range(study.tasks) if request.shard is None else request.shard.tasks(study.tasks)
+    if repair:
+        store, damaged = _mended(request)
+        return store, tasks if resume else damaged
+    if force:
+        remove(path)
+    if path.exists() and (resume or _is_empty(path, study)):
+        return Store.open(path, study, writable=True), tasks
+    return Store.create(path, study), tasks
+
+
+def _is_empty(path: Path, study: Study) -> bool:
+    """Whether a store is this study's and holds nothing: one that could not begin left it."""
+    from asperity.studies.sweep.store import Store
+
+    try:
+        return not Store.open(path, study).done
+    except InputError:
+        return False
+
+
+def _mended(request: _Request) -> tuple[Store, Sequence[int]]:
+    """The store with nothing in it that is not as it was written, and the tasks that went."""
+    from asperity.studies.sweep.mending import mend
+    from asperity.studies.sweep.store import Store
+
+    for file in mend(request.path, request.study):
+        say(f"asperity: {file}: written again")
+    store = Store.open(request.path, request.study, writable=True)
+    damaged = store.check()
+    for task, name in damaged:
+        say(f"asperity: {store.chunk_file(task, name)}: column {name}, task {task} is corrupt")
+    tasks = sorted({task for task, _ in damaged})
+    if tasks:
+        store.forget(tasks)
+    return store, tasks
+
+
+@contextlib.contextmanager
+def _runner(request: _Request) -> Iterator[Runner]:
+    """What computes."""
+    if request.workers is None and request.scheduler is None:
+        from asperity.studies.sweep.running import in_process
+
+        yield in_process
+        return
+    from asperity.studies.sweep.clients import connected, local
+    from asperity.studies.sweep.cluster import on_cluster
+
+    with (
+        local(request.workers) if request.workers is not None else connected(str(request.scheduler))
+    ) as client:
+        yield on_cluster(client)
+
+
+def _filled(
+    request: _Request, store: Store, tasks: Sequence[int], *, quiet: bool
+) -> tuple[Tally | None, int]:
+    """What the run did, None where it did not stop in time; and its exit code."""
+    from asperity.studies.sweep.files import beside
+    from asperity.studies.sweep.log import Log
+    from asperity.studies.sweep.running import fill
+
+    log = Log(beside(request.path, ".log"))
+    log.begin(f"{len(store.done)} of {store.tasks} tasks are finished")
+
+    def task(stop: threading.Event, bar: Progress | None) -> Tally:
+        def kept(task: int, effort: Any, tally: Tally) -> None:
+            log.task(task, effort, tally)
+            if bar is not None:
+                bar(tally.cases / tally.cases_wanted, progress_of(tally))
+
+        with _runner(request) as runner:
+            return fill(request.study, store, runner, tasks=tasks, progress=kept, stop=stop)
+
+    with progress_bar(not quiet) as bar:
+        try:
+            tally, code = Work(lambda stop: task(stop, bar)).wait()
+        except KeyboardInterrupt as impatience:  # a second Ctrl-C
+            tally, code = None, exit_code_of(impatience)
+    log.write(f"ends; {len(store.done)} of {store.tasks} tasks are finished")
+    return tally, code
+
+
+def _tell_sweep(
+    request: _Request, store: Store, tally: Tally | None, code: int, *, as_json: bool, quiet: bool
+) -> None:
+    """What is in the store now, and what this run took."""
+    if code:
+        say(
+            f"asperity: interrupted; {store.cases_done:,} of {store.size:,} cases are kept in "
+            f"{store.path}, `--resume` goes on with them"
+        )
+    if as_json:
+        tell(json.dumps(about(store) | took(tally), allow_nan=False))
+    elif not quiet and not code:
+        tell("\n".join([*lines(store), *lines_of(tally)]))
+    missing = store.size - store.cases_done
+    if missing and not code and request.shard is None and not quiet:
+        say(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")
+
+
+def merge(
+    stores: Sequence[str],
+    *,
+    output: str | None = None,
+    force: bool = False,
+    as_json: bool = False,
+    quiet: bool = False,
+) -> None:
+    """Make one store of those of a study's shards, and say what it holds.
+
+    Parameters
+    ----------
+    stores : sequence of str
+        The stores.
+    output : str or None
+        The store to make, NAME.zarr for NAME.i-of-N.zarr unless given.
+    force, as_json, quiet : bool
+        The options of these names.
+    """
+    from asperity.studies.sweep.joining import join, whole
+
+    path = Path(output) if output is not None else whole(Path(stores[0]))
+    if path.resolve() in {Path(store).resolve() for store in stores}:
+        raise InputError(f"`--output` must be none of the stores to merge; got {path}")
+    with progress_bar(not (quiet or as_json)) as bar:
+
+        def copied(count: int, of: int) -> None:
+            if bar is not None:
+                bar(count / of, f"{count:,} of {of:,} tasks")
+
+        joined = join(path, stores, replace=force, progress=copied)
+    if as_json:
+        tell(json.dumps(about(joined), allow_nan=False))
+    elif not quiet:
+        tell("\n".join(lines(joined)))
+    missing = [task for task in range(joined.tasks) if task not in joined.done]
+    if missing:
+        named = ", ".join(str(task) for task in missing[:_NAMED])
+        more = f" and {len(missing) - _NAMED:,} more" if len(missing) > _NAMED else ""
+        say(
+            f"asperity: {path}: tasks {named}{more} are missing in the stores; "
+            f"`asperity sweep STUDY -o {path} --resume` computes them"
+        )

@@ -1,0 +1,1 @@
+"""Many cases at once: a study file, batches of one structure, and a store that survives."""

@@ -1,0 +1,227 @@
+"""One task of a study: its cases as columns."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from asperity.case import Case
+from asperity.case.build import Problem
+from asperity.errors import InputError, Outcome, SimulationError
+from asperity.result import Result
+from asperity.solver import solve
+from asperity.studies.sweep.building import Group, Values, built
+from asperity.studies.sweep.flights import Flight, fly_group
+from asperity.studies.sweep.lanes import Clock
+from asperity.studies.sweep.layout import OUTCOMES, REASON_SIZE
+from asperity.validity import AtDepth, check_surface
+
+if TYPE_CHECKING:
+    from asperity.studies.sweep.study import Study
+
+Columns = dict[str, np.ndarray]
+
+_FAILED = OUTCOMES.index(Outcome.FAILED)
+
+
+class Effort(NamedTuple):
+    """What a task cost.
+
+    Attributes
+    ----------
+    cases
+        Number of cases.
+    lanes
+        Useful share of the vectorized lanes, 0 to 1.
+    compiled
+        Time in compiled code [s].
+    wall
+        Time in all [s].
+    """
+
+    cases: int
+    lanes: float
+    compiled: float
+    wall: float
+
+
+def compute(study: Study, task: int, stop: threading.Event | None = None) -> tuple[Columns, Effort]:
+    """The columns of one task of a study.
+
+    Parameters
+    ----------
+    study
+        The study.
+    task
+        Number of the task.
+    stop
+        Ends it when set, by `Stopped`.
+
+    Returns
+    -------
+    tuple
+        The columns, shape (cases[, values]), and what they cost. A case that cannot be computed
+        has the outcome FAILED and its reason.
+    """
+    cases = study.task(task)
+    return _computed(study, study.values(cases.start, cases.stop), Clock(stop))
+
+
+def evaluate(study: Study, values: Values) -> Columns:
+    """The columns of cases with any values of a study's axes, shape (cases,) each."""
+    count = next(iter(values.values())).shape[0]
+    parts = []
+    for begin in range(0, count, study.task_size):
+        some = {key: array[begin : begin + study.task_size] for key, array in values.items()}
+        parts.append(_computed(study, some, Clock())[0])
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _computed(study: Study, values: Values, clock: Clock) -> tuple[Columns, Effort]:
+    began = time.perf_counter()
+    count = next(iter(values.values())).shape[0]
+    out = _blank(study, count)
+    whole = built(study, values)
+    for row, reason in whole.refused.items():
+        _fail(out, row, reason)
+    for group in whole.groups:
+        _write(study, out, group, fly_group(group, clock))
+    for row, case in whole.alone:
+        clock.look()
+        _solve(study, out, row, case)
+    wall = time.perf_counter() - began
+    return out, Effort(count, clock.lanes, min(clock.compiled, wall), wall)
+
+
+def _blank(study: Study, count: int) -> Columns:
+    out = {}
+    for column in study.columns:
+        shape = (count, study.width(column.along)) if column.along else (count,)
+        out[column.name] = np.full(shape, column.fill, column.dtype)
+    return out
+
+
+def _fail(out: Columns, row: int, reason: str) -> None:
+    """Write down that a case failed, and why; what it measured is not believed."""
+    for name, array in out.items():
+        if array.dtype.kind == "f":
+            array[row] = np.nan
+        elif name not in ("reason", "impacts"):
+            array[row] = -1
+    out["outcome"][row] = _FAILED
+    kept = reason.encode()[:REASON_SIZE].decode(errors="ignore").encode()
+    out["reason"][row] = 0
+    out["reason"][row, : len(kept)] = np.frombuffer(kept, np.uint8)
+
+
+def _write(study: Study, out: Columns, group: Group, flight: Flight) -> None:
+    """A flight's measures as columns."""
+    rows, made, past = group.rows, flight.made, flight.history
+    out["outcome"][rows] = flight.outcome
+    out["impacts"][rows] = made
+    flown = np.flatnonzero(made > 0)
+    if flown.size:
+        at = rows[flown]
+        closure = np.full(made.size, np.nan)
+        closure[flown] = past["closure"][flown].max(axis=1) / past["fastest"][flown, 0]
+        found = {**flight.measures, **_totals(group, flight), "closure": closure}
+        for column in study.columns:
+            if column.along == "turn":
+                out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[flown]
+            elif column.along == "impact":
+                known = found[column.name][flown][:, : out[column.name].shape[1]]
+                out[column.name][at, : known.shape[1]] = known
+            elif column.name in found:
+                out[column.name][at] = found[column.name][flown]
+    for place, reason in flight.reasons.items():
+        _fail(out, int(rows[place]), reason)
+    for place, (case, problem) in enumerate(group.cases):
+        if place not in flight.reasons:
+            _look_at_surface(out, int(rows[place]), case, problem, past, place)
+
+
+def _totals(group: Group, flight: Flight) -> Columns:
+    """What is read off the impacts themselves."""
+    past, contact, body = flight.history, group.flown.contact, group.flown.body
+    out = {
+        "end_time": flight.end_time,
+        "deepest": past["deepest"][:, 0],
+        "largest_force": past["force"][:, 0],
+        "energy_lost": flight.lost.sum(axis=1),
+    }
+    for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
+        key = f"lost_{name}"
+        out[key] = out.get(key, 0.0) + flight.lost[:, k]
+    return out
+
+
+def _turns(past: Columns, name: str, size: int) -> np.ndarray:
+    """Separations or times of the turning points, in order of time."""
+    what = "" if name == "turning_separation" else "_time"
+    both = np.stack([past[f"deepest{what}"], past[f"apex{what}"]], axis=2)
+    both = np.where(past["made"][..., None], both, np.nan)
+    flat = both.reshape(both.shape[0], -1)[:, :size]
+    return np.pad(flat, ((0, 0), (0, size - flat.shape[1])), constant_values=np.nan)
+
+
+def _look_at_surface(
+    out: Columns, row: int, case: Case, problem: Problem, past: Columns, place: int
+) -> None:
+    """Refuse a contact that is wider than the measured surface."""
+    force, deepest = float(past["force"][place, 0]), float(past["deepest"][place, 0])
+    try:
+        check_surface(case, problem, AtDepth(1.0, force, deepest))
+    except InputError as error:
+        _fail(out, row, str(error))
+
+
+def _solve(study: Study, out: Columns, row: int, case: Case) -> None:
+    """A case that is stepped in time, by itself."""
+    try:
+        result = solve(case)
+    except (InputError, SimulationError) as error:
+        _fail(out, row, str(error))
+        return
+    found = _read(result)
+    out["outcome"][row] = OUTCOMES.index(result.outcome)
+    for column in study.columns:
+        if column.along == "turn":
+            turns = found[column.name][: out[column.name].shape[1]]
+            out[column.name][row, : len(turns)] = turns
+        elif column.along == "impact":
+            values = found[column.name][: study.keep_impacts]
+            out[column.name][row, : len(values)] = [math.nan if v is None else v for v in values]
+        elif found.get(column.name) is not None:
+            out[column.name][row] = found[column.name]
+
+
+def _read(result: Result) -> dict[str, Any]:
+    """The columns of a result."""
+    ledger = result.ledger
+    turning = _turning(result)
+    return {
+        **result.measures,
+        "impacts": len(result.measures["restitution"]),
+        "closure": ledger["closure"],
+        "energy_lost": sum(ledger["lost"].values()),
+        **{f"lost_{name}": value for name, value in ledger["lost"].items()},
+        "end_time": turning["turning_time"][-1],
+        "deepest": turning["turning_separation"][0],
+        "largest_force": float(np.max(result.forces["total"])),
+        **turning,
+    }
+
+
+def _turning(result: Result) -> dict[str, list[float]]:
+    """Turning points of a sampled motion: where the speed changes its sign, and its end."""
+    speed = np.sign(result.speed)
+    turns = np.flatnonzero((speed[1:] != speed[:-1]) & (speed[1:] != 0.0)) + 1
+    turns = np.append(turns[turns > 1], result.time.size - 1)
+    return {
+        "turning_separation": result.separation[turns].tolist(),
+        "turning_time": result.time[turns].tolist(),
+    }

@@ -1,0 +1,262 @@
+"""A study: which cases it holds, in which tasks, and why one of them fails."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from asperity.case import builtin, load
+from asperity.errors import InputError
+from asperity.studies.sweep.layout import DEFAULT_KEEP, REASON_SIZE
+from asperity.studies.sweep.study import parse, read
+from study_texts import GRID, HUMIDITY, RMS, sample, study
+
+
+def test_grid_holds_every_value_with_every_other_and_the_first_axis_is_slowest():
+    found = study(GRID)
+    rms = [8e-9 * 1.5 ** (i / 4) for i in range(5)]
+    product = itertools.product(rms, [0.2, 0.4, 0.3], ["dmt", "none"], [True, False])
+    columns = [list(column) for column in zip(*product, strict=True)]
+    assert found.shape == (5, 3, 2, 2)
+    assert found.size == 60
+    values = found.values(0, 60)
+    assert list(values) == [axis.key for axis in found.axes]
+    assert values[RMS] == pytest.approx(columns[0], rel=1e-15)
+    assert [v.tolist() for v in values.values()][1:] == columns[1:]
+    assert [v.dtype for v in values.values()] == [np.float64, np.float64, object, np.bool_]
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_part_of_a_grid_is_that_part_of_the_whole(one, other):
+    found, (start, stop) = study(GRID), sorted((one, other))
+    whole, part = found.values(0, 60), found.values(start, stop)
+    for key in whole:
+        assert part[key].tolist() == whole[key][start:stop].tolist()
+
+
+def test_case_of_a_grid_is_the_base_case_with_the_values_as_in_a_file():
+    found = study(GRID)
+    changes = {
+        RMS: "12 nm",
+        HUMIDITY: 0.3,
+        "adhesion.model": "none",
+        "publication.pull_while_parting_only": False,
+    }
+    assert found.case(59) == builtin("published").replace(changes)
+
+
+@given(
+    st.floats(1e-12, 1e-3), st.floats(1.001, 1e3), st.integers(2, 300),
+    st.sampled_from(["linear", "log"]),
+)  # fmt: skip
+def test_range_has_exact_ends_and_even_steps(low, factor, steps, scale):
+    high = min(low * factor, 1.0)
+    axis = study(
+        f'"{RMS}" = {{from = "{low!r} m", to = "{high!r} m", steps = {steps}, scale = "{scale}"}}'
+    ).axes[0]
+    values = axis.values
+    assert (values[0], values[-1], len(values)) == (low, high, steps)
+    if scale == "log":
+        # A ratio of two rounded powers is good to a few roundings, and to the exponent's.
+        bound = 1e-15 * (10.0 + math.log(high / low))
+        assert values[1:] / values[:-1] == pytest.approx(
+            (high / low) ** (1 / (steps - 1)), rel=bound
+        )
+    else:
+        assert np.diff(values) == pytest.approx((high - low) / (steps - 1), abs=1.5e-15 * high)
+
+
+def test_values_of_a_long_range_are_those_of_its_formula_without_being_held():
+    axis = study(f'"{HUMIDITY}" = {{from = 0, to = 1, steps = 1_000_000_000}}').axes[0]
+    ends = np.array([0, 1, 250_000_000, 999_999_999])
+    assert axis.at(ends).tolist() == pytest.approx([0, 1e-9, 0.25, 1.0], rel=1e-8)
+    assert axis.at(ends)[-1] == 1.0
+
+
+@pytest.mark.parametrize("other", ["0.008 um", "8e-6 mm", "80 angstrom", "8e-9 m"])
+def test_study_does_not_depend_on_the_units_of_its_text(other):
+    lines = f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 7}}'
+    assert study(lines.replace("8 nm", other)).fingerprint == study(lines).fingerprint
+
+
+@pytest.mark.parametrize("text", ["50 um", "8 nm", "0.1 mm", "1e-7 m", "3.3 um", "10.5 nm"])
+def test_value_of_an_axis_is_the_float_of_a_case_file(text):
+    base = builtin("published")
+    found = study(f'"body.radius" = {{values = ["{text}"]}}')
+    assert found.values(0, 1)["body.radius"][0] == base.replace({"body.radius": text}).body.radius
+    assert found.case(0).body.radius == base.replace({"body.radius": text}).body.radius
+
+
+def test_whole_numbers_stay_whole_and_differ():
+    found = study(
+        '"numerics.max_impacts" = {from = 1, to = 1000, steps = 4, scale = "log"}\n'
+        '"numerics.rings" = {from = 16, to = 20, steps = 3}'
+    )
+    values = found.values(0, 12)
+    assert values["numerics.max_impacts"].dtype == np.int64
+    assert values["numerics.max_impacts"][::3].tolist() == [1, 10, 100, 1000]
+    assert values["numerics.rings"][:3].tolist() == [16, 18, 20]
+    assert found.case(11).numerics.max_impacts == 1000
+
+
+def test_cases_are_counted_exactly_and_never_made():
+    line = f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 1_000_000_000}}'
+    found = study(line + f'\n"{HUMIDITY}" = {{from = 0, to = 1, steps = 1_000_001}}')
+    assert found.size == 1_000_000_000 * 1_000_001
+    last = found.values(found.size - 1, found.size)
+    assert {key: value.tolist() for key, value in last.items()} == {RMS: [1.2e-8], HUMIDITY: [1.0]}
+
+
+def test_number_of_no_case_is_refused():
+    found = study(GRID)
+    for start, stop in ((-1, 1), (0, 61), (5, 4)):
+        with pytest.raises(IndexError, match="60 cases"):
+            found.values(start, stop)
+    with pytest.raises(IndexError):
+        found.case(60)
+
+
+def test_value_that_breaks_a_rule_with_another_fails_its_case_alone():
+    found = study('"impact.gravity" = {values = ["9.81 m/s^2", "0 m/s^2"]}')
+    assert found.warnings == []
+    assert found.case(0) == builtin("published")
+    with pytest.raises(InputError) as caught:
+        found.case(1)
+    assert caught.value.key == "impact.gravity"
+    assert str(caught.value).startswith("impact.gravity: `gravity` must be positive where there is")
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "changes"),
+    [
+        ("impact.gravity", '"0 m/s^2"', {"impact.gravity": "0 m/s^2"}),
+        ("adhesion.model", '"jkr"', {"adhesion.model": "jkr"}),
+        ("body.youngs_modulus", '"70 GPa"', {"body.youngs_modulus": "70 GPa"}),
+        ("body.material", '"silicaa"', {"body.material": "silicaa"}),
+        ("gas.pressure", '"1 kPa"', {"gas.pressure": "1 kPa"}),
+        ("capillary.contact_angle", '"120 deg"', {"capillary.contact_angle": "120 deg"}),
+        ("capillary.formation_time", '"1 us"', {"capillary.formation_time": "1 us"}),
+        ("roughness.degree", "2", {"roughness.degree": 2}),
+    ],
+)
+def test_case_fails_for_the_reason_that_its_file_would(key, text, changes):
+    with pytest.raises(InputError) as wanted:
+        builtin("published").replace(changes)
+    found = study(f'"{key}" = {{values = [{text}]}}')
+    with pytest.raises(InputError) as caught:
+        found.case(0)
+    assert (str(caught.value), caught.value.key) == (str(wanted.value), wanted.value.key)
+
+
+def test_study_none_of_whose_cases_can_be_computed_says_so_beforehand():
+    (warning,) = study('"gas.pressure" = {values = ["1 kPa", "2 kPa"]}').warnings
+    assert warning.startswith("no case of those tried (2) can be computed: gas.name: ")
+
+
+def test_table_that_the_base_lacks_is_made_of_the_axes():
+    found = study(
+        '"gas.name" = {values = ["air"]}\n"gas.temperature" = {values = ["20 degC"]}\n'
+        '"gas.pressure" = {values = ["1 kPa", "100 kPa"]}\n"gas.closest_gap" = {values = ["1 nm"]}',
+        'base = "published-exact"',
+    )
+    assert found.case(1).gas.pressure == 1e5
+    gas = {"name": "air", "pressure": "100 kPa", "temperature": "20 degC", "closest_gap": "1 nm"}
+    assert found.case(1) == builtin("published-exact").replace({"gas": gas})
+
+
+def test_material_of_the_base_can_vary():
+    text = builtin("published-exact").replace(
+        {
+            "body.material": "my glass",
+            "materials": {
+                "my glass": {"youngs_modulus": "70 GPa", "poisson": 0.2, "density": "2500 kg/m^3"}
+            },
+        }
+    )
+    base = "\n".join(
+        f"[base.{line[1:]}" if line.startswith("[") else line for line in text.toml().splitlines()
+    )
+    found = parse(
+        f'[axes]\n"materials.my glass.density" = {{values = ["2 g/cm^3"]}}\n[base]\n{base}'
+    )
+    assert found.case(0).body_density == pytest.approx(2000.0)
+    assert found.axes[0].label == "my glass density"
+
+
+@given(st.data())
+@settings(max_examples=25)
+def test_quick_case_is_the_case_of_its_file(data):
+    """Rules between keys are looked at without reading the text again, to the same end."""
+    found = sample(64)
+    number = data.draw(st.integers(0, 63))
+    values = {key: array.tolist()[0] for key, array in found.values(number, number + 1).items()}
+    case = found.case_of(values)
+    written = {axis.key: axis.written(values[axis.key]) for axis in found.axes}
+    assert case == found.base.replace(written)
+    assert load(case.toml()) == case
+
+
+def test_tasks_hold_every_case_once_in_order():
+    found = study(f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 20_001}}')
+    assert found.task_size == 8192
+    cases = itertools.chain.from_iterable(found.task(i) for i in range(found.tasks))
+    assert list(cases) == list(range(20_001))
+    assert len(found.task(found.tasks - 1)) == 20_001 - 2 * 8192
+    for number in (-1, found.tasks):
+        with pytest.raises(IndexError):
+            found.task(number)
+
+
+ROUGH = 'base = "published-exact"'
+
+
+@pytest.mark.parametrize(
+    ("line", "head", "size"),
+    [
+        (f'"{RMS}" = {{values = ["8 nm"]}}', 'base = "published"', 8192),
+        (f'"{RMS}" = {{values = ["8 nm"]}}', ROUGH, 64),
+        ('"counterface.deformation" = {values = ["rigid"]}', ROUGH, 8192),
+        ('"counterface.deformation" = {values = ["rigid", "half-space"]}', ROUGH, 64),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"adhesion.model" = {values = ["dmt", "jkr"]}', ROUGH, 512),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"adhesion.model" = {values = ["dmt", "none"]}', ROUGH, 8192),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"gas.pressure" = {values = ["1 kPa"]}', ROUGH, 512),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"waves.model" = {values = ["hunter"]}', ROUGH, 512),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"waves.model" = {values = ["none"]}', ROUGH, 8192),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"plasticity.model" = {values = ["none", "kogut-etsion"]}', ROUGH, 512),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"capillary.formation_time" = {values = ["1 us"]}', ROUGH, 512),
+        ('"counterface.deformation" = {values = ["rigid"]}\n'
+         '"capillary.formation_time" = {values = ["0 s"]}', ROUGH, 8192),
+    ],
+)  # fmt: skip
+def test_task_has_as_many_cases_as_their_slowest_kind_allows(line, head, size):
+    assert study(line, head).task_size == size
+
+
+def test_smooth_body_is_quick_on_a_half_space(tmp_path):
+    smooth = builtin("published-exact").replace({"roughness": None, "capillary": None})
+    (tmp_path / "drop.toml").write_text(smooth.toml())
+    (tmp_path / "map.toml").write_text(
+        'base = "drop.toml"\n[axes]\n"impact.speed" = {values=["1 m/s", "2 m/s"]}'
+    )
+    assert read(str(tmp_path / "map.toml")).task_size == 8192
+
+
+def test_columns_and_widths_are_what_the_study_keeps():
+    head = 'base = "published"\nkeep = ["restitution"]\nkeep_impacts = 3\nmotions = true'
+    found = study('"numerics.max_impacts" = {values = [7, 30, 20]}', head)
+    names = [column.name for column in found.columns]
+    assert names == ["outcome", "impacts", "closure", "reason", "restitution",
+                     "turning_separation", "turning_time"]  # fmt: skip
+    assert [found.width(along) for along in ("impact", "turn", "byte")] == [3, 60, REASON_SIZE]
+    assert study(GRID).width("turn") == 2 * builtin("published").numerics.max_impacts
+    assert study(GRID).keep == DEFAULT_KEEP

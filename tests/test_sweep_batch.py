@@ -1,0 +1,228 @@
+"""Cases side by side are the cases one by one: same ends, same measures, same reasons."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.errors import InputError
+from asperity.solver import solve
+from asperity.studies.sweep.batch import compute, evaluate
+from asperity.studies.sweep.building import built
+from asperity.studies.sweep.layout import OUTCOMES
+from asperity.studies.sweep.study import parse
+
+KEEP = """keep = ["captured", "impact_speed", "restitution", "rebound_height", "log_decrement",
+ "impact_time", "power_loss", "capture_time", "stiction_time", "end_time", "deepest",
+ "energy_lost", "lost_adhesion", "lost_capillary", "lost_gas", "lost_plastic", "lost_waves",
+ "lost_viscous"]
+keep_impacts = 3
+"""
+SINGLE = ("impact_speed", "capture_time", "stiction_time")
+EACH = ("restitution", "rebound_height", "log_decrement", "impact_time", "power_loss")
+ROUGH = """
+[base.body]
+shape = "sphere"
+radius = "50 um"
+material = "silica"
+[base.counterface]
+material = "silicon carbide"
+deformation = "rigid"
+[base.roughness]
+asperity_density = "1.69e16 1/m^2"
+asperity_radius = "0.25 nm"
+rms_height = "10.5 nm"
+[base.adhesion]
+model = "dmt"
+work = "30 mJ/m^2"
+range = "0.2 nm"
+[base.capillary]
+model = "equilibrium"
+formation = "contact"
+liquid = "water"
+humidity = 0.6
+temperature = "20 degC"
+contact_angle = "73 deg"
+[base.impact]
+release_gap = "120 nm"
+[base.numerics]
+max_impacts = 12
+rings = 24
+"""
+SMOOTH = """
+[base.body]
+shape = "sphere"
+radius = "1 um"
+material = "silica"
+[base.counterface]
+material = "silicon carbide"
+[base.adhesion]
+model = "jkr"
+work = "30 mJ/m^2"
+range = "0.2 nm"
+[base.impact]
+speed = "0.5 m/s"
+gravity = "0 m/s^2"
+"""
+WEIGHTS = """
+[axes]
+"roughness.rms_height" = {from = "8 nm", to = "12 nm", steps = 3}
+"capillary.humidity" = {values = [0.0, 0.3, 0.9]}
+"""
+STUDIES = {
+    "published": 'base = "published"\n' + KEEP + """
+[axes]
+"roughness.rms_height" = {from = "9 nm", to = "12 nm", steps = 3}
+"capillary.humidity" = {values = [0.996, 0.998, 1.0]}
+""",
+    "rough": KEEP + WEIGHTS + ROUGH,
+    "smooth": KEEP + """
+[axes]
+"adhesion.model" = {values = ["none", "jkr"]}
+"impact.speed" = {from = "0.05 m/s", to = "2 m/s", steps = 4, scale = "log"}
+""" + SMOOTH,
+    "gas": KEEP + """
+[axes]
+"gas.pressure" = {from = "1 Pa", to = "1000 hPa", steps = 3, scale = "log"}
+""" + ROUGH + """
+[base.gas]
+name = "air"
+pressure = "1 Pa"
+temperature = "20 degC"
+""",
+}  # fmt: skip
+
+
+def plain(values):
+    return [np.nan if value is None else float(value) for value in values]
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_cases_side_by_side_are_the_cases_one_by_one(name):
+    study = parse("schema = 1\n" + STUDIES[name])
+    columns, effort = compute(study, 0)
+    assert effort.cases == study.size
+    assert 0.0 < effort.lanes <= 1.0
+    for number in range(study.size):
+        result = solve(study.case(number))
+        count = len(result.measures["restitution"])
+        assert OUTCOMES[columns["outcome"][number]] is result.outcome
+        assert columns["impacts"][number] == count
+        assert columns["closure"][number] < 1e-6
+        for key in SINGLE:
+            expected = plain([result.measures[key]])[0]
+            # In gas the largest speed is that at a point of the collocation.
+            close = 1e-5 if name == "gas" else 1e-9
+            assert columns[key][number] == pytest.approx(expected, rel=close, nan_ok=True), key
+        for key in EACH:
+            expected = (plain(result.measures[key]) + 3 * [np.nan])[:3]
+            # A decrement and a power are differences of energies that are known to 1e-12.
+            period = result.measures["impact_time"][0]
+            power = result.ledger["initial"] / (1.0 if period is None else period)
+            floor = {"power_loss": 1e-11 * power, "log_decrement": 1e-11}.get(key, 0.0)
+            close = {"rel": 1e-7, "abs": floor}
+            assert columns[key][number].tolist() == pytest.approx(expected, nan_ok=True, **close)
+        assert columns["captured"][number] == int(result.measures["captured"])
+        lost = result.ledger["lost"]
+        whole = sum(lost.values())
+        assert columns["energy_lost"][number] == pytest.approx(whole, rel=1e-9)
+        for mechanism in ("adhesion", "capillary", "gas", "plastic", "waves", "viscous"):
+            found = columns[f"lost_{mechanism}"][number]
+            if mechanism in lost:
+                assert found == pytest.approx(lost[mechanism], rel=1e-9, abs=1e-12 * whole)
+            else:
+                assert np.isnan(found)
+        assert columns["end_time"][number] == pytest.approx(result.time[-1], rel=1e-9)
+
+
+def refusal(study, number):
+    try:
+        solve(study.case(number))
+    except InputError as error:
+        return error
+    return None
+
+
+def test_values_that_break_a_rule_fail_alone_and_say_why():
+    text = KEEP + """
+[axes]
+"impact.release_gap" = {values = ["1 nm", "120 nm"]}
+"capillary.contact_angle" = {values = ["30 deg", "60 deg", "70 deg", "95 deg"]}
+""" + ROUGH
+    study = parse("schema = 1\n" + text)
+    columns, _ = compute(study, 0)
+    for number in range(study.size):
+        reason = bytes(columns["reason"][number]).rstrip(b"\0").decode()
+        error = refusal(study, number)
+        if error is not None:
+            assert OUTCOMES[columns["outcome"][number]].value == "failed"
+            assert reason
+            assert str(error)[:25] == reason[:25]
+            assert np.isnan(columns["restitution"][number]).all()
+            assert columns["captured"][number] == -1
+        else:
+            assert reason == ""
+            assert columns["outcome"][number] >= 0
+
+
+def test_a_case_has_the_same_columns_wherever_it_stands_in_its_lanes():
+    """A value does not depend on the neighbours by more than rounding."""
+    study = parse("schema = 1\n" + STUDIES["published"])
+    values = study.values(0, study.size)
+    whole = evaluate(study, values)
+    some = evaluate(study, {key: array[[4, 2]] for key, array in values.items()})
+    for name, array in whole.items():
+        if array.dtype.kind == "f":
+            np.testing.assert_allclose(some[name], array[[4, 2]], rtol=1e-9, err_msg=name)
+        else:
+            assert (some[name] == array[[4, 2]]).all(), name
+
+
+def test_turning_points_are_kept_in_order_of_time():
+    text = STUDIES["published"].replace("keep_impacts", "motions = true\nkeep_impacts")
+    study = parse("schema = 1\n" + text)
+    columns, _ = compute(study, 0)
+    result = solve(study.case(0))
+    count = 2 * len(result.measures["restitution"])
+    times = columns["turning_time"][0]
+    assert (np.diff(times[:count]) > 0.0).all()
+    assert np.isnan(times[count:]).all()
+    apexes = columns["turning_separation"][0][1:count:2]
+    edge = 3.0 * 9e-9  # separations count from the conjunction's edge in this case
+    heights = plain(result.measures["rebound_height"])
+    assert (apexes - edge).tolist() == pytest.approx(heights, rel=1e-7)
+    assert times[count - 1] == pytest.approx(result.time[-1])
+
+
+SLOW = {"radius_classes"}
+
+
+@pytest.mark.parametrize("base", ["published-exact", "published"])
+def test_every_number_of_a_case_is_built_for_many_cases_at_once(base):
+    """Groups come without a case each: nothing fell back to one by one."""
+    case = asperity.load(base)
+    axes = {
+        "body.radius": ("20 um", "60 um"),
+        "roughness.asperity_density": ("1e16 1/m^2", "2e16 1/m^2"),
+        "roughness.asperity_radius": ("0.2 nm", "0.3 nm"),
+        "roughness.rms_height": ("9 nm", "12 nm"),
+        "adhesion.work": ("20 mJ/m^2", "40 mJ/m^2"),
+        "capillary.humidity": (0.6, 0.9),
+        "capillary.contact_angle": ("60 deg", "75 deg"),
+        "capillary.temperature": ("10 degC", "30 degC"),
+        "impact.release_gap": ("60 nm", "90 nm"),
+        "impact.gravity": ("1 m/s^2", "10 m/s^2"),
+    }
+    for key, ends in axes.items():
+        low, high = (f'"{end}"' if isinstance(end, str) else end for end in ends)
+        study = parse(
+            f'schema = 1\nbase = "{base}"\n[axes]\n"{key}" = {{from = {low}, to = {high}, '
+            "steps = 5}"
+        )
+        found = built(study, study.values(0, 5))
+        assert found.refused == {}, key
+        assert found.alone == [], key
+        assert sum(group.rows.size for group in found.groups) == 5
+        assert all(group.cases == () for group in found.groups), key
+    assert case is not None
