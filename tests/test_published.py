@@ -11,7 +11,7 @@ from scipy.special import ndtr
 import asperity
 from asperity._jax import jax, jnp
 from asperity.case.build import build
-from asperity.contact import PublishedContact
+from asperity.contact import Contact, PublishedContact
 from asperity.errors import InputError, Outcome, Tolerance
 from asperity.impact import Body, simulate
 from asperity.laws import HeightFunctions, PublishedPressure
@@ -296,3 +296,31 @@ def test_the_curve_of_the_published_case_loses_what_the_first_impact_loses(case)
     # From the deepest point to far apart, all that the pulls take.
     assert curve.loss == pytest.approx(lost, rel=1e-6)
     assert np.all(curve.force_parting <= curve.force_approach + 1e-18)
+
+
+@pytest.mark.parametrize("reach", [3e-9, 15e-9, 300e-9])
+@pytest.mark.parametrize("edge", [3.0, 5.0])
+def test_the_sum_over_narrow_bands_is_that_term_by_term(reach, edge):
+    """At a twentieth of an rms height a band, where the program takes the integral."""
+    wide = pressure(reach=jnp.asarray(reach), bands=100, edge=edge)
+    fine = replace(wide, fine=True)
+    h = jnp.linspace(-2.0, 0.9999 * edge, 300) * SIGMA
+    one_by_one, slopes = wide.capillary(h), jax.vmap(jax.grad(wide.capillary))(h)
+    close = {"rtol": 0.0, "atol": 1e-13 * float(jnp.max(one_by_one))}
+    np.testing.assert_allclose(fine.capillary(h), one_by_one, **close)
+    close = {"rtol": 0.0, "atol": 1e-12 * float(jnp.max(jnp.abs(slopes)))}
+    np.testing.assert_allclose(jax.vmap(jax.grad(fine.capillary))(h), slopes, **close)
+
+
+@pytest.mark.parametrize("release", [41.5e-9, 20e-9])  # outside the conjunction, and within it
+@pytest.mark.parametrize("reach", [None, 15e-9])
+def test_curves_summed_panel_by_panel_are_integrals_from_each_place(reach, release):
+    touched = contact(reach=None if reach is None else jnp.asarray(reach))
+    ends = touched.panels(jnp.asarray(-2.0 * SIGMA), jnp.asarray(release))
+    points = np.polynomial.chebyshev.chebpts1(16)
+    places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
+    summed, each = touched.curves(ends, places), Contact.curves(touched, ends, places)
+    for name in ("force", "stored", "bonds", "parts", "touching"):
+        found, expected = getattr(summed, name), getattr(each, name)
+        largest = float(jnp.max(jnp.abs(expected)))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-11 * largest, err_msg=name)

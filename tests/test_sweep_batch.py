@@ -145,11 +145,15 @@ def refusal(study, number):
 
 
 def test_values_that_break_a_rule_fail_alone_and_say_why():
-    text = KEEP + """
+    text = (
+        KEEP
+        + """
 [axes]
 "impact.release_gap" = {values = ["1 nm", "120 nm"]}
 "capillary.contact_angle" = {values = ["30 deg", "60 deg", "70 deg", "95 deg"]}
-""" + ROUGH
+"""
+        + ROUGH
+    )
     study = parse("schema = 1\n" + text)
     columns, _ = compute(study, 0)
     for number in range(study.size):
