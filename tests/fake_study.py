@@ -86,7 +86,9 @@ def expected(study: FakeStudy, cases: range) -> dict[str, np.ndarray]:
     }
 
 
-def compute(study: FakeStudy, task: int) -> tuple[dict[str, np.ndarray], Effort]:
+def compute(
+    study: FakeStudy, task: int, stop: Event | None = None
+) -> tuple[dict[str, np.ndarray], Effort]:
     time.sleep(study.pause)
     cases = study.task(task)
     return expected(study, cases), Effort(len(cases), 0.5, 0.25 * study.pause, study.pause)

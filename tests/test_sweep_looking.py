@@ -73,6 +73,10 @@ def test_a_grid_has_its_axes_as_dimensions_with_units(grid: xarray.Dataset):
     assert "reason" not in grid
 
 
+def test_the_package_itself_opens_a_study(stores: dict[str, Path], grid: xarray.Dataset):
+    xarray.testing.assert_identical(asperity.open_study(stores["grid"]), grid)
+
+
 def test_every_case_of_a_grid_stands_at_its_own_values(grid: xarray.Dataset):
     rough, humid = np.meshgrid(grid[ROUGH], grid[HUMID], indexing="ij")
     _, bounce = law({ROUGH: rough.ravel(), HUMID: humid.ravel()})
@@ -182,6 +186,15 @@ def test_a_short_axis_is_colours_and_words_go_before_numbers(stores: dict[str, P
 def test_too_many_axes_are_refused_with_what_to_hold_fixed(stores: dict[str, Path]):
     with pytest.raises(InputError, match=r"add --at adhesion\.model=none$"):
         view_of(open_study(stores["many"]))
+
+
+@pytest.mark.parametrize("kind", ["map", "lines"])
+def test_axes_of_one_value_are_held_unasked(grid: xarray.Dataset, kind: str):
+    wider = grid.expand_dims({SPEED: [0.1]}, axis=1)
+    wider[SPEED].attrs = {"units": "m/s", "long_name": "impact speed", "scale": "linear"}
+    wider.attrs["axes"] = [ROUGH, SPEED, HUMID]
+    held = {HUMID: "0.3"} if kind == "lines" else {}
+    assert sweep.pictures(wider, held=held) == sweep.pictures(grid, held=held)
 
 
 def test_held_axes_take_the_nearest_value_in_their_own_scale(grid: xarray.Dataset):
@@ -333,15 +346,25 @@ DRAWN = {
     "speeds": ("speeds", {}),
     "facets": ("many", {"held": {"adhesion.model": "none"}}),
     "series": ("many", {"held": {HUMID: "0.3"}}),
+    "close values": ("close", {"held": {"adhesion.model": "none"}, "measure": "restitution"}),
+    "flags along a line": ("grid", {"held": {HUMID: "0.33"}, "measure": "outcome"}),
     "sample": ("sample", {}),
     "sample over one axis": ("sample", {"x": "adhesion.model", "measure": "stiction_time"}),
 }
 
 
+def drawable(stores: dict[str, Path], name: str) -> xarray.Dataset:
+    """Results by name; "close" has numbers of many digits along its axes."""
+    found = open_study(stores["many" if name == "close" else name])
+    if name == "close":
+        found["restitution"].values[...] = 0.9999 + 1e-5 * found["restitution"].values
+    return found
+
+
 @pytest.mark.parametrize("what", DRAWN)
 def test_pictures_are_png_and_svg_and_the_same_twice(stores: dict[str, Path], what: str):
     name, options = DRAWN[what]
-    found = open_study(stores[name])
+    found = drawable(stores, name)
     pictures = sweep.pictures(found, **options)
     assert {file.rpartition(".")[2] for file in pictures} == {"png", "svg"}
     assert pictures == sweep.pictures(found, **options)
@@ -370,7 +393,7 @@ def texts(figure: Figure) -> list[tuple[str, tuple[float, float, float, float]]]
 @pytest.mark.parametrize("what", DRAWN)
 def test_no_text_of_a_picture_leaves_it_or_lies_on_another(stores: dict[str, Path], what: str):
     name, options = DRAWN[what]
-    _, drawn = sweep.figure(open_study(stores[name]), **options)
+    _, drawn = sweep.figure(drawable(stores, name), **options)
     placed = texts(drawn)
     width, height = drawn.bbox.size
     outside = [
@@ -396,6 +419,17 @@ def test_lines_stand_at_the_values_in_the_unit_of_the_label(stores: dict[str, Pa
         np.testing.assert_allclose(line.get_ydata(), values)
         assert axes.get_xlabel() == "impact speed [mm/s]"
     assert "[ms]" in drawn.axes[1].get_ylabel()
+
+
+def test_a_value_between_two_that_do_not_apply_is_drawn(grid: xarray.Dataset):
+    with_gaps = grid.copy(deep=True)
+    measure = with_gaps["restitution"]
+    measure[{ROUGH: slice(0, None, 2)}] = np.nan
+    kind, drawn = sweep.figure(with_gaps, measure="restitution", held={HUMID: "0.1"})
+    assert kind == "lines"
+    marked = [line for line in drawn.axes[0].lines if line.get_marker() == "o"]
+    known = np.isfinite(measure.sel({HUMID: 0.1}, method="nearest").values.ravel())
+    assert [line.get_xdata().size for line in marked] == [np.count_nonzero(known)]
 
 
 def test_listed_values_are_drawn_in_the_order_of_their_size(tmp_path: Path):

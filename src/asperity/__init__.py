@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .result import Curve, Result
     from .solver import curve, solve
     from .studies.reproduce import Reproduction, reproduce
+    from .studies.sweep.dataset import open_study
 
 __version__ = "0.1.0"
 
@@ -35,6 +36,7 @@ _HOMES = {
     "Tolerance": "errors",
     "curve": "solver",
     "measure": "measures",
+    "open_study": "studies.sweep.dataset",
     "read": "records",
     "reproduce": "studies.reproduce",
     "simulate": "impact",
@@ -54,6 +56,7 @@ __all__ = [
     "curve",
     "load",
     "measure",
+    "open_study",
     "read",
     "reproduce",
     "simulate",

@@ -148,5 +148,6 @@ def _fail(message: str, code: int) -> int:
 def _with_place(error: InputError) -> str:
     """The message, with the file and the key where it does not name them."""
     text = str(error)
-    parts = [part for part in (error.file, error.key) if part and part not in text]
+    named = text.replace('"', "")  # a study's key has its own quotes: axes."impact.speed"
+    parts = [part for part in (error.file, error.key) if part and part not in named]
     return ": ".join([*parts, text])

@@ -70,10 +70,10 @@ def _drawing(
         if held is not None:
             _shade(axes, x, held == 1)
         for number, (row, gone) in enumerate(zip(values / whole.factor, lost, strict=True)):
-            _line(axes, x, row, gone, colour(cases.SERIES[number]))
+            _line(axes, x, (row, gone), colour(cases.SERIES[number]), joined=not whole.names)
         if not (x.log or x.names):
             axes.margins(x=0.02)
-        if view.facet:
+        if view.facet and not whole.names:
             axes.set_ylim(*_limits(whole))
 
     return draw
@@ -92,16 +92,29 @@ def _limits(whole: Quantity) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _line(axes: Axes, x: Quantity, y: np.ndarray, gone: np.ndarray, tint: str) -> None:
+def _line(
+    axes: Axes, x: Quantity, row: tuple[np.ndarray, np.ndarray], tint: str, *, joined: bool
+) -> None:
     """One line, with a cross at the foot of the panel for each failed case."""
-    style = "o" if x.names else "-o" if y.size <= _DOTTED else "-"
+    y, gone = row
+    style = "o" if x.names or not joined else "-o" if y.size <= _DOTTED else "-"
     order = np.argsort(x.values, kind="stable")
     axes.plot(x.values[order], y[order], style, color=tint, mew=0.0)
+    if style == "-":
+        single = _alone(y[order])
+        axes.plot(x.values[order][single], y[order][single], "o", color=tint, mew=0.0)
     if gone.any():
         axes.plot(
             x.values[gone], np.full(np.count_nonzero(gone), 0.02), "x", color=colour("quiet"),
             ms=3.0, mew=0.6, transform=axes.get_xaxis_transform(), clip_on=False,
         )  # fmt: skip
+
+
+def _alone(values: np.ndarray) -> np.ndarray:
+    """Which values have none on either side, where no line would show them."""
+    known = np.concatenate([[False], np.isfinite(values), [False]])
+    found: np.ndarray = known[1:-1] & ~known[:-2] & ~known[2:]
+    return found
 
 
 def _shade(axes: Axes, x: Quantity, held: np.ndarray) -> None:

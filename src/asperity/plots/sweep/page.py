@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.transforms import BboxBase
 
 from asperity.plots import style
 from asperity.plots.height_map import legible
 
 _INCH = 25.4
-_LEFT, _RIGHT, _BOTTOM, _GAP = 16.0, 3.0, 11.0, 18.0
+_LEFT, _RIGHT, _BOTTOM, _BETWEEN = 16.0, 3.0, 11.0, 2.0
 _BAR_ROOM, _BAR, _BAR_GAP = 17.0, 2.5, 2.5
 _HEIGHT, _EDGE, _LINE, _HEAD = 42.0, 2.0, 4.0, 5.0
 _LETTER, _HANDLE = 1.45, 8.0
@@ -73,24 +74,38 @@ class Page:
         step = over + _HEIGHT + _BOTTOM
         tall = head + rows * step
         figure = style.Picture(figsize=(wide / _INCH, tall / _INCH), dpi=style.RESOLUTION)
-        FigureCanvasAgg(figure)
-        right = _RIGHT + (_BAR_ROOM if self.bar is not None else 0.0)
-        width = (wide - _LEFT - right - _GAP * (self.across - 1)) / self.across
-        for number, block in enumerate(self.blocks):
-            row, column = divmod(number, self.across)
-            left, top = _LEFT + column * (width + _GAP), head + over + row * step
-            place = (left / wide, 1.0 - (top + _HEIGHT) / tall, width / wide, _HEIGHT / tall)
-            axes = figure.add_axes(place)
-            axes.set_title(legible(block.title, int(width / _TITLE_LETTER)), parse_math=False)
+        canvas = FigureCanvasAgg(figure)
+        size = (0.0, 0.0, 1.0, _HEIGHT / tall)
+        panels = [figure.add_axes(size) for _ in self.blocks]
+        for axes, block in zip(panels, self.blocks, strict=True):
             block.draw(axes)
+        bar = self._bar(figure, (0.0, 0.0, _BAR / wide, _HEIGHT / tall))
+        right = _RIGHT + (_room_after(canvas, bar) if bar is not None else 0.0)
+        room = _room_beside(canvas, panels)
+        width = (wide - right - room * self.across - _BETWEEN * (self.across - 1)) / self.across
+        for number, (axes, block) in enumerate(zip(panels, self.blocks, strict=True)):
+            row, column = divmod(number, self.across)
+            left = room + column * (width + _BETWEEN + room)
+            foot = 1.0 - (head + over + row * step + _HEIGHT) / tall
+            axes.set_position((left / wide, foot, width / wide, _HEIGHT / tall))
+            ahead = room - _LEFT  # titles keep the length that usual labels leave them
+            text = legible(block.title, int((width + ahead) / _TITLE_LETTER))
+            axes.set_title(text, x=-ahead / width, parse_math=False)
         self._head(figure, (wide, tall), columns)
-        if self.bar is not None:
-            left = wide - right + _BAR_GAP
-            place = (left / wide, 1.0 - (head + over + _HEIGHT) / tall, _BAR / wide, _HEIGHT / tall)
-            bar = figure.colorbar(self.bar, cax=figure.add_axes(place))
-            bar.set_label(self.bar_label)
-            bar.outline.set_visible(False)
+        if bar is not None:
+            foot = 1.0 - (head + over + _HEIGHT) / tall
+            left = (wide - right + _BAR_GAP) / wide
+            bar.set_position((left, foot, _BAR / wide, _HEIGHT / tall))
         return figure
+
+    def _bar(self, figure: Figure, place: tuple[float, float, float, float]) -> Axes | None:
+        """The colour bar, if there is one."""
+        if self.bar is None:
+            return None
+        bar = figure.colorbar(self.bar, cax=figure.add_axes(place))
+        bar.set_label(self.bar_label)
+        bar.outline.set_visible(False)
+        return bar.ax
 
     def _head(self, figure: Figure, size: tuple[float, float], columns: int) -> None:
         """The title and the legend."""
@@ -115,3 +130,21 @@ class Page:
         longest = max((len(name) for _, name in self.legend), default=1)
         fit = int((wide - _LEFT - _RIGHT) / (_HANDLE + _LETTER * longest))
         return max(1, min(fit, len(self.legend)))
+
+
+def _room_beside(canvas: FigureCanvasAgg, panels: Sequence[Axes]) -> float:
+    """Width that the widest labels left of a panel need [mm], the usual one at least."""
+    wide = max(panel.bbox.x0 - _labels(canvas, panel).x0 for panel in panels)
+    return max(_LEFT, wide / canvas.figure.dpi * _INCH + 1.0)
+
+
+def _room_after(canvas: FigureCanvasAgg, bar: Axes) -> float:
+    """Width of a colour bar with its labels [mm], the usual one at least."""
+    wide = (_labels(canvas, bar).x1 - bar.bbox.x0) / canvas.figure.dpi * _INCH
+    return max(_BAR_ROOM, _BAR_GAP + wide + 1.0 - _RIGHT)
+
+
+def _labels(canvas: FigureCanvasAgg, axes: Axes) -> BboxBase:
+    """Place of the axis upwards with all its text [pixel]."""
+    renderer = canvas.get_renderer()  # type: ignore[no-untyped-call]
+    return axes.yaxis.get_tightbbox(renderer) or axes.bbox

@@ -109,6 +109,10 @@ def axis_quantity(axis: xarray.DataArray) -> Quantity:
 
 def measure_quantity(values: np.ndarray, measure: xarray.DataArray) -> Quantity:
     """Some values of a measure, on a logarithmic axis where they span two decades."""
+    meanings = str(measure.attrs.get("flag_meanings", "")).split()[1:]
+    if meanings:
+        names = tuple(meaning.replace("_", " ") for meaning in meanings)
+        return Quantity(values, str(measure.attrs["long_name"]), False, names, 1.0)
     found = values[np.isfinite(values)]
     log = bool(found.size and found.min() > 0.0 and found.max() > _DECADE**2 * found.min())
     name = str(measure.attrs.get("long_name", measure.name))

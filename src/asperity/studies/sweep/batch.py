@@ -15,7 +15,7 @@ from asperity.errors import InputError, Outcome, SimulationError
 from asperity.result import Result
 from asperity.solver import solve
 from asperity.studies.sweep.building import Group, Values, built
-from asperity.studies.sweep.flights import Flight, fly_group
+from asperity.studies.sweep.flights import Flight, compile_ahead, fly_group
 from asperity.studies.sweep.lanes import Clock
 from asperity.studies.sweep.layout import OUTCOMES, REASON_SIZE
 from asperity.validity import AtDepth, check_surface
@@ -88,6 +88,7 @@ def _computed(study: Study, values: Values, clock: Clock) -> tuple[Columns, Effo
     whole = built(study, values)
     for row, reason in whole.refused.items():
         _fail(out, row, reason)
+    compile_ahead(whole.groups)
     for group in whole.groups:
         _write(study, out, group, fly_group(group, clock))
     for row, case in whole.alone:

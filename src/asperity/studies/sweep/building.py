@@ -24,8 +24,15 @@ if TYPE_CHECKING:
 
 Values = Mapping[str, np.ndarray]
 
-_NODES = (8, 12, 16)
-_PANELS = (4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
+_KINDS = (
+    Resolution(6, 8, 1, 7),
+    Resolution(8, 16, 1, 7),
+    Resolution(16, 16, 2, 14),
+    Resolution(32, 16, 4, 28),
+    Resolution(64, 16, 8, 56),
+)
+"""How finely curves are cut in a study, from coarse to fine; see `Resolution`."""
+
 _ROUNDING = 1e-12  # relative, between one case built alone and among others
 _UNRESOLVED = Resolution(1, 8, 1)
 
@@ -262,10 +269,14 @@ def _coarser(group: Group) -> Group:
 
 def _even(found: Resolution) -> Resolution:
     """As fine at least, of few kinds: each is compiled."""
-    panels = next((n for n in _PANELS if n >= found.panels), found.panels)
-    nodes = next((n for n in _NODES if n >= found.nodes), found.nodes)
-    shared = 1 << (found.shared - 1).bit_length()
-    return Resolution(panels, nodes, found.pieces, shared)
+    level = next((n for n, kind in enumerate(_KINDS) if _fits(found, kind)), None)
+    if level is None:  # finer than any: a kind of its own, of even numbers
+        return Resolution(*(1 << (number - 1).bit_length() for number in found))
+    return _KINDS[level]
+
+
+def _fits(found: Resolution, kind: Resolution) -> bool:
+    return all(number <= most for number, most in zip(found, kind, strict=True))
 
 
 def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:

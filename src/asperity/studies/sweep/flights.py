@@ -78,6 +78,15 @@ def fly_group(group: Group, clock: Clock) -> Flight:
     return flying.flight()
 
 
+def compile_ahead(groups: list[Group]) -> None:
+    """Compile what the groups are flown by side by side, where it is not yet."""
+    for group in groups:
+        some = next(_slices(np.arange(group.rows.size), lanes.width(group.flown)))
+        here = _take(group.flown, some)
+        begun, _checks, _rows = lanes._begin_program.ahead(here)
+        lanes._go_on_program.ahead(here, begun)
+
+
 class _Flying:
     """Cases on their way."""
 

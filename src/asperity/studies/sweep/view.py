@@ -121,7 +121,8 @@ def at(dataset: xarray.Dataset, held: Mapping[str, str]) -> tuple[xarray.Dataset
     Returns
     -------
     tuple
-        The results with these axes gone, and in words which values were taken.
+        The results with these axes gone, and those of one value; and in words which values were
+        taken.
 
     Raises
     ------
@@ -140,6 +141,9 @@ def at(dataset: xarray.Dataset, held: Mapping[str, str]) -> tuple[xarray.Dataset
         index = _nearest(axis, text)
         dataset = dataset.isel({key: index})
         taken.append(f"{axis.attrs['long_name']} {words(axis.values[index], _unit(axis))}")
+    if not is_sample(dataset):
+        free = [key for key in axes_of(dataset) if dataset[key].ndim]
+        dataset = dataset.isel({key: 0 for key in free if dataset[key].size == 1})
     return dataset, ", ".join(taken)
 
 
