@@ -201,10 +201,10 @@ def test_quick_case_is_the_case_of_its_file(data):
 
 def test_tasks_hold_every_case_once_in_order():
     found = study(f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 20_001}}')
-    assert found.task_size == 8192
+    assert found.task_size == 4096
     cases = itertools.chain.from_iterable(found.task(i) for i in range(found.tasks))
     assert list(cases) == list(range(20_001))
-    assert len(found.task(found.tasks - 1)) == 20_001 - 2 * 8192
+    assert len(found.task(found.tasks - 1)) == 20_001 - 4 * 4096
     for number in (-1, found.tasks):
         with pytest.raises(IndexError):
             found.task(number)
@@ -216,26 +216,26 @@ ROUGH = 'base = "published-exact"'
 @pytest.mark.parametrize(
     ("line", "head", "size"),
     [
-        (f'"{RMS}" = {{values = ["8 nm"]}}', 'base = "published"', 8192),
+        (f'"{RMS}" = {{values = ["8 nm"]}}', 'base = "published"', 4096),
         (f'"{RMS}" = {{values = ["8 nm"]}}', ROUGH, 64),
-        ('"counterface.deformation" = {values = ["rigid"]}', ROUGH, 8192),
+        ('"counterface.deformation" = {values = ["rigid"]}', ROUGH, 4096),
         ('"counterface.deformation" = {values = ["rigid", "half-space"]}', ROUGH, 64),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
          '"adhesion.model" = {values = ["dmt", "jkr"]}', ROUGH, 512),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"adhesion.model" = {values = ["dmt", "none"]}', ROUGH, 8192),
+         '"adhesion.model" = {values = ["dmt", "none"]}', ROUGH, 4096),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
          '"gas.pressure" = {values = ["1 kPa"]}', ROUGH, 512),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
          '"waves.model" = {values = ["hunter"]}', ROUGH, 512),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"waves.model" = {values = ["none"]}', ROUGH, 8192),
+         '"waves.model" = {values = ["none"]}', ROUGH, 4096),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
          '"plasticity.model" = {values = ["none", "kogut-etsion"]}', ROUGH, 512),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
          '"capillary.formation_time" = {values = ["1 us"]}', ROUGH, 512),
         ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"capillary.formation_time" = {values = ["0 s"]}', ROUGH, 8192),
+         '"capillary.formation_time" = {values = ["0 s"]}', ROUGH, 4096),
     ],
 )  # fmt: skip
 def test_task_has_as_many_cases_as_their_slowest_kind_allows(line, head, size):
@@ -248,7 +248,7 @@ def test_smooth_body_is_quick_on_a_half_space(tmp_path):
     (tmp_path / "map.toml").write_text(
         'base = "drop.toml"\n[axes]\n"impact.speed" = {values=["1 m/s", "2 m/s"]}'
     )
-    assert read(str(tmp_path / "map.toml")).task_size == 8192
+    assert read(str(tmp_path / "map.toml")).task_size == 4096
 
 
 def test_columns_and_widths_are_what_the_study_keeps():

@@ -203,4 +203,4 @@ def test_examples_of_the_page_on_studies_are_read_as_it_says():
     for text in texts:
         head = "" if "base =" in text else 'base = "published-exact"\n'
         axes = "" if "[axes]" in text else f'[axes]\n"{RMS}" = {{from = "8 nm", to = "9 nm"}}\n'
-        assert parse(head + axes + text).size > 0
+        assert parse(head + axes + text, folder=page.parents[1] / "examples").size > 0

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from asperity.errors import InputError
 from asperity.materials import GAS_CONSTANT
 
@@ -73,6 +71,8 @@ class Gas:
         viscosity/(0.499 density speed) with the density of an ideal gas and the mean speed of its
         molecules (Chapman and Cowling 1970).
         """
+        import numpy as np  # here: reading a case needs none of it
+
         per_kilogram = GAS_CONSTANT / self.molar_mass * temperature
         speed = np.sqrt(8.0 / math.pi * per_kilogram)
         return self.viscosity(temperature) * per_kilogram / (0.499 * pressure * speed)

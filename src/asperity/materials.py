@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from asperity.errors import InputError
 
 GAS_CONSTANT = 8.31446261815324
@@ -199,6 +197,8 @@ def kelvin_radius(liquid: Liquid, humidity: float, temperature: float) -> float:
     _positive("temperature", temperature)
     if humidity == 0.0:
         return 0.0
+    import numpy as np  # here: reading a case needs none of it
+
     energy = GAS_CONSTANT * temperature * -np.log(humidity)
     return liquid.tension * liquid.molar_volume / energy
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
-import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from asperity import materials as catalogue
@@ -24,6 +23,13 @@ from asperity.case.viscoelasticity import Viscoelasticity
 from asperity.case.waves import Waves
 from asperity.errors import InputError, Tolerance
 from asperity.units import shown
+
+
+def _cosine(angle: float) -> float:
+    import numpy as np  # here: reading a case needs none of it
+
+    value: float = np.cos(angle)
+    return value
 
 
 def _known(version: object) -> object:
@@ -268,13 +274,13 @@ class Case(Table):
         kelvin = self.kelvin_radius
         if film is None or angle is None:
             return kelvin
-        return min(kelvin, film / np.cos(angle))
+        return min(kelvin, film / _cosine(angle))
 
     @property
     def liquid_span(self) -> float:
         """Largest gap that the liquid bridges [m], twice its radius times cos(contact angle)."""
         angle = self.capillary.contact_angle
-        return 0.0 if angle is None else 2.0 * self.liquid_radius * np.cos(angle)
+        return 0.0 if angle is None else 2.0 * self.liquid_radius * _cosine(angle)
 
     @property
     def tolerance(self) -> Tolerance:
