@@ -71,10 +71,8 @@ class Gas:
         viscosity/(0.499 density speed) with the density of an ideal gas and the mean speed of its
         molecules (Chapman and Cowling 1970).
         """
-        import numpy as np  # here: reading a case needs none of it
-
         per_kilogram = GAS_CONSTANT / self.molar_mass * temperature
-        speed = np.sqrt(8.0 / math.pi * per_kilogram)
+        speed = (8.0 / math.pi * per_kilogram) ** 0.5
         return self.viscosity(temperature) * per_kilogram / (0.499 * pressure * speed)
 
     def slip_length(self, pressure: float, temperature: float) -> float:

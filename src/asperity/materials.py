@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from asperity.errors import InputError
 
@@ -197,10 +198,17 @@ def kelvin_radius(liquid: Liquid, humidity: float, temperature: float) -> float:
     _positive("temperature", temperature)
     if humidity == 0.0:
         return 0.0
+    energy = GAS_CONSTANT * temperature * -_logarithm(humidity)
+    return liquid.tension * liquid.molar_volume / energy
+
+
+def _logarithm(humidity: Any) -> Any:
+    """Logarithm of a humidity, or of those of many cases."""
+    if isinstance(humidity, float):
+        return math.log(humidity)
     import numpy as np  # here: reading a case needs none of it
 
-    energy = GAS_CONSTANT * temperature * -np.log(humidity)
-    return liquid.tension * liquid.molar_volume / energy
+    return np.log(humidity)
 
 
 def water_tension(temperature: float) -> float:

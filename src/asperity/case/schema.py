@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -25,11 +25,13 @@ from asperity.errors import InputError, Tolerance
 from asperity.units import shown
 
 
-def _cosine(angle: float) -> float:
+def _cosine(angle: Any) -> Any:
+    """Cosine of an angle [rad], or of those of many cases."""
+    if isinstance(angle, float):
+        return math.cos(angle)
     import numpy as np  # here: reading a case needs none of it
 
-    value: float = np.cos(angle)
-    return value
+    return np.cos(angle)
 
 
 def _known(version: object) -> object:
