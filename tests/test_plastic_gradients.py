@@ -49,11 +49,12 @@ def along():
 @pytest.mark.parametrize("quantity", START)
 def test_derivatives_of_a_first_impact_are_those_of_differences(along, quantity):
     way = jnp.asarray([float(name == quantity) for name in START])
-    (restitution, *_), slopes = along(jnp.zeros(3), way)
-    assert 0.6 < float(restitution) < 0.7
     step = 1e-3
-    near, far = (
-        (along(n * step * way, way)[0] - along(-n * step * way, way)[0]) / (2.0 * n * step)
-        for n in (1, 2)
-    )
-    np.testing.assert_allclose(slopes, (4.0 * near - far) / 3.0, rtol=1e-6)
+    for place in (0.0, 1e-3, 2e-3):  # rounding of the turn differs from place to place
+        (restitution, *_), slopes = along(place * way, way)
+        assert 0.6 < float(restitution) < 0.7
+        ahead, behind, further, back = (
+            along((place + n * step) * way, way)[0] for n in (1, -1, 2, -2)
+        )
+        near, far = (ahead - behind) / (2.0 * step), (further - back) / (4.0 * step)
+        np.testing.assert_allclose(slopes, (4.0 * near - far) / 3.0, rtol=1e-7)

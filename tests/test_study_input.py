@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity.case import SIZE_LIMIT
+from asperity.case.reading import LINE_LIMIT
 from asperity.errors import InputError
 from asperity.studies.sweep.listing import LIST_LIMIT
-from asperity.studies.sweep.reading import LINE_LIMIT
 from asperity.studies.sweep.study import parse, read
 from study_texts import GRID, HUMIDITY, RMS
 

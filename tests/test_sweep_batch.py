@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from asperity.errors import InputError
 from asperity.solver import solve
 from asperity.studies.sweep.batch import compute, evaluate
 from asperity.studies.sweep.building import built
+from asperity.studies.sweep.lanes import Stopped
 from asperity.studies.sweep.layout import OUTCOMES
 from asperity.studies.sweep.study import parse
 
@@ -199,7 +202,38 @@ def test_turning_points_are_kept_in_order_of_time():
     assert times[count - 1] == pytest.approx(result.time[-1])
 
 
-SLOW = {"radius_classes"}
+def test_cases_that_are_stepped_in_time_have_the_same_columns():
+    text = KEEP.replace("keep_impacts", "motions = true\nkeep_impacts") + """
+[axes]
+"capillary.formation_time" = {from = "0.1 us", to = "10 us", steps = 3, scale = "log"}
+""" + ROUGH.replace("max_impacts = 12", "max_impacts = 3")  # fmt: skip
+    study = parse("schema = 1\n" + text)
+    columns, _ = compute(study, 0)
+    for number in range(study.size):
+        result = solve(study.case(number))
+        assert OUTCOMES[columns["outcome"][number]] is result.outcome
+        count = len(result.measures["restitution"])
+        assert columns["impacts"][number] == count
+        assert columns["restitution"][number].tolist() == pytest.approx(
+            (plain(result.measures["restitution"]) + 3 * [np.nan])[:3], nan_ok=True
+        )
+        assert columns["lost_capillary"][number] == result.ledger["lost"]["capillary"]
+        times = columns["turning_time"][number][: 2 * count]
+        apexes = columns["turning_separation"][number][1 : 2 * count : 2]
+        heights = plain(result.measures["rebound_height"])
+        assert (np.diff(times) > 0.0).all()
+        assert np.isnan(columns["turning_time"][number][2 * count :]).all()
+        # Heights count from the equilibrium, the same for all impacts.
+        assert np.diff(apexes).tolist() == pytest.approx(np.diff(heights).tolist(), rel=1e-6)
+        periods = plain(result.measures["impact_time"])
+        assert np.diff(times[1::2]).tolist() == pytest.approx(periods[1:], rel=1e-6)
+
+
+def test_a_task_that_is_asked_to_stop_gives_nothing():
+    stop = threading.Event()
+    stop.set()
+    with pytest.raises(Stopped):
+        compute(parse("schema = 1\n" + STUDIES["published"]), 0, stop)
 
 
 @pytest.mark.parametrize("base", ["published-exact", "published"])

@@ -8,6 +8,7 @@ import re
 import stat
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from asperity.case import problems, writing
 from asperity.case.schema import Case
@@ -46,24 +47,46 @@ def load(text: str, *, file: str | None = None) -> Case:
     InputError
         One line that names file, key, line, rule and value.
     """
-    if len(text) > SIZE_LIMIT or len(text.encode(errors="replace")) > SIZE_LIMIT:
-        raise _unusable(file, f"a case must be at most 1 MiB; got {len(text)} characters")
+    return problems.check(Case, tables(text, file), source=text, file=file)
+
+
+def tables(text: str, file: str | None, what: str = "a case") -> dict[str, Any]:
+    """The tables of a TOML text, which is ``what``.
+
+    Raises
+    ------
+    InputError
+        Where it is too long, empty, binary or no TOML, with the line.
+    """
+    refuse_size(text, file, what)
     if "\0" in text:
-        raise _unusable(file, "a case must be text; got a binary file")
+        raise _unusable(file, f"{what} must be text; got a binary file")
     if not text.strip():
-        raise _unusable(file, "a case must have tables; got an empty file")
-    longest = max(len(line) for line in text.split("\n"))
-    if longest > LINE_LIMIT:  # the parser's time grows with the square of a dotted key's length
-        raise _unusable(
-            file, f"a line must be at most {LINE_LIMIT} characters; got one of {longest}"
-        )
+        raise _unusable(file, f"{what} must have tables; got an empty file")
     try:
-        table = tomllib.loads(text)
+        return tomllib.loads(text)
     except RecursionError:
         raise _unusable(file, "not TOML: values nested too deeply") from None
     except tomllib.TOMLDecodeError as error:
         raise _unusable(file, _syntax(str(error), text)) from None
-    return problems.check(Case, table, source=text, file=file)
+    except ValueError:  # Python reads no whole number of thousands of digits
+        raise _unusable(file, "not TOML: a number of too many digits") from None
+
+
+def refuse_size(text: str, file: str | None, what: str = "a case") -> None:
+    """Refuse a text that is too long, or has too long a line.
+
+    Raises
+    ------
+    InputError
+        With the limit.
+    """
+    if len(text) > SIZE_LIMIT or len(text.encode(errors="replace")) > SIZE_LIMIT:
+        raise _unusable(file, f"{what} must be at most 1 MiB; got {len(text)} characters")
+    longest = max(len(line) for line in text.split("\n"))
+    if longest > LINE_LIMIT:  # the parser's time grows with the square of a dotted key's length
+        rule = f"a line must be at most {LINE_LIMIT} characters (a list can have several lines)"
+        raise _unusable(file, f"{rule}; got one of {longest}")
 
 
 def load_file(path: str | os.PathLike[str]) -> Case:
@@ -75,16 +98,11 @@ def load_file(path: str | os.PathLike[str]) -> Case:
         Where the file cannot be read or is no case.
     """
     name = os.fspath(path)
-    content = _content(name)
-    try:
-        return _beside(load(content.decode("utf-8-sig"), file=name), Path(name).parent)
-    except UnicodeDecodeError as error:
-        rule = f"a case must be UTF-8 text; got a binary file (byte {error.start + 1})"
-        raise _unusable(name, rule) from None
+    return beside(load(read_text(name), file=name), Path(name).parent)
 
 
-def _beside(case: Case, folder: Path) -> Case:
-    """The case with its surface files looked for in its own folder."""
+def beside(case: Case, folder: Path) -> Case:
+    """The case with its surface files looked for in a folder."""
     rough = case.roughness
     if rough is None or rough.files is None:
         return case
@@ -93,8 +111,14 @@ def _beside(case: Case, folder: Path) -> Case:
     return case.model_copy(update={"roughness": rough.model_copy(update={"files": files})})
 
 
-def _content(name: str) -> bytes:
-    """Bytes of a regular file of at most 1 MiB."""
+def read_text(name: str, what: str = "a case") -> str:
+    """Text of a regular file of at most 1 MiB, which is ``what``; never read beyond that.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, or is no text.
+    """
     try:
         status = Path(name).stat()
     except OSError as error:
@@ -102,16 +126,19 @@ def _content(name: str) -> bytes:
     except ValueError:  # a null character
         raise _unusable(name, "cannot be read: no path of a file") from None
     if stat.S_ISDIR(status.st_mode):
-        raise _unusable(name, "a case must be a file; got a folder")
+        raise _unusable(name, f"{what} must be a file; got a folder")
     if not stat.S_ISREG(status.st_mode):
-        raise _unusable(name, "a case must be a regular file; got a device, pipe or socket")
+        raise _unusable(name, f"{what} must be a regular file; got a device, pipe or socket")
     if status.st_size > SIZE_LIMIT:
-        raise _unusable(name, f"a case must be at most 1 MiB; got {status.st_size} bytes")
+        raise _unusable(name, f"{what} must be at most 1 MiB; got {status.st_size} bytes")
     try:
         with Path(name).open("rb") as stream:
-            return stream.read(SIZE_LIMIT + 1)
+            return stream.read(SIZE_LIMIT + 1).decode("utf-8-sig")
     except OSError as error:
         raise _unusable(name, f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        rule = f"{what} must be UTF-8 text; got a binary file (byte {error.start + 1})"
+        raise _unusable(name, rule) from None
 
 
 def builtin(name: str) -> Case:

@@ -211,11 +211,12 @@ class RigidContact(Contact):
         assert isinstance(self.interface, Yielding)
         bends = [jnp.asarray(law.breaking_gap, float) for law in self.interface.hysteretic]
         starts = turn + jnp.stack([jnp.zeros(()), *bends])
-        # Not at the turn itself, where rounding would make a body turn that has just turned.
+        # Not at the turn itself, where rounding would make a body turn that has just turned, and
+        # where a panel so narrow would have no derivatives but those of rounding.
         below = turn - 1e-9 * self.interface.heights.rms
-        marks = jnp.concatenate(
-            [(starts[:, None] + self.interface.rungs).ravel(), starts[1:], below[None]]
-        )
+        rungs = self.interface.rungs
+        marks = jnp.concatenate([(starts[:, None] + rungs).ravel(), starts[1:], below[None]])
+        marks = jnp.where(marks == turn, below, marks)
         return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
 
     @property

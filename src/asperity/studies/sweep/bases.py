@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from asperity.case import BUILTINS, Case, Output, builtin, load_file
 from asperity.case.problems import check, did_you_mean
+from asperity.case.reading import beside
 from asperity.errors import InputError
 from asperity.studies.sweep.reading import StudyTable
 from asperity.units import shown
@@ -41,7 +41,7 @@ def base_of(table: StudyTable, file: str | None, folder: Path) -> tuple[Case, st
 def _found(base: object, folder: Path) -> tuple[Case, str]:
     if isinstance(base, dict):
         try:
-            return _beside(check(Case, base), folder), "base"
+            return beside(check(Case, base), folder), "base"
         except InputError as error:
             key = f"base.{error.key}" if error.key else "base"
             raise InputError(f"base.{error}", key=key) from None
@@ -67,12 +67,3 @@ def _builtin(name: str) -> Case:
             f"study, such as 'drop.toml'; got {shown(name)}{did_you_mean(name, BUILTINS)}"
         )
     return builtin(name)
-
-
-def _beside(case: Case, folder: Path) -> Case:
-    """The case with its surface files looked for in a folder."""
-    rough = case.roughness
-    if rough is None or rough.files is None:
-        return case
-    files = [os.fspath((folder / file).resolve()) for file in rough.files]
-    return case.model_copy(update={"roughness": rough.model_copy(update={"files": files})})

@@ -92,8 +92,7 @@ def _computed(study: Study, values: Values, clock: Clock) -> tuple[Columns, Effo
     for group in whole.groups:
         _write(study, out, group, fly_group(group, clock))
     for row, case in whole.alone:
-        clock.look()
-        _solve(study, out, row, case)
+        _solve(study, out, row, case, clock)
     wall = time.perf_counter() - began
     return out, Effort(count, clock.lanes, min(clock.compiled, wall), wall)
 
@@ -180,13 +179,16 @@ def _look_at_surface(
         _fail(out, row, str(error))
 
 
-def _solve(study: Study, out: Columns, row: int, case: Case) -> None:
+def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> None:
     """A case that is stepped in time, by itself."""
+    clock.look()
     try:
-        result = solve(case)
+        result = solve(case, stop=clock.stop)
     except (InputError, SimulationError) as error:
         _fail(out, row, str(error))
         return
+    finally:
+        clock.look()  # a case that was cut short is not one that ended
     found = _read(result)
     out["outcome"][row] = OUTCOMES.index(result.outcome)
     for column in study.columns:
@@ -219,9 +221,10 @@ def _read(result: Result) -> dict[str, Any]:
 
 def _turning(result: Result) -> dict[str, list[float]]:
     """Turning points of a sampled motion: where the speed changes its sign, and its end."""
-    speed = np.sign(result.speed)
-    turns = np.flatnonzero((speed[1:] != speed[:-1]) & (speed[1:] != 0.0)) + 1
-    turns = np.append(turns[turns > 1], result.time.size - 1)
+    sign, size = np.sign(result.speed), np.abs(result.speed)
+    before = np.flatnonzero(sign[1:] != sign[:-1])
+    turns = before + (size[before + 1] < size[before])  # speeds of turns are zero but for rounding
+    turns = np.unique(np.append(turns[turns > 0], result.time.size - 1))
     return {
         "turning_separation": result.separation[turns].tolist(),
         "turning_time": result.time[turns].tolist(),

@@ -81,7 +81,8 @@ def fly_group(group: Group, clock: Clock) -> Flight:
 def compile_ahead(groups: list[Group]) -> None:
     """Compile what the groups are flown by side by side, where it is not yet."""
     for group in groups:
-        some = next(_slices(np.arange(group.rows.size), lanes.width(group.flown)))
+        count = group.rows.size
+        some = next(_slices(np.arange(count), lanes.width(group.flown, count)))
         here = _take(group.flown, some)
         begun, _checks, _rows = lanes._begin_program.ahead(here)
         lanes._go_on_program.ahead(here, begun)
@@ -92,8 +93,8 @@ class _Flying:
 
     def __init__(self, group: Group, clock: Clock) -> None:
         self.group, self.clock = group, clock
-        self.width = lanes.width(group.flown)
         count = group.rows.size
+        self.width = lanes.width(group.flown, count)
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
         self.made = np.zeros(count, int)

@@ -21,6 +21,7 @@ from asperity.studies.sweep.building import Flown
 IMPACTS = 16
 """Impacts of a compiled call."""
 
+_FEW = 32  # lanes for a few cases, most of which would be empty in a wide call
 _FAST: dict[str, bool | int] = {}  # XLA's own choice: a third faster than what compiles quickly
 
 
@@ -138,10 +139,12 @@ _go_on_program = Program(_go_on, _FAST)
 _measure_program = Program(_measure, _FAST)
 
 
-def width(flown: Flown) -> int:
-    """Number of cases of a compiled call."""
+def width(flown: Flown, count: int) -> int:
+    """Number of cases of a compiled call, for so many in all."""
     if isinstance(flown.contact, ElasticContact):
         return 8
+    if count <= 2 * _FEW:
+        return _FEW
     return 512 if jax.default_backend() == "cpu" else 4096
 
 
@@ -159,7 +162,7 @@ class Clock:
     """
 
     def __init__(self, stop: threading.Event | None = None) -> None:
-        self._stop = stop
+        self.stop = stop
         self.compiled = 0.0
         self.useful = 0
         self.all = 0
@@ -175,7 +178,7 @@ class Clock:
 
     def look(self) -> None:
         """Raise `Stopped` where the task is to end."""
-        if self._stop is not None and self._stop.is_set():
+        if self.stop is not None and self.stop.is_set():
             raise Stopped
 
     def count(self, made: np.ndarray) -> None:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-import stat
-import tomllib
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from asperity.case import SIZE_LIMIT
+from asperity.case import reading
 from asperity.case.fields import Number
 from asperity.case.problems import check, did_you_mean
 from asperity.case.table import Table
@@ -20,12 +17,7 @@ from asperity.studies.sweep.layout import DEFAULT_KEEP
 from asperity.studies.sweep.sampling import Sample
 from asperity.units import shown
 
-LINE_LIMIT = 1000
-"""Longest line of a study [characters]: the parser's time grows with its square."""
-
 _DEPTH = 3  # of materials.NAME.key, the deepest of a case
-
-_PLACE = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 def _known(version: object) -> object:
@@ -61,35 +53,6 @@ class StudyTable(Table):
     sample: Sample | None = None
 
 
-def content(path: str) -> str:
-    """Text of a study file, which is never read beyond 1 MiB.
-
-    Raises
-    ------
-    InputError
-        Where it cannot be read, or is no text.
-    """
-    try:
-        status = Path(path).stat()
-        if stat.S_ISDIR(status.st_mode):
-            raise _unusable(path, "a study must be a file; got a folder")
-        if not stat.S_ISREG(status.st_mode):
-            raise _unusable(path, "a study must be a regular file; got a device, pipe or socket")
-        if status.st_size > SIZE_LIMIT:
-            raise _unusable(path, f"a study must be at most 1 MiB; got {status.st_size} bytes")
-        with Path(path).open("rb") as stream:
-            return stream.read(SIZE_LIMIT + 1).decode("utf-8-sig")
-    except OSError as error:
-        raise _unusable(path, f"cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        rule = f"a study must be UTF-8 text; got a binary file (byte {error.start + 1})"
-        raise _unusable(path, rule) from None
-    except InputError:
-        raise
-    except ValueError:  # a null character
-        raise _unusable(path, "cannot be read: no path of a file") from None
-
-
 def tables(text: str, file: str | None) -> StudyTable:
     """The tables of a study's text.
 
@@ -98,7 +61,7 @@ def tables(text: str, file: str | None) -> StudyTable:
     InputError
         One line that names file, key, line, rule and value.
     """
-    found = _parsed(text, file)
+    found = reading.tables(text, file, "a study")
     for key, value in found.items():
         options = [field.alias or name for name, field in StudyTable.model_fields.items()]
         if key not in options:
@@ -109,38 +72,6 @@ def tables(text: str, file: str | None) -> StudyTable:
         rule = "`base`, a built-in case or a case file, must be given; got nothing"
         raise _unusable(file, rule, "base")
     return check(StudyTable, found, source=text, file=file)
-
-
-def refuse_size(text: str, file: str | None) -> None:
-    """Refuse a text that is too long, or has too long a line.
-
-    Raises
-    ------
-    InputError
-        With the limit.
-    """
-    if len(text) > SIZE_LIMIT or len(text.encode(errors="replace")) > SIZE_LIMIT:
-        raise _unusable(file, f"a study must be at most 1 MiB; got {len(text)} characters")
-    longest = max(len(line) for line in text.split("\n"))
-    if longest > LINE_LIMIT:
-        rule = f"a line must be at most {LINE_LIMIT} characters (a list can have several lines)"
-        raise _unusable(file, f"{rule}; got one of {longest}")
-
-
-def _parsed(text: str, file: str | None) -> dict[str, Any]:
-    refuse_size(text, file)
-    if "\0" in text:
-        raise _unusable(file, "a study must be text; got a binary file")
-    if not text.strip():
-        raise _unusable(file, "a study must have tables; got an empty file")
-    try:
-        return tomllib.loads(text)
-    except RecursionError:
-        raise _unusable(file, "not TOML: values nested too deeply") from None
-    except tomllib.TOMLDecodeError as error:
-        raise _unusable(file, _syntax(str(error), text)) from None
-    except ValueError:  # Python reads no whole number of thousands of digits
-        raise _unusable(file, "not TOML: a number of too many digits") from None
 
 
 def axes(table: StudyTable, text: str, file: str | None) -> list[tuple[str, str, Any]]:
@@ -184,14 +115,3 @@ def _where(key: str, text: str, file: str | None) -> str:
 
 def _unusable(file: str | None, rule: str, key: str | None = None) -> InputError:
     return InputError(f"{file}: {rule}" if file else rule, file=file, key=key)
-
-
-def _syntax(message: str, source: str) -> str:
-    """The parser's message with the line in front."""
-    place = _PLACE.search(message)
-    rule = _PLACE.sub("", message)
-    if place is None:
-        return f"not TOML: {rule}"
-    line = int(place.group(1)) if place.group(1) else source.count("\n") + 1
-    column = f", column {place.group(2)}" if place.group(2) else ""
-    return f"not TOML (line {line}{column}): {rule}"

@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from asperity.case import Case
+from asperity.case.reading import read_text, refuse_size
 from asperity.errors import InputError
 from asperity.studies.sweep import bases, canonical, layout, reading, structure
 from asperity.studies.sweep.axes import Axis
@@ -241,7 +242,7 @@ def read(path: str) -> Study:
     InputError
         One line that names file, key, rule and value.
     """
-    return parse(reading.content(path), file=path, folder=Path(path).parent)
+    return parse(read_text(path, "a study"), file=path, folder=Path(path).parent)
 
 
 def parse(text: str, *, file: str | None = None, folder: Path | None = None) -> Study:
@@ -295,4 +296,4 @@ def _refuse(study: Study) -> None:
             "`base` must name its files in UTF-8, for the store to hold; got other bytes",
             key="base",
         ) from None
-    reading.refuse_size(study.canonical, None)
+    refuse_size(study.canonical, None, "a study")
