@@ -28,14 +28,24 @@ def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
     """Sum of Chebyshev polynomials; the coefficients' first axis is the degree.
 
     The other axes and those of ``x`` broadcast. By Clenshaw's recurrence, degree by degree: XLA
-    makes one loop of that, and three times as many steps of a table of the polynomials.
+    makes one loop of that, and three times as many steps of a table of the polynomials. Even
+    and odd degrees apart, in steps of two degrees: half as many that wait for one another.
     """
-    count = coefficients.shape[0]
-    twice = 2.0 * x
-    upper = lower = jnp.zeros(jnp.broadcast_shapes(coefficients.shape[1:], x.shape))
-    for degree in range(count - 1, 0, -1):
-        upper, lower = coefficients[degree] + twice * upper - lower, upper
-    return coefficients[0] + x * upper - lower
+    twice = 4.0 * x * x - 2.0
+    zero = jnp.zeros(jnp.broadcast_shapes(coefficients.shape[1:], x.shape))
+
+    def run(first: int) -> tuple[jax.Array, jax.Array]:
+        upper = lower = zero
+        last = coefficients.shape[0] - 1
+        for degree in range(last - (last - first) % 2, first, -2):
+            upper, lower = (coefficients[degree] - lower) + twice * upper, upper
+        return upper, lower
+
+    (even, before), (odd, earlier) = run(0), run(1)
+    total = (coefficients[0] - before) + 0.5 * twice * even
+    if coefficients.shape[0] == 1:
+        return total
+    return total + x * ((coefficients[1] - earlier) + (twice - 1.0) * odd)
 
 
 def antiderivative(coefficients: jax.Array) -> jax.Array:

@@ -14,7 +14,7 @@ from .table import FORCE, STORED, Table
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
 _PLACES = 32
-_HALVINGS = 60
+_HALVINGS = 48  # of a part of a panel: to its rounding
 
 
 @kept
@@ -80,29 +80,25 @@ def _outermost(
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
     """The largest separation at which a rule on the force begins to hold, by bisection."""
     ends, force = jax.lax.stop_gradient((ends, force))
-    fractions = (np.arange(_PLACES) + 0.5) / _PLACES
-    x = 2.0 * fractions - 1.0
-    sampled = jax.vmap(lambda row: chebyshev_sum(row[:, None], jnp.asarray(x)))(force)
-    low, high = ends[:-1, None], ends[1:, None]
-    places = (low + (high - low) * fractions).ravel()
-    holds = jnp.logical_and(rule(sampled.ravel()), jnp.repeat(ends[1:] > ends[:-1], _PLACES))
-    count = holds.shape[0]
-    index = count - 1 - jnp.argmax(holds[::-1])
-    inside = places[index]
-    outside = jnp.where(index + 1 < count, places[jnp.minimum(index + 1, count - 1)], ends[-1])
-
-    def value(place: jax.Array) -> tuple[jax.Array, jax.Array]:
-        panel = jnp.clip(jnp.searchsorted(ends, place, side="right") - 1, 0, ends.shape[0] - 2)
-        return chebyshev_sum(force[panel], local(ends[panel], ends[panel + 1], place)), panel
+    fractions = np.linspace(0.0, 1.0, _PLACES)  # the ends of a panel are places of its own
+    sampled = jax.vmap(lambda row: chebyshev_sum(row[:, None], jnp.asarray(2.0 * fractions - 1.0)))(
+        force
+    )
+    holds = jnp.logical_and(rule(sampled), (ends[1:] > ends[:-1])[:, None]).ravel()
+    index = holds.shape[0] - 1 - jnp.argmax(holds[::-1])
+    panel, place = index // _PLACES, index % _PLACES
+    low, width, row = ends[panel], ends[panel + 1] - ends[panel], force[panel]
 
     def halve(_: int, pair: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
         near, far = pair
         middle = 0.5 * (near + far)
-        inner = rule(value(middle)[0])
+        inner = rule(chebyshev_sum(row, 2.0 * middle - 1.0))
         return jnp.where(inner, middle, near), jnp.where(inner, far, middle)
 
-    near, _ = jax.lax.fori_loop(0, _HALVINGS, halve, (inside, outside))
-    return near, value(near)[1], jnp.any(holds)
+    at = jnp.asarray(fractions)
+    outside = at[jnp.minimum(place + 1, _PLACES - 1)]
+    near, _ = jax.lax.fori_loop(0, _HALVINGS, halve, (at[place], outside))
+    return low + width * near, panel, jnp.any(holds)
 
 
 def _slope(coefficients: jax.Array, x: jax.Array, ends: jax.Array, panel: jax.Array) -> jax.Array:

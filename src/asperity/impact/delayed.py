@@ -115,7 +115,7 @@ def fly(
         place, last = impact.rise.place, impact.end
         outcome = _outcome(stage, done)
         tell(len(done))
-    impacts = _stacked([_row(stage, impact) for impact in done])
+    impacts = _stacked([_row(stage, impact, done[0].fall.fastest) for impact in done])
     end = _progress(stage, done, outcome)
     motion = Motion(impacts, end, table, datum, jnp.asarray(stage.origin))
     legs = [way for impact in done for way in (impact.fall, impact.rise)]
@@ -180,7 +180,7 @@ def _outcome(stage: _Stage, done: list[_Impact]) -> Outcome | None:
     return next((outcome for holds, outcome in rules if holds), None)
 
 
-def _row(stage: _Stage, impact: _Impact) -> Impacts:
+def _row(stage: _Stage, impact: _Impact, fastest: float) -> Impacts:
     fall, rise = impact.fall, impact.rise
     samples = Samples.joined([impact.begin, *fall.samples, *rise.samples])
     energy = stage.energy(samples) + np.sum(samples.lost, axis=1)
@@ -198,7 +198,7 @@ def _row(stage: _Stage, impact: _Impact) -> Impacts:
         "lost": rise.place.lost,
         "closure": np.max(np.abs(energy - stage.origin)),
         "pull_work": np.asarray(-rise.pull_work),
-        "fastest": np.asarray(fall.fastest),
+        "fastest": np.asarray(fastest),
         "fall": _phase(stage, impact.start, impact.begin, fall),
         "rise": _phase(stage, fall.place, impact.middle, rise),
     }

@@ -172,7 +172,8 @@ def _leg(
     branch = contact.branch_of(progress.memory, parting)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
     if not body.damped:
-        turn, heat = find_turn(ahead), jnp.zeros(0)
+        wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(parting))
+        turn, heat = find_turn(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
         way = join(table, branch, inner, progress.place, parting)
@@ -247,7 +248,7 @@ def _impact(
     row = Impacts(
         jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
         fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
-        rise.pull_work, fall.turn.fastest, fall.phase, rise.phase,
+        rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row
 

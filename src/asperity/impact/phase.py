@@ -80,14 +80,18 @@ class Ahead(NamedTuple):
 
     def outer(self, work: jax.Array, places: jax.Array) -> jax.Array:
         """Kinetic energy [J] at places of the branch where the ``work`` from the top is known."""
-        gain = work - self.before[0] - self.inner.weight * (places - self.begin)
-        return self.inner.kinetic[-1] + gain
+        return self.gained(work, places - self.begin)
+
+    def gained(self, work: jax.Array, way: jax.Array) -> jax.Array:
+        """The same, by the way [m] from where the branch begins."""
+        return self.inner.kinetic[-1] + (work - self.before[0] - self.inner.weight * way)
 
 
 class Turn(NamedTuple):
     """End of a phase: the piece and place where the body turns, or the end of the table.
 
-    Pieces are counted along the way to the branch, then by the panels of the table.
+    Pieces are counted along the way to the branch, then by the panels of the table. The largest
+    kinetic energy before it is 0 where it was not asked for.
     """
 
     piece: jax.Array
@@ -169,16 +173,17 @@ def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     energies = ahead.outer(table.works.nodes[ahead.branch], table.nodes)
     total = _time_over(jnp.diff(table.ends), whole, energies, mass)
     # The panel in which the branch begins, and the one in which the body turns.
-    near = jnp.where(ahead.parting, table.ends[ahead.panel + 1], table.ends[ahead.panel])
-    far = jnp.where(ahead.parting, table.ends[panel], table.ends[panel + 1])
+    panels = jnp.stack([ahead.panel, panel])
+    low, high = table.ends[panels], table.ends[panels + 1]
+    near, far = jnp.where(ahead.parting, high[0], low[0]), jnp.where(ahead.parting, low[1], high[1])
     first = jnp.stack([ahead.begin, far])
     last = jnp.stack([until(near), turn.place])
-    panels = jnp.stack([ahead.panel, panel])
     span = last - first
-    places = first[:, None] + span[:, None] * RISE
     integral = table.works.integral[ahead.branch, panels, :, 0]
-    x = local(table.ends[panels][:, None], table.ends[panels + 1][:, None], places)
-    energies = ahead.outer(chebyshev_sum(integral.T[:, :, None], x), places)
+    start = local(low, high, first)[:, None]
+    x = start + (local(low, high, last)[:, None] - start) * RISE
+    way = (first - ahead.begin)[:, None] + span[:, None] * RISE
+    energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
     used = jnp.stack([reached, jnp.logical_and(reached, panel != ahead.panel)])
     total = total + _time_over(jnp.abs(span), used, energies, mass)
     if not ahead.pieces:
@@ -194,9 +199,9 @@ def _time_over(
     length: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array
 ) -> jax.Array:
     """Time [s] over pieces with kinetic energies [J] at the places RISE of each."""
-    moving = jnp.logical_and(energies > 0.0, used[:, None])
-    speed = jnp.sqrt(jnp.where(moving, 2.0 * energies / mass, 1.0))
-    return jnp.sum(jnp.where(moving, RATE / speed * length[:, None], 0.0))
+    squares = jnp.where(energies > 0.0, 2.0 / mass * energies, jnp.inf)  # of the speeds
+    slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
+    return jnp.sum(jnp.where(used, slowness * length, 0.0))
 
 
 def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:

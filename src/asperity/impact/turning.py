@@ -6,6 +6,7 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
+from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..polynomials import DERIVATIVE, chebyshev_sum, local
@@ -14,7 +15,8 @@ from .table import LOOKS
 
 _SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]
 _POLISH = 60  # halvings and Newton steps of a turning point, at most
-_CLOSE = 4e-15  # relative
+_CLOSE = 4e-14  # relative: the step that follows one so short is lost in rounding
+_INWARDS = 0.1  # of a bracket
 _CLIMBS = 3  # Newton steps to the largest energy, from a place that is near
 
 
@@ -74,6 +76,15 @@ def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
     )
 
 
+class _Bracket(NamedTuple):
+    """Places [m] between which the kinetic energy [J] is spent, and what it is there."""
+
+    inner: jax.Array
+    outer: jax.Array
+    left: jax.Array
+    missing: jax.Array
+
+
 class _Looks(NamedTuple):
     """Places where the kinetic energy was looked at, and where it was found spent first."""
 
@@ -82,8 +93,7 @@ class _Looks(NamedTuple):
     passed: jax.Array
     found: jax.Array
     piece: jax.Array
-    inner: jax.Array
-    outer: jax.Array
+    bracket: _Bracket
 
 
 def _look_on_branch(ahead: Ahead) -> _Looks:
@@ -93,11 +103,14 @@ def _look_on_branch(ahead: Ahead) -> _Looks:
     beyond = ahead.sign * (places - ahead.begin) > 0.0
     spent = jnp.logical_and(beyond, energies < 0.0)
     count = places.shape[0]
-    first = jnp.where(ahead.parting, jnp.argmax(spent), count - 1 - jnp.argmax(spent[::-1]))
+    order = jnp.where(ahead.parting, np.arange(count, 0, -1), np.arange(1, count + 1))
+    first = jnp.argmax(jnp.where(spent, order, 0))
     before = jnp.clip(first - jnp.where(ahead.parting, 1, -1), 0, count - 1)
     inner = jnp.where(beyond[before], places[before], ahead.begin)
+    left = jnp.where(beyond[before], energies[before], ahead.inner.kinetic[-1])
     piece = ahead.pieces + first // LOOKS
-    return _Looks(places, energies, beyond, jnp.any(spent), piece, inner, places[first])
+    bracket = _Bracket(inner, places[first], left, energies[first])
+    return _Looks(places, energies, beyond, spent[first], piece, bracket)
 
 
 def _look_on_way(ahead: Ahead) -> _Looks:
@@ -111,20 +124,24 @@ def _look_on_way(ahead: Ahead) -> _Looks:
     piece = first // count
     outer = places.ravel()[first]
     inner = outer - (p.leave - p.enter)[piece] / count
+    entered = ahead.inner.kinetic[piece]
+    left = jnp.where(first % count == 0, entered, energies[jnp.maximum(first - 1, 0)])
     passed = jnp.ones(places.size, bool)
-    return _Looks(places.ravel(), energies, passed, jnp.any(spent), piece, inner, outer)
+    bracket = _Bracket(inner, outer, left, energies[first])
+    return _Looks(places.ravel(), energies, passed, spent[first], piece, bracket)
 
 
-def find_turn(ahead: Ahead) -> Turn:
-    """The first place where the kinetic energy is spent."""
+def find_turn(ahead: Ahead, wanted: jax.Array) -> Turn:
+    """The first place where the kinetic energy is spent; its largest before where ``wanted``."""
     table, looks = ahead.table, _look_on_branch(ahead)
-    piece, found, inner, outer = looks.piece, looks.found, looks.inner, looks.outer
+    piece, found, bracket = looks.piece, looks.found, looks.bracket
     places, energies, passed = looks.places, looks.energies, looks.passed
     if ahead.pieces:
         near = _look_on_way(ahead)
         soon = near.found
         piece = jnp.where(soon, near.piece, piece)
-        inner, outer = jnp.where(soon, near.inner, inner), jnp.where(soon, near.outer, outer)
+        pairs = zip(near.bracket, bracket, strict=True)
+        bracket = _Bracket(*(jnp.where(soon, *pair) for pair in pairs))
         found = jnp.logical_or(soon, found)
         places = jnp.concatenate([near.places, places])
         energies = jnp.concatenate([near.energies, energies])
@@ -133,9 +150,13 @@ def find_turn(ahead: Ahead) -> Turn:
     last = jnp.where(ahead.parting, table.panel_at(table.ends[-1]), 0)
     piece = jnp.where(found, piece, ahead.pieces + last)
     here = _piece(ahead, piece)
-    place = jnp.where(found, _polish(here, inner, outer), end)
-    passed = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
-    fastest = _fastest(ahead, places, jnp.where(passed, energies, 0.0))
+    place = jnp.where(found, _polish(here, bracket), end)
+
+    def largest() -> jax.Array:
+        before = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
+        return _fastest(ahead, places, jnp.where(before, energies, 0.0))
+
+    fastest = jax.lax.cond(unvmap_any(wanted), largest, lambda: jnp.zeros(()))
     return Turn(piece, place, found, fastest, jnp.where(found, 0.0, here.energy(place)))
 
 
@@ -160,9 +181,10 @@ def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
     return reduce(jnp.maximum, (energies[best], climbed(piece), climbed(inward)))
 
 
-def _polish(piece: _Piece, inner: jax.Array, outer: jax.Array) -> jax.Array:
-    """Root of the kinetic energy between two places: Newton kept inside its bracket."""
-    frozen, inner, outer = jax.lax.stop_gradient((piece, inner, outer))
+def _polish(piece: _Piece, bracket: _Bracket) -> jax.Array:
+    """Root of the kinetic energy in a bracket: Newton's method kept inside it."""
+    frozen, bracket = jax.lax.stop_gradient((piece, bracket))
+    inner, outer, left, missing = bracket
     close = _CLOSE * jnp.maximum(jnp.abs(inner), jnp.abs(outer))
 
     def go_on(carry):  # type: ignore[no-untyped-def]
@@ -182,7 +204,10 @@ def _polish(piece: _Piece, inner: jax.Array, outer: jax.Array) -> jax.Array:
         low, high = jnp.minimum(inside, outside), jnp.maximum(inside, outside)
         return inside, outside, jnp.clip(following, low, high), moved, count + 1
 
-    start = (inner, outer, 0.5 * (inner + outer), jnp.asarray(jnp.inf), 0)
+    # From where a line between the ends is 0; not at the inner one, where the body may have begun.
+    change = left - missing
+    share = jnp.clip(left / jnp.where(change > 0.0, change, 1.0), _INWARDS, 1.0)
+    start = (inner, outer, inner + share * (outer - inner), jnp.asarray(jnp.inf), 0)
     place = jax.lax.while_loop(go_on, step, start)[2]
     slope = jax.lax.stop_gradient(piece.slope(place))
     correction = piece.energy(place) / jnp.where(slope == 0.0, 1.0, slope)

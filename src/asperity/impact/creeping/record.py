@@ -119,13 +119,14 @@ class Ledger(NamedTuple):
         """The records of a motion."""
         table, datum = self.prepared
         origin = float(self.energy(done[0].begin)[0])
-        rows = [self._row(one, origin) for one in done]
+        fastest = self.fastest(done[0])
+        rows = [self._row(one, origin, fastest) for one in done]
         impacts: Impacts = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *rows)
         end = self._progress(done, outcome)
         motion = Motion(impacts, end, table, datum, jnp.asarray(origin))
         return motion, self._trajectory(done)
 
-    def _row(self, one: Bounced, origin: float) -> Impacts:
+    def _row(self, one: Bounced, origin: float, fastest: float) -> Impacts:
         samples = Samples.joined([one.begin, one.fall.samples, one.rise.samples])
         energy = self.energy(samples) + np.sum(samples.lost, axis=1)
         middle, end = one.middle, one.end
@@ -142,7 +143,7 @@ class Ledger(NamedTuple):
             "lost": end.lost[0],
             "closure": np.max(np.abs(energy - origin)),
             "pull_work": np.asarray(_pull_work(Samples.joined([middle, one.rise.samples]))),
-            "fastest": np.asarray(self.fastest(one)),
+            "fastest": np.asarray(fastest),
             "fall": self._phase(one.begin, middle),
             "rise": self._phase(middle, end),
         }

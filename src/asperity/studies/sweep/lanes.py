@@ -13,7 +13,7 @@ from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.impact import Body, Impacts, Limits, Motion, Progress, Table, fly, prepare, start
 from asperity.impact.datum import Datum
-from asperity.impact.table import FORCE, outer_row
+from asperity.impact.table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
 from asperity.measures import Measures, Passing, contact_ends, measure, passing_at
 from asperity.program import Program, kept
 from asperity.studies.sweep.building import Flown
@@ -22,7 +22,8 @@ IMPACTS = 16
 """Impacts of a compiled call."""
 
 _FEW = 32  # lanes for a few cases, most of which would be empty in a wide call
-_FAST: dict[str, bool | int] = {}  # XLA's own choice: a third faster than what compiles quickly
+_FAST: dict[str, bool | int] = {"xla_cpu_multi_thread_eigen": False}
+"""XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
 
 
 @kept
@@ -56,12 +57,15 @@ class Checks(NamedTuple):
         Relative errors of the interpolation and of the contact's equilibrium.
     at_release, largest
         Force at the release, and the largest in the table [N].
+    at_depth
+        :class:`asperity.validity.AtDepth` of the first impact.
     """
 
     error: jax.Array
     residual: jax.Array
     at_release: jax.Array
     largest: jax.Array
+    at_depth: jax.Array
 
 
 Rows = tuple[Impacts, Passing | None]
@@ -77,9 +81,11 @@ def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
         progress, origin = start(contact, body, table)
         force = jnp.abs(outer_row(table, 0, body.release)[FORCE])
         largest = jnp.max(jnp.abs(table.values[..., 0, FORCE]))
-        checks = Checks(table.error, table.residual, force, largest)
         begun = Begun(table, datum, origin, progress, jnp.zeros(()))
         progress, impacts = _flight(flown, begun)
+        deepest = outer_row(table, 0, impacts.deepest[0])
+        at_depth = jnp.stack([deepest[TOUCHING], deepest[FORCE] - deepest[PULL], deepest[CENTRAL]])
+        checks = Checks(table.error, table.residual, force, largest, at_depth)
         begun = begun._replace(progress=progress, reference=contact_ends(table, impacts))
         return begun, checks, _slim(body, begun, impacts)
 
@@ -145,7 +151,7 @@ def width(flown: Flown, count: int) -> int:
         return 8
     if count <= 2 * _FEW:
         return _FEW
-    return 512 if jax.default_backend() == "cpu" else 4096
+    return 256 if jax.default_backend() == "cpu" else 4096
 
 
 class Stopped(Exception):
