@@ -20,6 +20,8 @@ class Effort(NamedTuple):
     lanes: float
     compiled: float
     wall: float
+    looked: int = 0
+    warned: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -187,9 +187,12 @@ def test_bars_stand_at_the_indices_and_the_same_twice():
     assert set(pictures) == {"sensitivity.png", "sensitivity.svg"}
 
 
-def law_of_sum(one: Study, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def law_of_sum(
+    one: Study, values: Mapping[str, np.ndarray], progress: Callable[[int], None]
+) -> dict[str, np.ndarray]:
     assert one.keep == ("restitution",)
     x, y, z = shares(one, values)
+    progress(x.size)
     return {"outcome": np.full(x.size, REST), "restitution": (3.0 * x + 2.0 * y + z)[:, None]}
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import zarr
 
+from asperity.cli.tallying import warnings
 from asperity.errors import InputError, OutputError
 from asperity.studies.sweep.array import metadata
 from asperity.studies.sweep.counting import first_failure, outcomes
@@ -362,6 +363,20 @@ def test_a_tally_adds_up():
     assert tally.rate == pytest.approx(STUDY.size / STUDY.tasks)
     assert tally.left == 0.0
     assert tally.outside == pytest.approx(1.0 - 0.25e-3 * STUDY.tasks / STUDY.tasks)
+
+
+def test_warnings_that_differ_in_their_numbers_alone_are_told_once():
+    tally = Tally(0, 0, 2, 16)
+    effort = compute(FakeStudy(), 0)[1]
+    for warned in (
+        ((7, "the index is 2.5e-1: too low"), (7, "flooded")),
+        ((0, "the index is -3: too low"), (5, "the index is 1,000.5: too low")),
+    ):
+        tally = tally.plus(effort._replace(looked=4, warned=warned), wall=1.0)
+    assert warnings(tally) == [
+        "3 of 8 cases looked at, such as case 0: the index is -3: too low",
+        "1 of 8 cases looked at, such as case 7: flooded",
+    ]
 
 
 @pytest.mark.parametrize("parts", [1, 2, 3, 10])

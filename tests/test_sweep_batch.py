@@ -137,6 +137,10 @@ def test_cases_side_by_side_are_the_cases_one_by_one(name):
             else:
                 assert np.isnan(found)
         assert columns["end_time"][number] == pytest.approx(result.time[-1], rel=1e-9)
+        if number in study.corners:
+            warned = [line for at, line in effort.warned if at == number]
+            assert warned == sorted(result.warnings)
+    assert effort.looked == len(study.corners)
 
 
 def refusal(study, number):
@@ -208,9 +212,11 @@ def test_cases_that_are_stepped_in_time_have_the_same_columns():
 "capillary.formation_time" = {from = "0.1 us", to = "10 us", steps = 3, scale = "log"}
 """ + ROUGH.replace("max_impacts = 12", "max_impacts = 3")  # fmt: skip
     study = parse("schema = 1\n" + text)
-    columns, _ = compute(study, 0)
+    columns, effort = compute(study, 0)
     for number in range(study.size):
         result = solve(study.case(number))
+        warned = [line for at, line in effort.warned if at == number]
+        assert number not in study.corners or warned == sorted(result.warnings)
         assert OUTCOMES[columns["outcome"][number]] is result.outcome
         count = len(result.measures["restitution"])
         assert columns["impacts"][number] == count

@@ -93,7 +93,7 @@ def result_of(
     series, lost = _sampled(case, flight, body)
     at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
     check_surface(case, problem, at_depth)
-    regime = _regime(case, problem, at_depth)
+    regime = regime_of(case, problem, at_depth)
     forces, energies = _histories(flight.contact, motion, body, series, lost)
     impacts = motion.impacts
     return Result(
@@ -164,7 +164,7 @@ def assessment_of(
     """
     at_depth = AtDepth.of(contact, motion)
     check_surface(case, problem, at_depth)
-    regime = _regime(case, problem, at_depth)
+    regime = regime_of(case, problem, at_depth)
     rough, liquid = case.asperities, case.liquid
     situation = regimes.Situation(
         regime=regime,
@@ -183,7 +183,8 @@ def assessment_of(
     return Assessment(name, regime, regimes.verdicts(situation), warnings)
 
 
-def _regime(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+    """The dimensionless numbers of a case, by its contact at closest approach."""
     adhesion, rough = case.adhesion, case.asperities
     work, spacing = adhesion.work, adhesion.range
     tabor = plasticity = load = None

@@ -78,12 +78,18 @@ def _indices(file: str, measure: str, *, quiet: bool) -> Sensitivity:
         error.file = error.file or file
         raise
     batch = importlib.import_module("asperity.studies.sweep.batch")
+    cases, computed = study.size * (len(study.axes) + 2), 0
     with progress_bar(not quiet) as progress:
-        if progress is not None:
-            cases = study.size * (len(study.axes) + 2)
-            progress(0.0, f"{cases} cases")
+
+        def tell_of(count: int) -> None:
+            nonlocal computed
+            computed += count
+            if progress is not None:
+                progress(computed / cases, f"{computed:,} of {cases:,} cases")
+
+        tell_of(0)
         found: Sensitivity = done(
-            lambda: indices(study, measure, lambda values: batch.evaluate(study, values))
+            lambda: indices(study, measure, lambda values: batch.evaluate(study, values, tell_of))
         )
     return found
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
 
-from asperity.cli.tallying import about, lines, lines_of, progress_of, took
+from asperity.cli.tallying import about, lines, lines_of, progress_of, took, warnings
 from asperity.cli.terminal import exit_code_of, say, tell
 from asperity.cli.working import Progress, Work, progress_bar
 from asperity.errors import InputError
@@ -80,7 +80,7 @@ def sweep(
     """
     from asperity.studies.sweep.running import one_thread
 
-    one_thread()
+    one_thread(at_once=True)
     _refuse_both(force=force, resume=resume)
     _refuse_both(force=force, repair=repair)
     _refuse_both(workers=workers is not None, scheduler=scheduler is not None)
@@ -220,6 +220,8 @@ def _filled(
             if bar is not None:
                 bar(tally.cases / tally.cases_wanted, progress_of(tally))
 
+        if bar is not None:
+            bar(0.0, "the first tasks are compiled")
         with _runner(request) as runner:
             return fill(request.study, store, runner, tasks=tasks, progress=kept, stop=stop)
 
@@ -228,6 +230,8 @@ def _filled(
             tally, code = Work(lambda stop: task(stop, bar)).wait()
         except KeyboardInterrupt as impatience:  # a second Ctrl-C
             tally, code = None, exit_code_of(impatience)
+    for warning in warnings(tally) if tally is not None else ():
+        log.write(warning)
     log.write(f"ends; {len(store.done)} of {store.tasks} tasks are finished")
     return tally, code
 
@@ -245,6 +249,8 @@ def _tell_sweep(
         tell(json.dumps(about(store) | took(tally), allow_nan=False))
     elif not quiet and not code:
         tell("\n".join([*lines(store), *lines_of(tally)]))
+        for warning in warnings(tally) if tally is not None else ():
+            say(f"asperity: {warning}")
     missing = store.size - store.cases_done
     if missing and not code and request.shard is None and not quiet:
         say(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")

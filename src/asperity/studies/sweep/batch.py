@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ from asperity.studies.sweep.building import Group, Values, built
 from asperity.studies.sweep.flights import Flight, compile_ahead, fly_group
 from asperity.studies.sweep.lanes import Clock
 from asperity.studies.sweep.layout import OUTCOMES, REASON_SIZE
+from asperity.studies.sweep.running import Warned
+from asperity.studies.sweep.validity import warnings_in
 from asperity.validity import AtDepth, check_surface
 
 if TYPE_CHECKING:
@@ -41,12 +44,18 @@ class Effort(NamedTuple):
         Time in compiled code [s].
     wall
         Time in all [s].
+    looked
+        How many cases were looked at for the validity of their models.
+    warned
+        What is to be known of these.
     """
 
     cases: int
     lanes: float
     compiled: float
     wall: float
+    looked: int = 0
+    warned: tuple[Warned, ...] = ()
 
 
 def compute(study: Study, task: int, stop: threading.Event | None = None) -> tuple[Columns, Effort]:
@@ -68,33 +77,64 @@ def compute(study: Study, task: int, stop: threading.Event | None = None) -> tup
         has the outcome FAILED and its reason.
     """
     cases = study.task(task)
-    return _computed(study, study.values(cases.start, cases.stop), Clock(stop))
+    corners = [number for number in study.corners if number in cases]
+    return _computed(
+        study, study.values(cases.start, cases.stop), Clock(stop), cases.start, corners
+    )
 
 
-def evaluate(study: Study, values: Values) -> Columns:
-    """The columns of cases with any values of a study's axes, shape (cases,) each."""
+def evaluate(
+    study: Study, values: Values, progress: Callable[[int], None] | None = None
+) -> Columns:
+    """The columns of cases with any values of a study's axes, shape (cases,) each.
+
+    Parameters
+    ----------
+    study
+        The study.
+    values
+        By the axes' keys, SI.
+    progress
+        Told of each number of cases that are computed.
+    """
     count = next(iter(values.values())).shape[0]
     parts = []
     for begin in range(0, count, study.task_size):
         some = {key: array[begin : begin + study.task_size] for key, array in values.items()}
-        parts.append(_computed(study, some, Clock())[0])
+        columns, effort = _computed(study, some, Clock())
+        parts.append(columns)
+        if progress is not None:
+            progress(effort.cases)
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _computed(study: Study, values: Values, clock: Clock) -> tuple[Columns, Effort]:
+def _computed(
+    study: Study, values: Values, clock: Clock, first: int = 0, corners: Sequence[int] = ()
+) -> tuple[Columns, Effort]:
+    """The columns of cases of which the first has a number, and what is to be known of some."""
     began = time.perf_counter()
     count = next(iter(values.values())).shape[0]
     out = _blank(study, count)
     whole = built(study, values)
+    looked = [number - first for number in corners]
+    lines: dict[int, list[str]] = {}
     for row, reason in whole.refused.items():
         _fail(out, row, reason)
     compile_ahead(whole.groups)
     for group in whole.groups:
-        _write(study, out, group, fly_group(group, clock))
+        flight = fly_group(group, clock)
+        _write(study, out, group, flight)
+        for place in np.flatnonzero(np.isin(group.rows, looked) & (flight.made > 0)).tolist():
+            row = int(group.rows[place])
+            lines[row] = warnings_in(study.case(first + row), flight, place)
     for row, case in whole.alone:
-        _solve(study, out, row, case, clock)
+        found = _solve(study, out, row, case, clock)
+        if row in looked and found is not None:
+            lines[row] = found
+    warned = [(first + row, line) for row, of_case in lines.items() for line in of_case]
     wall = time.perf_counter() - began
-    return out, Effort(count, clock.lanes, min(clock.compiled, wall), wall)
+    compiled = min(clock.compiled, wall)
+    return out, Effort(count, clock.lanes, compiled, wall, len(lines), tuple(sorted(warned)))
 
 
 def _blank(study: Study, count: int) -> Columns:
@@ -179,14 +219,14 @@ def _look_at_surface(
         _fail(out, row, str(error))
 
 
-def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> None:
-    """A case that is stepped in time, by itself."""
+def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> list[str] | None:
+    """A case that is stepped in time, by itself; its warnings, None where it cannot be solved."""
     clock.look()
     try:
         result = solve(case, stop=clock.stop)
     except (InputError, SimulationError) as error:
         _fail(out, row, str(error))
-        return
+        return None
     finally:
         clock.look()  # a case that was cut short is not one that ended
     found = _read(result)
@@ -200,6 +240,7 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> No
             out[column.name][row, : len(values)] = [math.nan if v is None else v for v in values]
         elif found.get(column.name) is not None:
             out[column.name][row] = found[column.name]
+    return result.warnings
 
 
 def _read(result: Result) -> dict[str, Any]:

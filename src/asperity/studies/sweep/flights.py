@@ -38,6 +38,8 @@ class Flight(NamedTuple):
         Impacts by name, as in :class:`asperity.impact.Impacts`, shape (cases, impacts).
     measures
         By name, as in :class:`asperity.measures.Measures`.
+    at_depth
+        :class:`asperity.validity.AtDepth` of the first impact, shape (cases, 3).
     reasons
         Why a case failed, by its place in the group.
     """
@@ -48,6 +50,7 @@ class Flight(NamedTuple):
     lost: np.ndarray
     history: dict[str, np.ndarray]
     measures: dict[str, np.ndarray]
+    at_depth: np.ndarray
     reasons: dict[int, str]
 
 
@@ -98,6 +101,7 @@ class _Flying:
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
         self.made = np.zeros(count, int)
+        self.at_depth = np.full((count, 3), np.nan)
         self.outcome = np.full(count, ENDS.index(Outcome.FAILED))
         self.reasons: dict[int, str] = {}
         self._ends: list[Any] | None = None
@@ -121,6 +125,7 @@ class _Flying:
                 coarse.append(some[rough])
             some = np.where(fine, some, -1)
             some = np.where(self._sound(some, here, checks), some, -1)
+            self.at_depth[some[some >= 0]] = np.asarray(checks.at_depth)[some >= 0]
             self._keep(some, begun, rows)
             pool.append(self._on(_Lanes(some, here, begun)))
         self._finish([lane for lane in pool if lane is not None])
@@ -236,7 +241,9 @@ class _Flying:
         failed = ENDS.index(Outcome.FAILED)
         for place in flown[outcome[flown] == failed].tolist():
             self.reasons[place] = "the motion left the tabulated separations"
-        return Flight(outcome, self.made, end_time, lost, self.history, measures, self.reasons)
+        return Flight(
+            outcome, self.made, end_time, lost, self.history, measures, self.at_depth, self.reasons
+        )
 
     def _measured(self, places: np.ndarray) -> dict[str, np.ndarray]:
         """The measures of cases that were flown, in calls of like lengths."""

@@ -21,25 +21,31 @@ if TYPE_CHECKING:
 Answer = tuple[int, dict[str, np.ndarray], "Effort"]
 """A task's number, its columns, and what they cost."""
 
+Warned = tuple[int, str]
+"""The number of a case, and a line on where it leaves the validity of its models."""
+
 Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""
 
-ONE_THREAD = {
-    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false",
-    "NPROC": "1",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-}
+_LIBRARIES = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+
+ONE_THREAD = {**_LIBRARIES, "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false", "NPROC": "1"}
 """Environment in which a process computes with one thread. JAX reads it when it is imported."""
 
 
-def one_thread() -> None:
+def one_thread(*, at_once: bool = False) -> None:
     """Have this process compute with one thread, where JAX is not imported yet.
 
     What the environment says already stands.
+
+    Parameters
+    ----------
+    at_once : bool
+        Whether there is one thread for each task, and several tasks at once: XLA is left as many
+        as there are cores, or it would run their programs one after the other.
     """
     if "jax" not in sys.modules:
-        for name, value in ONE_THREAD.items():
+        for name, value in (_LIBRARIES if at_once else ONE_THREAD).items():
             os.environ.setdefault(name, value)
 
 
@@ -61,6 +67,10 @@ class Tally:
         Time in tasks, summed over all workers [s].
     wall : float
         Time since the run began [s].
+    looked : int
+        Cases that were looked at for the validity of their models.
+    warned : tuple
+        What is to be known of these: numbers of cases, each with a line.
     """
 
     tasks: int
@@ -71,6 +81,8 @@ class Tally:
     compiled: float = 0.0
     busy: float = 0.0
     wall: float = 0.0
+    looked: int = 0
+    warned: tuple[Warned, ...] = ()
 
     @property
     def lanes(self) -> float:
@@ -105,6 +117,8 @@ class Tally:
             self.compiled + effort.compiled,
             self.busy + effort.wall,
             wall,
+            self.looked + effort.looked,
+            self.warned + effort.warned,
         )
 
 

@@ -215,7 +215,7 @@ class Study:
     def _hopeless(self) -> list[str]:
         """What to say where a few cases all over the study break a rule; else nothing."""
         reasons = []
-        for number in self._corners():
+        for number in self.corners:
             try:
                 self.case(number)
             except InputError as error:
@@ -224,7 +224,8 @@ class Study:
                 return []
         return [f"no case of those tried ({len(reasons)}) can be computed: {reasons[0]}"]
 
-    def _corners(self) -> list[int]:
+    @property
+    def corners(self) -> list[int]:
         """Numbers of a few cases: of a grid its corners, of a sample its first."""
         if self.sample is not None:
             return list(range(min(self.size, _CORNERS)))
