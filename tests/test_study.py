@@ -260,3 +260,23 @@ def test_columns_and_widths_are_what_the_study_keeps():
     assert [found.width(along) for along in ("impact", "turn", "byte")] == [3, 60, REASON_SIZE]
     assert study(GRID).width("turn") == 2 * builtin("published").numerics.max_impacts
     assert study(GRID).keep == DEFAULT_KEEP
+
+
+def test_corners_have_each_axis_at_both_ends_with_the_others_low_and_high():
+    axes = {
+        "impact.speed": '["0.1 m/s", "1 m/s", "2 m/s"]',
+        "adhesion.work": '["20 mJ/m^2", "30 mJ/m^2"]',
+        "adhesion.range": '["0.2 nm"]',
+        "body.radius": '["40 um", "50 um"]',
+        "numerics.max_impacts": "[3, 4]",
+        "numerics.rest": "[1e-3, 1e-4]",
+    }
+    found = study("\n".join(f'"{key}" = {{values = {values}}}' for key, values in axes.items()))
+    places = np.array(np.unravel_index(found.corners, found.shape)).T
+    last = np.array(found.shape) - 1
+    assert len(found.corners) == len(set(found.corners)) == 12
+    assert np.isin(places / np.maximum(last, 1), (0, 1)).all()
+    high = places[:, last > 0].astype(bool).sum(axis=1)
+    assert sorted(high) == [0, 1, 1, 1, 1, 1, 4, 4, 4, 4, 4, 5]
+    two = study('"adhesion.work" = {values = ["20 mJ/m^2", "30 mJ/m^2"]}')
+    assert two.corners == [0, 1]

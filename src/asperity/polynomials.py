@@ -27,9 +27,9 @@ def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
 def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
     """Sum of Chebyshev polynomials; the coefficients' first axis is the degree.
 
-    The other axes and those of ``x`` broadcast. By Clenshaw's recurrence, degree by degree: XLA
-    makes one loop of that, and three times as many steps of a table of the polynomials. Even
-    and odd degrees apart, in steps of two degrees: half as many that wait for one another.
+    The other axes and those of ``x`` broadcast. By Clenshaw's recurrence: XLA makes one
+    loop of that, and three times as many steps of a table of the polynomials. Even and odd
+    degrees apart, in steps of two degrees: half as many that wait for one another.
     """
     twice = 4.0 * x * x - 2.0
     zero = jnp.zeros(jnp.broadcast_shapes(coefficients.shape[1:], x.shape))

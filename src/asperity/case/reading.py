@@ -58,11 +58,12 @@ def tables(text: str, file: str | None, what: str = "a case") -> dict[str, Any]:
     InputError
         Where it is too long, empty, binary or no TOML, with the line.
     """
-    refuse_size(text, file, what)
+    _refuse_length(text, file, what)
     if "\0" in text:
         raise _unusable(file, f"{what} must be text; got a binary file")
     if not text.strip():
         raise _unusable(file, f"{what} must have tables; got an empty file")
+    _refuse_lines(text, file)
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -81,8 +82,16 @@ def refuse_size(text: str, file: str | None, what: str = "a case") -> None:
     InputError
         With the limit.
     """
+    _refuse_length(text, file, what)
+    _refuse_lines(text, file)
+
+
+def _refuse_length(text: str, file: str | None, what: str) -> None:
     if len(text) > SIZE_LIMIT or len(text.encode(errors="replace")) > SIZE_LIMIT:
         raise _unusable(file, f"{what} must be at most 1 MiB; got {len(text)} characters")
+
+
+def _refuse_lines(text: str, file: str | None) -> None:
     longest = max(len(line) for line in text.split("\n"))
     if longest > LINE_LIMIT:  # the parser's time grows with the square of a dotted key's length
         rule = f"a line must be at most {LINE_LIMIT} characters (a list can have several lines)"

@@ -217,6 +217,8 @@ def _filled(
     def task(stop: threading.Event, bar: Progress | None) -> Tally:
         def kept(task: int, effort: Any, tally: Tally) -> None:
             log.task(task, effort, tally)
+            for case, line in effort.warned:
+                log.write(f"case {case}: {line}")
             if bar is not None:
                 bar(tally.cases / tally.cases_wanted, progress_of(tally))
 
@@ -230,8 +232,6 @@ def _filled(
             tally, code = Work(lambda stop: task(stop, bar)).wait()
         except KeyboardInterrupt as impatience:  # a second Ctrl-C
             tally, code = None, exit_code_of(impatience)
-    for warning in warnings(tally) if tally is not None else ():
-        log.write(warning)
     log.write(f"ends; {len(store.done)} of {store.tasks} tasks are finished")
     return tally, code
 
@@ -249,8 +249,8 @@ def _tell_sweep(
         tell(json.dumps(about(store) | took(tally), allow_nan=False))
     elif not quiet and not code:
         tell("\n".join([*lines(store), *lines_of(tally)]))
-        for warning in warnings(tally) if tally is not None else ():
-            say(f"asperity: {warning}")
+    for warning in warnings(tally) if tally is not None and not (as_json or quiet) else ():
+        say(f"asperity: {warning}")
     missing = store.size - store.cases_done
     if missing and not code and request.shard is None and not quiet:
         say(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")

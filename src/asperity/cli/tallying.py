@@ -60,6 +60,7 @@ def took(tally: Tally | None) -> dict[str, Any]:
         "cases_per_second": tally.rate,
         "lanes": tally.lanes,
         "outside_compiled": tally.outside,
+        "looked_at": tally.looked,
         "warnings": warnings(tally),
     }
 

@@ -216,7 +216,7 @@ class RigidContact(Contact):
         below = turn - 1e-9 * self.interface.heights.rms
         rungs = self.interface.rungs
         marks = jnp.concatenate([(starts[:, None] + rungs).ravel(), starts[1:], below[None]])
-        marks = jnp.where(marks == turn, below, marks)
+        marks = jnp.where(jnp.abs(marks - turn) <= turn - below, below, marks)
         return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
 
     @property

@@ -149,7 +149,7 @@ class Impacts(NamedTuple):
     pull_work
         Work of the attractive parts on the way out [J], as in the publication's eq. 23.
     fastest
-        Largest kinetic energy on the first way in [J].
+        Largest kinetic energy on the first way in [J], the same in all rows.
     fall, rise
         The two phases.
     """

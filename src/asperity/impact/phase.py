@@ -91,7 +91,7 @@ class Turn(NamedTuple):
     """End of a phase: the piece and place where the body turns, or the end of the table.
 
     Pieces are counted along the way to the branch, then by the panels of the table. The largest
-    kinetic energy before it is 0 where it was not asked for.
+    kinetic energy before it may be 0 where it was not asked for.
     """
 
     piece: jax.Array

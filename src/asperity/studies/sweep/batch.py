@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.case import Case
-from asperity.case.build import Problem
+from asperity.case.build import Problem, build
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.result import Result
 from asperity.solver import solve
@@ -124,9 +124,15 @@ def _computed(
     for group in whole.groups:
         flight = fly_group(group, clock)
         _write(study, out, group, flight)
-        for place in np.flatnonzero(np.isin(group.rows, looked) & (flight.made > 0)).tolist():
+        sound = out["outcome"][group.rows] != _FAILED
+        for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
             row = int(group.rows[place])
-            lines[row] = warnings_in(study.case(first + row), flight, place)
+            try:
+                pair = group.cases[place] if group.cases else _built(study.case(first + row))
+            except InputError as error:  # a surface's file that is another one by now
+                _fail(out, row, str(error))
+            else:
+                lines[row] = warnings_in(*pair, flight, place)
     for row, case in whole.alone:
         found = _solve(study, out, row, case, clock)
         if row in looked and found is not None:
@@ -135,6 +141,10 @@ def _computed(
     wall = time.perf_counter() - began
     compiled = min(clock.compiled, wall)
     return out, Effort(count, clock.lanes, compiled, wall, len(lines), tuple(sorted(warned)))
+
+
+def _built(case: Case) -> tuple[Case, Problem]:
+    return case, build(case)
 
 
 def _blank(study: Study, count: int) -> Columns:
@@ -181,7 +191,11 @@ def _write(study: Study, out: Columns, group: Group, flight: Flight) -> None:
         _fail(out, int(rows[place]), reason)
     for place, (case, problem) in enumerate(group.cases):
         if place not in flight.reasons:
-            _look_at_surface(out, int(rows[place]), case, problem, past, place)
+            at_depth = AtDepth(*flight.at_depth[place].tolist())
+            try:
+                check_surface(case, problem, at_depth)
+            except InputError as error:
+                _fail(out, int(rows[place]), str(error))
 
 
 def _totals(group: Group, flight: Flight) -> Columns:
@@ -208,27 +222,16 @@ def _turns(past: Columns, name: str, size: int) -> np.ndarray:
     return np.pad(flat, ((0, 0), (0, size - flat.shape[1])), constant_values=np.nan)
 
 
-def _look_at_surface(
-    out: Columns, row: int, case: Case, problem: Problem, past: Columns, place: int
-) -> None:
-    """Refuse a contact that is wider than the measured surface."""
-    force, deepest = float(past["force"][place, 0]), float(past["deepest"][place, 0])
-    try:
-        check_surface(case, problem, AtDepth(1.0, force, deepest))
-    except InputError as error:
-        _fail(out, row, str(error))
-
-
 def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> list[str] | None:
     """A case that is stepped in time, by itself; its warnings, None where it cannot be solved."""
     clock.look()
     try:
         result = solve(case, stop=clock.stop)
     except (InputError, SimulationError) as error:
+        clock.look()
         _fail(out, row, str(error))
         return None
-    finally:
-        clock.look()  # a case that was cut short is not one that ended
+    clock.look()  # a case that was cut short is not one that ended
     found = _read(result)
     out["outcome"][row] = OUTCOMES.index(result.outcome)
     for column in study.columns:
@@ -246,27 +249,20 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> li
 def _read(result: Result) -> dict[str, Any]:
     """The columns of a result."""
     ledger = result.ledger
-    turning = _turning(result)
+    events = result.events
+    places, times = (
+        np.stack([events[f"{at}_{what}"] for at in ("deepest", "apex")], axis=1).ravel()
+        for what in ("separation", "time")
+    )
     return {
         **result.measures,
         "impacts": len(result.measures["restitution"]),
         "closure": ledger["closure"],
         "energy_lost": sum(ledger["lost"].values()),
         **{f"lost_{name}": value for name, value in ledger["lost"].items()},
-        "end_time": turning["turning_time"][-1],
-        "deepest": turning["turning_separation"][0],
+        "end_time": result.time[-1],
+        "deepest": events["deepest_separation"][0],
         "largest_force": float(np.max(result.forces["total"])),
-        **turning,
-    }
-
-
-def _turning(result: Result) -> dict[str, list[float]]:
-    """Turning points of a sampled motion: where the speed changes its sign, and its end."""
-    sign, size = np.sign(result.speed), np.abs(result.speed)
-    before = np.flatnonzero(sign[1:] != sign[:-1])
-    turns = before + (size[before + 1] < size[before])  # speeds of turns are zero but for rounding
-    turns = np.unique(np.append(turns[turns > 0], result.time.size - 1))
-    return {
-        "turning_separation": result.separation[turns].tolist(),
-        "turning_time": result.time[turns].tolist(),
+        "turning_separation": places,
+        "turning_time": times,
     }

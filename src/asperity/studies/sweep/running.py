@@ -27,9 +27,13 @@ Warned = tuple[int, str]
 Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""
 
-_LIBRARIES = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+_EACH = {
+    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+}
 
-ONE_THREAD = {**_LIBRARIES, "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false", "NPROC": "1"}
+ONE_THREAD = {**_EACH, "NPROC": "1"}
 """Environment in which a process computes with one thread. JAX reads it when it is imported."""
 
 
@@ -45,7 +49,7 @@ def one_thread(*, at_once: bool = False) -> None:
         as there are cores, or it would run their programs one after the other.
     """
     if "jax" not in sys.modules:
-        for name, value in (_LIBRARIES if at_once else ONE_THREAD).items():
+        for name, value in (_EACH if at_once else ONE_THREAD).items():
             os.environ.setdefault(name, value)
 
 

@@ -229,10 +229,14 @@ class Study:
         """Numbers of a few cases: of a grid its corners, of a sample its first."""
         if self.sample is not None:
             return list(range(min(self.size, _CORNERS)))
-        ends = [sorted({0, size - 1}) for size in self.shape]
-        corners = itertools.islice(itertools.product(*ends), _CORNERS)
-        strides = [math.prod(self.shape[i + 1 :]) for i in range(len(self.shape))]
-        return [sum(i * s for i, s in zip(c, strides, strict=True)) for c in corners]
+        last = np.array(self.shape) - 1
+        alone = np.eye(last.size, dtype=bool)
+        none = np.zeros((1, last.size), bool)
+        chosen = [none, ~none, alone, ~alone]  # all low, all high, each axis apart from the others
+        if 2**last.size <= _CORNERS:
+            chosen.append(np.array(list(itertools.product((False, True), repeat=last.size))))
+        numbers = np.ravel_multi_index(tuple((np.concatenate(chosen) * last).T), self.shape)
+        return list(dict.fromkeys(numbers.tolist()))[:_CORNERS]
 
 
 def read(path: str) -> Study:

@@ -7,26 +7,25 @@ from typing import Any
 import numpy as np
 
 from asperity.case import Case
-from asperity.case.build import build
+from asperity.case.build import Problem
 from asperity.conversion import regime_of
 from asperity.impact import Impacts, Motion
 from asperity.studies.sweep.flights import Flight
 from asperity.validity import AtDepth, warnings_of
 
 
-def warnings_in(case: Case, flight: Flight, place: int) -> list[str]:
+def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> list[str]:
     """One line for each way in which a case of a flight leaves the validity of its models.
 
     Parameters
     ----------
-    case
-        The case.
+    case, problem
+        The case, and what was built from it.
     flight
         The flight, in which it made an impact.
     place
         Its place in the flight.
     """
-    problem = build(case)
     at_depth = AtDepth(*flight.at_depth[place].tolist())
     rows: Any = {name: array[place] for name, array in flight.history.items()}
     rows.pop("passing_in", None), rows.pop("passing_out", None)
