@@ -249,7 +249,7 @@ def _tell_sweep(
         tell(json.dumps(about(store) | took(tally), allow_nan=False))
     elif not quiet and not code:
         tell("\n".join([*lines(store), *lines_of(tally)]))
-    for warning in warnings(tally) if tally is not None and not (as_json or quiet) else ():
+    for warning in [] if as_json or quiet else warnings(tally):
         say(f"asperity: {warning}")
     missing = store.size - store.cases_done
     if missing and not code and request.shard is None and not quiet:

@@ -65,11 +65,13 @@ def took(tally: Tally | None) -> dict[str, Any]:
     }
 
 
-def warnings(tally: Tally) -> list[str]:
+def warnings(tally: Tally | None) -> list[str]:
     """Where the cases looked at leave the validity of their models, a line for each way.
 
     Lines of which the numbers alone differ count as one way; it is shown of the first case.
     """
+    if tally is None:
+        return []
     kinds: dict[str, list[Warned]] = {}
     for one in sorted(tally.warned):
         kinds.setdefault(_NUMBER.sub("#", one[1]), []).append(one)
