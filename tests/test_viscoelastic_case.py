@@ -16,7 +16,7 @@ from asperity.cli import app
 from asperity.contact.creep import CreptContact
 from asperity.materials import contact_modulus
 from asperity.plots import style
-from asperity.plots.style import COLOURS
+from asperity.colours import COLOURS
 
 CREEPS = """
 [viscoelasticity]

@@ -268,6 +268,42 @@ def materials(
     list_materials(as_json=as_json)
 
 
+@app.command()
+def web(
+    case: Annotated[
+        str,
+        typer.Argument(help="Case to begin with: as for run, but no record.", show_default=False),
+    ] = "published-exact",
+    port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen at.")
+    ] = "127.0.0.1",
+    names: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--name",
+            metavar="NAME",
+            help="Another name that the page may be asked for by, with --host; repeatable.",
+            show_default=False,
+        ),
+    ] = None,
+    browse: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the page's address as one JSON object.")
+    ] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Show a page with sliders in the browser.
+
+    It listens on this machine alone unless --host says otherwise, until Ctrl-C.
+    """
+    from asperity.cli.showing import show
+
+    show(
+        case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet
+    )
+
+
 add_to(app)
 
 
