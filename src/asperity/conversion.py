@@ -20,6 +20,7 @@ from .impact.trajectory import Trajectory
 from .measures import Measures, measure
 from .program import Program
 from .result import Result
+from .trace import losses
 from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
@@ -265,7 +266,7 @@ def _losses_along(
     contact: Contact, motion: Motion, body: Body, series: Series
 ) -> dict[str, np.ndarray]:
     """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
-    formation, rupture = (np.asarray(x) for x in contact.losses())
+    formation, rupture = (np.asarray(x) for x in losses(contact))
     bonds = series.rows[:, quantities(contact).bonds]
     impact, rising = series.phase // 2, series.phase % 2 == 1
     fall, rise = motion.impacts.fall, motion.impacts.rise

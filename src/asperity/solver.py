@@ -30,7 +30,7 @@ from .validity import AtDepth, check_surface
 
 Report = Callable[[float, str], None]
 
-_CHUNK = 10  # impacts a compiled call: short enough for Ctrl-C
+_CHUNK = 20  # impacts a compiled call: short enough for Ctrl-C
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 

@@ -73,6 +73,6 @@ def _taken(ledger: dict[str, Any]) -> str:
     most = max(lost, key=lambda name: lost[name])
     share = 100.0 * lost[most] / total
     words = _TAKERS.get(most, f"{most} takes")
-    if len(lost) == 1 or share > 99.95:  # noqa: PLR2004 - rounds to all of it
+    if len(lost) == 1 or share > 99.95:
         return f"{words} all of the energy lost"
     return f"{words} {share:.2g} % of the energy lost"

@@ -299,9 +299,7 @@ def web(
     """
     from asperity.cli.showing import show
 
-    show(
-        case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet
-    )
+    show(case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet)
 
 
 add_to(app)
