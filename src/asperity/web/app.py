@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import tomllib
 from collections.abc import AsyncIterator, Callable, Iterable
 from importlib import resources
 from typing import Any
@@ -18,12 +17,13 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from asperity.case import BUILTINS
+from asperity.case import BUILTINS, Case
+from asperity.case.problems import check
 from asperity.case.reading import SIZE_LIMIT, builtin_text, tables
 from asperity.case.writing import text_of
 from asperity.errors import InputError, OutputError, SimulationError, one_line
 from asperity.web.answer import adhesion_map
-from asperity.web.asking import asked
+from asperity.web.asking import asked, refuse_depth
 from asperity.web.exploring import FILES, file, glance
 from asperity.web.form import form
 from asperity.web.guard import Guard
@@ -124,6 +124,7 @@ class _Page:
         except UnicodeDecodeError:
             raise InputError("a case must be UTF-8 text; got a binary file") from None
         found = tables(text, None)
+        refuse_depth(found)
         try:
             return JSONResponse({"tables": found})
         except (TypeError, ValueError):
@@ -133,16 +134,18 @@ class _Page:
         """The case as the text that `asperity run` takes, as it was given."""
         what = asked(await _body(request, SIZE_LIMIT))
         what.case()
+        check(Case, what.tables)  # what it says of output counts here
         text = text_of(what.tables)
-        assert tomllib.loads(text) == what.tables
+        assert tables(text, None) == what.tables
         return JSONResponse({"toml": text})
 
     async def explore(self, request: Request) -> Response:
         """Lines of JSON: progress, and in the end the answer or what is wrong."""
         what = asked(await _body(request, SIZE_LIMIT))
         what.case()  # refused at once, by its status
-        job = self.desk.ask(what.asker or _from(request), glance(what, self.surfaces))
-        return StreamingResponse(self._lines(what.asker, job), media_type=_LINES)
+        asker = what.asker or _from(request)
+        job = self.desk.ask(asker, glance(what, self.surfaces))
+        return StreamingResponse(self._lines(asker, job), media_type=_LINES)
 
     async def _lines(self, asker: str, job: Job) -> AsyncIterator[str]:
         events = job.events(PATIENCE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
@@ -73,13 +74,15 @@ def asked(body: bytes) -> Asked:
         raise InputError(f"a case must be at most 1 MiB; got {len(body)} bytes")
     try:
         given = json.loads(body, parse_constant=_refuse)
+        json.dumps(given, ensure_ascii=False).encode()  # refuses halves of characters, "\\ud800"
     except (ValueError, RecursionError):
-        raise InputError("a request must be a JSON object") from None
+        raise InputError("a request must be a JSON object of whole characters") from None
     if not isinstance(given, dict) or not set(given) <= set(_KEYS):
         raise InputError(f"a request must be a JSON object with keys among {', '.join(_KEYS)}")
     if not isinstance(given.get("case"), dict):
         raise InputError("`case` must be an object: the tables of a case")
-    _refuse_depth(given["case"], MOST_DEPTH)
+    refuse_depth(given["case"])
+    _refuse_null(given["case"])
     surfaces = given.get("surfaces", {})
     if not isinstance(surfaces, dict) or not all(_short(value) for value in surfaces.values()):
         raise InputError("`surfaces` must be an object of texts")
@@ -98,9 +101,29 @@ def _refuse(constant: str) -> NoReturn:
     raise ValueError(constant)
 
 
-def _refuse_depth(value: Any, left: int) -> None:
+def refuse_depth(value: Any, left: int = MOST_DEPTH) -> None:
+    """Refuse tables that are nested deeper than any case.
+
+    Raises
+    ------
+    InputError
+        With the limit.
+    """
     if not left:
         raise InputError(f"`case` must be nested at most {MOST_DEPTH} deep")
-    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-    for each in inner:
-        _refuse_depth(each, left - 1)
+    for each in _inside(value):
+        refuse_depth(each, left - 1)
+
+
+def _refuse_null(value: Any) -> None:
+    """A key without a value is left out: a case file has no null."""
+    if value is None:
+        raise InputError("`case` must hold no null; leave the key out")
+    for each in _inside(value):
+        _refuse_null(each)
+
+
+def _inside(value: Any) -> Iterable[Any]:
+    if isinstance(value, dict):
+        return value.values()
+    return value if isinstance(value, list) else ()

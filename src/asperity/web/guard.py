@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
-from starlette.responses import PlainTextResponse
+from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 MOST = 64 << 20
 """Longest request [bytes]: a measured surface. Cases have their own, smaller limit."""
+
+_TOO_LONG = f"a request must be at most {MOST >> 20} MiB"
 
 _HEADERS = {
     b"content-security-policy": b"default-src 'self'; img-src 'self' blob: data:; "
@@ -56,7 +58,7 @@ class Guard:
         refusal = self._refusal(_headers(scope))
         if refusal is not None:
             status, reason = refusal
-            await PlainTextResponse(reason + "\n", status)(scope, receive, _dressed(send))
+            await _answer(reason, status)(scope, receive, _dressed(send))
             return
         await self._answered(scope, receive, _dressed(send))
 
@@ -81,8 +83,7 @@ class Guard:
         except TooLong:
             if begun:
                 raise
-            reason = f"a request must be at most {MOST >> 20} MiB\n"
-            await PlainTextResponse(reason, 413)(scope, receive, send)
+            await _answer(_TOO_LONG, 413)(scope, receive, send)
 
     def _refusal(self, headers: dict[str, list[str]]) -> tuple[int, str] | None:
         """Status and reason for which a request is refused; None where it is not."""
@@ -90,7 +91,7 @@ class Guard:
         if len(hosts) != 1 or _name(f"//{hosts[0]}") not in self._names:
             return 421, "this server goes by other names: see `asperity web --help`"
         for origin in headers.get("origin", []):
-            if urlsplit(origin).netloc.lower() != hosts[0].lower():
+            if _place(origin) != hosts[0].lower():
                 return 403, "requests must come from this server's own page"
         if headers.get("sec-fetch-site", ["none"])[0] not in ("none", "same-origin"):
             return 403, "requests must come from this server's own page"
@@ -98,8 +99,12 @@ class Guard:
         if len(lengths) != 1 or not lengths[0].isdecimal():
             return 400, "`Content-Length` must be a number"
         if int(lengths[0][:20]) > MOST:
-            return 413, f"a request must be at most {MOST >> 20} MiB"
+            return 413, _TOO_LONG
         return None
+
+
+def _answer(reason: str, status: int) -> JSONResponse:
+    return JSONResponse({"error": {"kind": "request", "key": None, "message": reason}}, status)
 
 
 def _headers(scope: Scope) -> dict[str, list[str]]:
@@ -107,6 +112,14 @@ def _headers(scope: Scope) -> dict[str, list[str]]:
     for name, value in scope["headers"]:
         found.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
     return found
+
+
+def _place(origin: str) -> str | None:
+    """Host and port of an origin; None where it is no address."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None
 
 
 def _name(address: str) -> str | None:

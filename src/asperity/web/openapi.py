@@ -44,10 +44,13 @@ def _json(schema: dict[str, Any], description: str) -> dict[str, Any]:
 _REFUSALS = {
     str(status): _json(_REFUSAL, words)
     for status, words in (
+        (400, "No request of HTTP."),
+        (403, "From a page of somebody else's."),
         (404, "There is no such thing."),
         (405, "Not to be asked in this way."),
         (409, "A newer request of the same asker came."),
         (413, "Too long."),
+        (421, "By a name that is not this server's."),
         (422, "The case, or the request, is refused."),
         (503, "Too much is being computed."),
         (507, "The disk is full."),

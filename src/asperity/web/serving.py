@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ipaddress
 import socket
 import threading
@@ -10,7 +11,9 @@ from dataclasses import dataclass
 
 import uvicorn
 
-from asperity.errors import InputError, OutputError
+from asperity.case import load
+from asperity.errors import InputError, OutputError, SimulationError
+from asperity.web.answer import DRAWN
 from asperity.web.app import LOCAL, application
 
 MOST_CONNECTIONS = 64
@@ -35,7 +38,7 @@ class Address:
     names: Sequence[str] = ()
 
 
-def serve(address: Address, first: tuple[str, str] | None, ready: Callable[[str], None]) -> None:
+def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]) -> None:
     """Serve the page until the process is asked to end.
 
     Parameters
@@ -67,14 +70,18 @@ def serve(address: Address, first: tuple[str, str] | None, ready: Callable[[str]
         timeout_graceful_shutdown=1,
         lifespan="on",
     )
-    threading.Thread(target=_load, daemon=True).start()
+    threading.Thread(target=_warm, args=(first,), daemon=True).start()
     ready(f"http://{shown}:{port}/")
     uvicorn.Server(config).run(sockets=[listening])
 
 
-def _load() -> None:
-    """Load what computes while the page loads."""
-    import asperity.solver  # noqa: F401
+def _warm(first: tuple[str, str]) -> None:
+    """Compute the first case while the page loads: its question finds all compiled."""
+    from asperity.solver import explore
+
+    # What is wrong with the case is said when the page asks for it.
+    with contextlib.suppress(InputError, SimulationError):
+        explore(load(first[1]), most=DRAWN)
 
 
 def _bound(address: Address) -> socket.socket:

@@ -27,8 +27,9 @@ function show(what) {
   panels.show(designs);
   map?.show(designs);
   for (const one of designs) if (one.answeredSince) {
-    latencies.push(performance.now() - one.answeredSince);
+    const since = one.answeredSince;
     one.answeredSince = null;
+    requestAnimationFrame(() => latencies.push(performance.now() - since)); // once it is drawn
   }
   document.body.dataset.shown = designs.map((one) => `${one.shown}/${one.asked}`).join(" ");
 }
