@@ -37,6 +37,8 @@ def verdict(result: Result) -> str:
 def _ending(result: Result) -> str:
     measures, outcome = result.measures, result.outcome
     impacts = len(measures["rebound_height"])
+    if not impacts:
+        return "touched nothing before the run ended"
     if measures["captured"]:
         return f"sticks {_after(_rebounds_before(result))}"
     if outcome is Outcome.REST:

@@ -160,7 +160,10 @@ function measures(answered, two) {
   document.getElementById("measures").replaceChildren(...(two ? [top] : []), body);
 }
 
+// Every warning once, with the designs that it holds for.
 function warnings(answered, two) {
-  const lines = answered.flatMap(({ answer, letter }) => answer.warnings.map((one) => text("li", two ? `${letter}: ${one}` : one)));
+  const whose = new Map();
+  for (const { answer, letter } of answered) for (const one of answer.warnings) whose.set(one, [...(whose.get(one) ?? []), letter]);
+  const lines = [...whose].map(([one, letters]) => text("li", two ? `${letters.join(", ")}: ${one}` : one));
   document.getElementById("warning-list").replaceChildren(...(lines.length ? lines : [text("li", "No warnings: the models hold here.")]));
 }
