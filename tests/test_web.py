@@ -15,7 +15,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from asperity.cli import app
 from asperity.web.app import application
 
 with warnings.catch_warnings():
@@ -30,7 +32,7 @@ sys.path.insert(0, {str(HERE)!r})
 from fake_solve import solver
 module = solver()
 module.explore = lambda case, *, most=None, **more: (
-    module.solve(case, **more), module.curve(case, name=more["name"])
+    module.solve(case, **more), module.curve(case)
 )
 sys.modules["asperity.solver"] = module
 from asperity.cli import main
@@ -151,8 +153,8 @@ def test_a_taken_port_is_one_line_and_exit_4():
 def test_an_address_or_a_case_that_cannot_be_is_one_line_and_exit_2(
     arguments: tuple[str, ...], parts: tuple[str, ...]
 ):
-    ran = asperity("web", *arguments)
-    assert (ran.returncode, ran.stdout) == (2, "")
+    ran = CliRunner().invoke(app, ["web", *arguments])
+    assert (ran.exit_code, ran.stdout) == (2, "")
     assert_one_line(ran.stderr, *parts)
 
 
@@ -170,6 +172,8 @@ HOSTILE: tuple[tuple[str, str, str | None, dict[str, str], int], ...] = (
     ("POST", "/api/read", "a = [", {}, 422),
     ("DELETE", "/api/form", None, {}, 405),
     ("POST", "/api/read", "schema = 1", {"Origin": "https://evil.example"}, 403),
+    *(("GET", "/", None, {"Host": "evil.example"}, 421),) * 6,
+    *(("GET", "/nothing", None, {}, 404),) * 4,
 )
 
 
@@ -179,8 +183,9 @@ def memory(pid: int) -> int:
     return 1024 * next(int(line.split()[1]) for line in lines if line.startswith("VmRSS:"))
 
 
-def flood(port: int, times: int) -> None:
-    """Ask for everything in turn, good and bad; each answer is the right one."""
+def flood(port: int, times: int, within: float) -> None:
+    """Ask for everything in turn, good and bad, within a time [s]; each answer is the right one."""
+    until = time.monotonic() + within
     asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
     for number in range(times):
         method, path, body, headers, status = HOSTILE[number % len(HOSTILE)]
@@ -188,16 +193,29 @@ def flood(port: int, times: int) -> None:
         answer = asking.getresponse()
         answer.read()
         assert answer.status == status, (path, answer.status)
+        assert time.monotonic() < until, f"only {number} requests in {within} s"
     asking.close()
+
+
+def test_an_open_connection_is_answered_without_delay():
+    """TCP would hold an answer's second packet back for 40 ms, were it not told otherwise."""
+    with served("--quiet") as (_, port):
+        asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+        waits = []
+        for _ in range(20):
+            begun = time.monotonic()
+            asking.request("GET", "/api/form")
+            asking.getresponse().read()
+            waits.append(time.monotonic() - begun)
+        asking.close()
+    assert min(waits[5:]) < 0.03
 
 
 def test_ten_thousand_requests_leave_it_answering_in_bounded_memory():
     with served("--quiet") as (running, port):
-        flood(port, 1000)
+        flood(port, 1000, within=20.0)
         before = memory(running.pid)
-        begun = time.monotonic()
-        flood(port, 9000)
-        assert time.monotonic() - begun < 60.0
+        flood(port, 9000, within=120.0)
         assert answered(port) == 200
         assert memory(running.pid) - before < 32 << 20
         running.send_signal(signal.SIGINT)
@@ -205,7 +223,7 @@ def test_ten_thousand_requests_leave_it_answering_in_bounded_memory():
     assert (running.returncode, err) == (130, "")
 
 
-def test_a_thousand_cases_leave_it_answering_in_bounded_memory():
+def test_hundreds_of_cases_leave_it_answering_in_bounded_memory():
     """Each by an asker of its own and each complete, so that nothing of them may be kept."""
 
     def ask(times: int) -> None:
@@ -221,9 +239,9 @@ def test_a_thousand_cases_leave_it_answering_in_bounded_memory():
         asking.request("GET", "/api/cases/published-exact")
         question = json.dumps({"case": json.loads(asking.getresponse().read())["tables"]})
         asking.close()
-        ask(100)
+        ask(50)
         before = memory(running.pid)
-        ask(300)
+        ask(150)
         assert memory(running.pid) - before < 32 << 20
         assert answered(port) == 200
 

@@ -25,6 +25,9 @@ from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
 
+_ROWS = 256
+"""Rows of impacts that are measured at least: more than most motions have."""
+
 _measure = Program(measure)
 _end_of_contact = Program(end_of_contact)
 
@@ -39,10 +42,10 @@ class Flight(NamedTuple):
 
 
 def _padded(flight: Flight, body: Body) -> Measures:
-    """Measures over a power of two of rows: few shapes, so few compilations."""
+    """Measures over a power of two of rows, seldom more than the first: one compilation."""
     motion = flight.motion
     rows = motion.impacts.made.shape[0]
-    size = max(16, 1 << (rows - 1).bit_length())
+    size = max(_ROWS, 1 << (rows - 1).bit_length())
 
     def pad(leaf: Any) -> Any:
         return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])

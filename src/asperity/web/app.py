@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import json
 from collections.abc import AsyncIterator, Callable, Iterable
@@ -16,6 +17,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
+from starlette.types import Receive, Scope, Send
 
 from asperity.case import BUILTINS, Case
 from asperity.case.problems import check
@@ -37,8 +39,13 @@ LOCAL = ("127.0.0.1", "localhost", "::1")
 PATIENCE = 120.0
 """How long a computation may take [s]."""
 
-_LINES = "application/x-ndjson"
-_BUSY = "too many computations wait already; try again in a few seconds"
+ARRIVAL = 60.0
+"""How long a request may take to arrive [s]."""
+
+MOST_UPLOADS = 2
+"""Surface files that may arrive at a time: each is held in memory as a whole."""
+
+_BUSY = "too much is being asked already; try again in a few seconds"
 
 
 def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOCAL) -> Starlette:
@@ -85,6 +92,7 @@ class _Page:
     def __init__(self, first: tuple[str, str] | None) -> None:
         self.desk = Desk()
         self.surfaces = Surfaces()
+        self._arriving = 0
         self._first = first
         self._form = json.dumps(
             {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else BUILTINS[-1]}
@@ -145,16 +153,12 @@ class _Page:
         what.case()  # refused at once, by its status
         asker = what.asker or _from(request)
         job = self.desk.ask(asker, glance(what, self.surfaces))
-        return StreamingResponse(self._lines(asker, job), media_type=_LINES)
 
-    async def _lines(self, asker: str, job: Job) -> AsyncIterator[str]:
-        events = job.events(PATIENCE)
-        try:
-            async for event in events:
-                yield json.dumps(_told(event), allow_nan=False) + "\n"
-        finally:
-            await events.aclose()  # type: ignore[attr-defined]
+        def left() -> None:
+            job.stop.set()
             self.desk.forget(asker, job)
+
+        return _Lines(_lines(job), left)
 
     async def file(self, request: Request) -> Response:
         """A file of the case's results."""
@@ -186,19 +190,60 @@ class _Page:
     async def surface(self, request: Request) -> Response:
         """Keep a surface file that was dropped in."""
         name = request.path_params["name"]
-        body = await request.body()
-        token = await run_in_threadpool(self.surfaces.keep, name, body)
+        if self._arriving >= MOST_UPLOADS:
+            raise Busy
+        self._arriving += 1
+        try:
+            async with _in_time():
+                body = await request.body()
+            token = await run_in_threadpool(self.surfaces.keep, name, body)
+        finally:
+            self._arriving -= 1
         return JSONResponse({"name": name, "token": token, "bytes": len(body)})
+
+
+class _Lines(StreamingResponse):
+    """Lines of JSON. However it ends, even before its first line was asked for, it is told."""
+
+    def __init__(self, lines: AsyncIterator[str], left: Callable[[], None]) -> None:
+        super().__init__(lines, media_type="application/x-ndjson")
+        self._left = left
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._left()
+
+
+async def _lines(job: Job) -> AsyncIterator[str]:
+    events = job.events(PATIENCE)
+    try:
+        async for event in events:
+            yield json.dumps(_told(event), allow_nan=False) + "\n"
+    finally:
+        await events.aclose()  # type: ignore[attr-defined]
 
 
 async def _body(request: Request, most: int) -> bytes:
     """A request's body, never read beyond a limit."""
     body = bytearray()
-    async for part in request.stream():
-        body += part
-        if len(body) > most:
-            raise HTTPException(413, f"a case must be at most {most >> 20} MiB")
+    async with _in_time():
+        async for part in request.stream():
+            body += part
+            if len(body) > most:
+                raise HTTPException(413, f"a case must be at most {most >> 20} MiB")
     return bytes(body)
+
+
+@contextlib.asynccontextmanager
+async def _in_time() -> AsyncIterator[None]:
+    """Refuse a request that comes too slowly, and so would be waited for without end."""
+    try:
+        async with asyncio.timeout(ARRIVAL):
+            yield
+    except TimeoutError:
+        raise HTTPException(408, f"a request must arrive within {ARRIVAL:.0f} s") from None
 
 
 def _from(request: Request) -> str:

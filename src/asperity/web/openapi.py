@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from asperity.case import BUILTINS
+from asperity.case.reading import builtin_text, tables
 from asperity.web.exploring import FILES
 
 _TEXT = {"type": "string", "maxLength": 100}
@@ -19,6 +21,10 @@ _ASKED: dict[str, Any] = {
         "surfaces": {"type": "object", "additionalProperties": _TEXT},
     },
 }
+
+_SURFACE = "# size[um] 1 1\n# unit nm\n1 2\n2 1\n"
+_TOML = builtin_text(BUILTINS[0])
+_EXAMPLES = {name: {"value": {"case": tables(builtin_text(name), None)}} for name in BUILTINS}
 
 _REFUSAL: dict[str, Any] = {
     "type": "object",
@@ -48,11 +54,12 @@ _REFUSALS = {
         (403, "From a page of somebody else's."),
         (404, "There is no such thing."),
         (405, "Not to be asked in this way."),
+        (408, "It came too slowly."),
         (409, "A newer request of the same asker came."),
         (413, "Too long."),
         (421, "By a name that is not this server's."),
         (422, "The case, or the request, is refused."),
-        (503, "Too much is being computed."),
+        (503, "Too much is being asked."),
         (507, "The disk is full."),
     )
 }
@@ -63,7 +70,10 @@ def _asking(summary: str, answer: dict[str, Any], *more: dict[str, Any]) -> dict
         "post": {
             "summary": summary,
             "parameters": list(more),
-            "requestBody": {"required": True, "content": {"application/json": {"schema": _ASKED}}},
+            "requestBody": {
+                "required": True,
+                "content": {"application/json": {"schema": _ASKED, "examples": _EXAMPLES}},
+            },
             "responses": {"200": answer, **_REFUSALS},
         }
     }
@@ -75,12 +85,12 @@ def _getting(summary: str, *more: dict[str, Any]) -> dict[str, Any]:
     return {"get": {"summary": summary, "parameters": list(more), "responses": responses}}
 
 
-def _in_path(schema: dict[str, Any]) -> dict[str, Any]:
-    return {"name": "name", "in": "path", "required": True, "schema": schema}
+def _in_path(schema: dict[str, Any], example: str) -> dict[str, Any]:
+    return {"name": "name", "in": "path", "required": True, "schema": schema, "example": example}
 
 
-def _any(kind: str) -> dict[str, Any]:
-    return {"content": {kind: {"schema": {"type": "string"}}}}
+def _any(kind: str, **more: str) -> dict[str, Any]:
+    return {"content": {kind: {"schema": {"type": "string"}, **more}}}
 
 
 DESCRIPTION: dict[str, Any] = {
@@ -89,7 +99,9 @@ DESCRIPTION: dict[str, Any] = {
     "paths": {
         "/api/form": _getting("The case schema as a form."),
         "/api/map": _getting("The lines of the adhesion map."),
-        "/api/cases/{name}": _getting("The tables of a case.", _in_path({"type": "string"})),
+        "/api/cases/{name}": _getting(
+            "The tables of a case.", _in_path({"type": "string"}, BUILTINS[0])
+        ),
         "/api/toml": _asking("The case as text.", _json({"type": "object"}, "The text.")),
         "/api/explore": _asking(
             "Compute a case.",
@@ -101,20 +113,23 @@ DESCRIPTION: dict[str, Any] = {
         "/api/files/{name}": _asking(
             "A file of a case's results.",
             {"description": "The file.", "content": {kind: {} for kind in {*FILES.values()}}},
-            _in_path({"enum": list(FILES)}),
+            _in_path({"enum": list(FILES)}, "motion.csv"),
         ),
         "/api/read": {
             "post": {
                 "summary": "The tables of a case file.",
-                "requestBody": {"required": True, **_any("text/plain")},
+                "requestBody": {"required": True, **_any("text/plain", example=_TOML)},
                 "responses": {"200": _json({"type": "object"}, "The tables."), **_REFUSALS},
             }
         },
         "/api/surfaces/{name}": {
             "post": {
                 "summary": "Keep a surface file.",
-                "parameters": [_in_path({"type": "string"})],
-                "requestBody": {"required": True, **_any("application/octet-stream")},
+                "parameters": [_in_path({"type": "string"}, "surface.csv")],
+                "requestBody": {
+                    "required": True,
+                    **_any("application/octet-stream", example=_SURFACE),
+                },
                 "responses": {"200": _json({"type": "object"}, "What it is kept as."), **_REFUSALS},
             }
         },

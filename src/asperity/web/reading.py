@@ -15,6 +15,9 @@ from typing import Any
 MEMORY = 4 << 30
 """Address space that reading may take [bytes]."""
 
+MOST_PIXELS = 2048 * 2048
+"""Largest map that a page computes with: its summits are found in the server's own memory."""
+
 SECONDS = 30
 """Processor time that reading may take [s]."""
 
@@ -44,6 +47,7 @@ def _bound() -> None:
 
 
 def _read(source: str, target: str, options: dict[str, Any]) -> dict[str, Any]:
+    from asperity.errors import InputError
     from asperity.topography.files.reading import read_surface
     from asperity.topography.files.writing import write_topography
 
@@ -54,6 +58,12 @@ def _read(source: str, target: str, options: dict[str, Any]) -> dict[str, Any]:
         unit=options["unit"],
         channel=options["channel"],
     )
+    pixels = reading.topography.heights.size
+    if pixels > MOST_PIXELS:
+        raise InputError(
+            f"{Path(source).name}: a map must have at most 2048 x 2048 pixels on this page; take "
+            f"`asperity run` for more; got {pixels} pixels"
+        )
     write_topography(reading.topography, target, force=True)
     return {
         "format": reading.format,

@@ -27,6 +27,9 @@ MOST_FILES = 16
 MOST_BYTES = 512 << 20
 """Their length together [bytes]."""
 
+MOST_MAPS = 4
+"""Maps that are kept of one upload, the newest: each size or unit of it makes another."""
+
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._ -]{0,79}")
 _PATIENCE = SECONDS + 15.0
 
@@ -106,6 +109,7 @@ class Surfaces:
             place = self._place(token)
             for file in place.iterdir():
                 file.unlink(missing_ok=True)
+                self._notes.pop(file, None)
             place.rmdir()
 
     def resolved(self, case: Case, tokens: Mapping[str, str]) -> tuple[Case, dict[str, Upload]]:
@@ -149,15 +153,24 @@ class Surfaces:
                     key="roughness.files",
                 )
             self._kept.move_to_end(token)
-        place = self._place(token)
+            place = self._place(token)
+            # No upload's name begins with a dot, and every map's does.
+            source = next(file for file in place.iterdir() if not file.name.startswith("."))
         asked = json.dumps(options, sort_keys=True)
-        target = place / f"{hashlib.sha256(asked.encode()).hexdigest()[:16]}.map.nc"
-        source = next(file for file in place.iterdir() if not file.name.endswith(".map.nc"))
+        target = place / f".{hashlib.sha256(asked.encode()).hexdigest()[:16]}.nc"
         with self._reading:
-            if target not in self._notes:
-                found = _read(source, target, asked)
-                self._notes[target] = _notes(found, options)
-        return target, Upload(source.name, digest(str(source)), self._notes[target])
+            notes = self._notes.get(target)
+            if notes is None:
+                notes = _notes(_read(source, target, asked), options)
+                with self._lock:
+                    self._notes[target] = notes
+                    self._drop_old_maps(place)
+        return target, Upload(source.name, digest(str(source)), notes)
+
+    def _drop_old_maps(self, place: Path) -> None:
+        for old in [target for target in self._notes if target.parent == place][:-MOST_MAPS]:
+            old.unlink(missing_ok=True)
+            del self._notes[old]
 
 
 def _notes(found: dict[str, Any], options: dict[str, Any]) -> tuple[str, ...]:
