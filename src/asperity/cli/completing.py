@@ -138,7 +138,8 @@ def material(incomplete: str) -> list[str]:
 
 def column(ctx: typer.Context) -> list[str]:
     """Columns of the store that the command line names before."""
-    folder = Path(str(ctx.params.get("record") or ""))
+    # With an option that still waits for its value the parser leaves the rest as it is.
+    folder = Path(str(ctx.params.get("record") or next(iter(ctx.args), "")))
     if folder.suffix != STORE or not folder.is_dir():
         return []
     return sorted(entry.parent.name for entry in folder.glob("*/zarr.json"))

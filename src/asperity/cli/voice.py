@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from asperity.cli.compiling import Compilation
 
 _WIDE = 40
-_DETAIL = re.compile(r"impact \d|refit|[\d,]+ of [\d,]+ ")  # of a step that goes on
+_DETAIL = re.compile(r"impact \d|refit|[\d,]+ of [\d,]+[ ,]")  # of a step that goes on
 
 
 class Voice:
