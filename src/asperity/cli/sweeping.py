@@ -226,7 +226,7 @@ def _filled(
                 bar(tally.cases / tally.cases_wanted, progress_of(tally))
 
         if bar is not None:
-            bar(0.0, "tasks, the first of which are compiled")
+            bar(0.0, "tasks (the first are compiled)")
         with _runner(request) as runner:
             return fill(request.study, store, runner, tasks=tasks, progress=kept, stop=stop)
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from asperity.cli.compiling import Compilation
 
 _WIDE = 40
-_DETAIL = re.compile(r"impact \d|refit|[\d,]+ of [\d,]+[ ,]")  # of a step that goes on
+_DETAIL = re.compile(r"impact \d+|[\d,]+ of [\d,]*\d")  # of a step that goes on
 
 
 class Voice:
@@ -139,8 +139,9 @@ class _Steps:
 
     def follow(self, fraction: float, text: str) -> None:
         """Hear of progress: a step begins, or goes on."""
-        if _DETAIL.match(text) and self._name is not None:
-            self._detail = f", {text}"
+        detail = _DETAIL.match(text)
+        if detail and self._name is not None:
+            self._detail = f", {detail[0]}"
         elif text != self._name:
             self.end()
             if fraction < 1.0:
