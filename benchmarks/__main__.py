@@ -24,7 +24,7 @@ from asperity.impact import simulate
 from asperity.measures import measure
 from asperity.studies.evidence import PRINTED
 
-from . import laws, published_method, surfaces, sweeps
+from . import laws, published_method, surfaces, sweeps, web
 from .plain_scipy import Drop, fly
 
 PROGRAM = Path(sys.executable).with_name("asperity")
@@ -48,6 +48,8 @@ def main() -> None:
         _line(what, figure, goal)
     _publication()
     for what, figure, goal in sweeps.rows():
+        _line(what, figure, goal)
+    for what, figure, goal in web.rows():
         _line(what, figure, goal)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     _line("peak memory of this run", f"{peak:.2f} GB", "1.5 GB")

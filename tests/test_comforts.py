@@ -31,7 +31,7 @@ from study_results import GRID, SAMPLE, SPEEDS, columns_of
 
 CASE = "published-exact"
 COMMANDS = sorted(get_command(app).commands)  # type: ignore[attr-defined]
-SAYING_NOTHING_ON_THE_WAY = {"init", "materials"}
+SAYING_NOTHING_ON_THE_WAY = {"init", "materials", "web"}
 NARROW = {**os.environ, "COLUMNS": str(WIDTH)}
 
 

@@ -13,10 +13,10 @@ from asperity import solver
 from asperity.case import load
 from asperity.case.build import build
 from asperity.cli import app
+from asperity.colours import COLOURS
 from asperity.contact.creep import CreptContact
 from asperity.materials import contact_modulus
 from asperity.plots import style
-from asperity.plots.style import COLOURS
 
 CREEPS = """
 [viscoelasticity]

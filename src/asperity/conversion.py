@@ -20,6 +20,7 @@ from .impact.trajectory import Trajectory
 from .measures import Measures, measure
 from .program import Program
 from .result import Result
+from .trace import losses
 from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
@@ -55,14 +56,20 @@ def _padded(flight: Flight, body: Body) -> Measures:
     return _measure(whole, body, passing)
 
 
-def _sampled(case: Case, flight: Flight, body: Body) -> tuple[Series, dict[str, np.ndarray]]:
+def _sampled(
+    case: Case, flight: Flight, body: Body, most: int | None
+) -> tuple[Series, dict[str, np.ndarray]]:
     """A motion as a time series, and the energy lost by mechanism along it."""
-    motion, contact, drawn = flight.motion, flight.contact, flight.trajectory
+    motion, contact, stepped = flight.motion, flight.contact, flight.trajectory
     limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
-    if drawn is not None:
-        kept = drawn.until(limit)
+    impacts = motion.impacts
+    if most is not None and most < int(np.sum(impacts.made)):
+        limit = min(limit, float(impacts.apex_time[most - 1]))
+        impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
+    if stepped is not None:
+        kept = stepped.until(limit)
         return kept.series, _by_name(contact, body, kept.lost)
-    series = until(sample(body, motion.table, motion.impacts), limit)
+    series = until(sample(body, motion.table, impacts), limit)
     return series, _losses_along(contact, motion, body, series)
 
 
@@ -72,7 +79,12 @@ def first_restitution(flight: Flight, body: Body) -> float | None:
 
 
 def result_of(
-    case: Case, name: str, problem: Problem, flight: Flight, elastic: float | None = None
+    case: Case,
+    name: str,
+    problem: Problem,
+    flight: Flight,
+    elastic: float | None = None,
+    most: int | None = None,
 ) -> Result:
     """The result of a motion that was flown.
 
@@ -86,11 +98,13 @@ def result_of(
         The motion.
     elastic
         Restitution of the first impact were nothing to yield, for a case in which it does.
+    most
+        Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
     """
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
     measures = _padded(flight, body)
-    series, lost = _sampled(case, flight, body)
+    series, lost = _sampled(case, flight, body, most)
     at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
     check_surface(case, problem, at_depth)
     regime = regime_of(case, problem, at_depth)
@@ -252,7 +266,7 @@ def _losses_along(
     contact: Contact, motion: Motion, body: Body, series: Series
 ) -> dict[str, np.ndarray]:
     """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
-    formation, rupture = (np.asarray(x) for x in contact.losses())
+    formation, rupture = (np.asarray(x) for x in losses(contact))
     bonds = series.rows[:, quantities(contact).bonds]
     impact, rising = series.phase // 2, series.phase % 2 == 1
     fall, rise = motion.impacts.fall, motion.impacts.rise

@@ -99,11 +99,11 @@ class Program(Generic[P, Answer]):
         return self._of(*_split((args, {})), aside=True).shapes
 
     def _of(self, fixed: Any, arrays: list[Any], *, aside: bool) -> _Held:
-        shapes = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in arrays]
-        key = fixed, tuple((x.shape, str(x.dtype)) for x in arrays)
+        key = fixed, tuple((x.shape, x.dtype) for x in arrays)
         with self._lock:
             held = self._held.get(key)
             if held is None:
+                shapes = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in arrays]
                 held = self._held[key] = _Held(self._lowered(fixed, shapes, str(key)))
                 if len(self._held) > HELD:
                     self._held.popitem(last=False)

@@ -30,7 +30,7 @@ from .validity import AtDepth, check_surface
 
 Report = Callable[[float, str], None]
 
-_CHUNK = 10  # impacts a compiled call: short enough for Ctrl-C
+_CHUNK = 20  # impacts a compiled call: short enough for Ctrl-C
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
@@ -66,22 +66,73 @@ def solve(
         If the numerics fail; its ``partial`` is the result so far.
     """
     tell = progress or _silently
+    problem, flight = _flown(case, tell, stop)
+    result = _told(case, name, problem, flight, tell, None)
+    tell(1.0, "done")
+    if flight.outcome is Outcome.FAILED and throw:
+        raise SimulationError(_failure(case), result)
+    return result
+
+
+def explore(
+    case: Case,
+    *,
+    name: str = "case",
+    most: int | None = None,
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+) -> tuple[Result, Curve]:
+    """Motion and force curve of a case, from the same tables: what somebody sees at a glance.
+
+    Parameters
+    ----------
+    case, name, progress, stop
+        As for :func:`solve`.
+    most
+        Impacts whose course the result holds, at least 1; all without it. Its measures, ledger
+        and events are of all impacts in any case.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    tell = progress or _silently
+    problem, flight = _flown(case, tell, stop)
+    result = _told(case, name, problem, flight, tell, most)
+    if flight.outcome is Outcome.FAILED:
+        raise SimulationError(_failure(case), result)
+    if flight.trajectory is not None:  # the curve is that of menisci that have the time to form
+        return result, curve(case, name=name)
+    drawn = trace(flight.contact, flight.motion.table, flight.motion.impacts)
+    tell(1.0, "done")
+    return result, Curve(case, name, **drawn)
+
+
+def _flown(case: Case, tell: Report, stop: threading.Event | None) -> tuple[Problem, Flight]:
+    """What is built from a case, and its motion."""
     problem = build(case)
     limits = Limits.of(case.tolerance)
     contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=True)
     _check_release(problem, table)
     if problem.late is None and problem.creep is None:
-        flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
-    else:
-        flight = _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+        return problem, _fly(problem.body, contact, table, datum, limits, tell, stop)
+    return problem, _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+
+
+def _told(
+    case: Case, name: str, problem: Problem, flight: Flight, tell: Report, most: int | None
+) -> Result:
+    """The result of a motion."""
     tell(0.9, "measures")
     stopped = flight.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
-    result = result_of(case, name, problem, flight, None if stopped else _kept_elastic(case))
-    tell(1.0, "done")
-    if flight.outcome is Outcome.FAILED and throw:
-        damped = " or the gas film damps it too strongly to be followed" * (case.gas is not None)
-        raise SimulationError(f"the motion left the tabulated separations{damped}", result)
-    return result
+    elastic = None if stopped else _kept_elastic(case)
+    return result_of(case, name, problem, flight, elastic, most)
+
+
+def _failure(case: Case) -> str:
+    damped = " or the gas film damps it too strongly to be followed" * (case.gas is not None)
+    return f"the motion left the tabulated separations{damped}"
 
 
 def curve(

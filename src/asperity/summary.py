@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.regimes import LAW_NAMES
+from asperity.verdict import verdict
 
 if TYPE_CHECKING:
     from asperity.result import Curve, Result
@@ -77,7 +78,7 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
     """
     return "\n".join(
         [
-            *_heading(result.name, result.outcome.message),
+            *_heading(result.name, _ended(result)),
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
             *_section("Surface", _surface(result.surface)),
@@ -103,13 +104,19 @@ def brief(result: Result) -> str:
     return "\n".join(
         [
             f"{result.name}: {result.outcome.value}",
-            *_wrapped(result.outcome.message),
+            *_wrapped(_ended(result)),
             *_section("", rows),
             *_chosen(result.regime),
             *_impacts(result.measures, FEW),
             *warning_lines(result.warnings),
         ]
     )
+
+
+def _ended(result: Result) -> str:
+    """How the motion ended, and the answer in a sentence where there is one."""
+    answer = f" The body {verdict(result)}." if result.outcome.ok else ""
+    return f"{result.outcome.message}{answer}"
 
 
 def brief_curve(curve: Curve) -> str:

@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ._jax import jax
 from .contact.base import Contact
 from .impact.history import Impacts
 from .impact.table import CENTRAL, FORCE, Table, quantities
+from .program import Program
 
 _POINTS = 240
 
@@ -89,11 +91,13 @@ def _read(pieces: list[_Piece], places: np.ndarray) -> np.ndarray:
     ends = np.array([p.high for p in pieces])
     index = np.minimum(np.searchsorted(ends, places), len(pieces) - 1)
     width = min(p.values.shape[1] for p in pieces)
-    rows = []
-    for k, place in zip(index, places, strict=True):
+    rows = np.empty((len(places), width))
+    for k in np.unique(index):
+        here = index == k
         low, high, values = pieces[k]
-        rows.append(chebyshev.chebval((2.0 * place - low - high) / (high - low), values[:, :width]))
-    return np.array(rows)
+        local = (2.0 * places[here] - low - high) / (high - low)
+        rows[here] = chebyshev.chebval(local, values[:, :width]).T
+    return rows
 
 
 def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
@@ -113,7 +117,15 @@ def _tension_work(places: np.ndarray, force: np.ndarray) -> float:
     return float(-simpson(np.minimum(force, 0.0), x=places))
 
 
+def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:
+    return contact.losses()
+
+
+losses = Program(_losses)
+"""What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
+
+
 def _loss(contact: Contact, approach: np.ndarray, parting: np.ndarray) -> float:
     """Energy lost in and out: bonds made on the way in, and broken on the way out."""
-    formation, rupture = (np.asarray(x) for x in contact.losses())
+    formation, rupture = (np.asarray(x) for x in losses(contact))
     return float((approach[0] - approach[-1]) @ formation + (parting[0] - parting[-1]) @ rupture)

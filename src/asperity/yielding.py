@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ._jax import jnp
+from ._jax import jax, jnp
 from .case import Case
 from .case.plasticity import Plasticity
 from .case.yielding import plastic_contact
 from .errors import InputError
 from .laws.plastic import KogutEtsion, PlasticContact
+from .program import Program
 from .roughness import Gaussian
 
 FITTED = 110.0
@@ -62,9 +63,10 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
     if rough is None or not case.has_strength:
         return []
     law = _law(case, rough.asperity_radius, modulus)
-    overlap, heights = float(law.yield_overlap), Gaussian(rough.rms_height, rough.mean_height)
-    places = jnp.asarray([central, central + overlap])
-    touching, beyond = (float(heights.tail(2, place)) for place in places)
+    heights = Gaussian(rough.rms_height, rough.mean_height)
+    overlap, touching, beyond, whole = (
+        float(x) for x in _tails(law, heights, jnp.asarray(central))
+    )
     share = beyond / touching if touching > 0.0 else 0.0
     if share < SHARE:
         return []
@@ -73,7 +75,7 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
         f"{100.0 * share:.3g} % of the touching asperities are beyond yield at closest approach "
         f"(overlaps above {overlap * 1e9:.3g} nm, by {_model(case)}){advice}"
     ]
-    mean, tip = float(heights.tail(3, places[0])) / touching, rough.asperity_radius
+    mean, tip = whole / touching, rough.asperity_radius
     if case.plasticity_model != "none" and mean > min(FITTED * overlap, tip):
         out.append(
             f"the mean overlap of touching asperities, {mean * 1e9:.3g} nm, is "
@@ -81,6 +83,16 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
             f"were fitted up to {FITTED:g} times, on tips much larger than the overlap"
         )
     return out
+
+
+@Program
+def _tails(
+    law: PlasticContact, heights: Gaussian, central: jax.Array
+) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+    """Overlap at yield [m], asperities that touch and that yield, and the former's overlaps."""
+    overlap = jnp.asarray(law.yield_overlap)
+    touching, beyond = heights.tail(2, central), heights.tail(2, central + overlap)
+    return overlap, touching, beyond, heights.tail(3, central)
 
 
 def _taken(case: Case) -> list[str]:

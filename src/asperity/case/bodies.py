@@ -45,8 +45,9 @@ class Made(Table):
     needed: ClassVar[tuple[str, ...]] = _ELASTIC
 
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None
-    )
+        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
+        among=catalogue.SOLIDS,
+    )  # fmt: skip
     youngs_modulus: fields.Modulus | None = entry(
         "Pa", "Young's modulus, in place of `material`.", "80 GPa", default=None
     )
@@ -104,7 +105,7 @@ class Body(Made):
     radius: fields.Length = entry("m", "Radius of the sphere.", "50 um")
     material: str | None = entry(
         "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
-        shown=True,
+        shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
 
 
@@ -115,7 +116,7 @@ class Counterface(Made):
 
     material: str | None = entry(
         "", "Name from the catalogue or of a [materials.NAME] table.", "silicon carbide",
-        default=None, shown=True,
+        default=None, shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
     deformation: Literal["half-space", "rigid"] = entry(
         "",

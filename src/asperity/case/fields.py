@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -116,7 +117,13 @@ class Number:
 
 
 def entry(
-    unit: str, description: str, example: object, *, default: Any = ..., shown: bool = False
+    unit: str,
+    description: str,
+    example: object,
+    *,
+    default: Any = ...,
+    shown: bool = False,
+    among: Iterable[str] = (),
 ) -> Any:
     """A field of a table, with all that a form or a commented file needs.
 
@@ -132,12 +139,14 @@ def entry(
         Value where the file has none; without it the key is required.
     shown : bool
         Whether the template sets it although it is not required.
+    among : iterable of str
+        Names to offer where others are allowed besides.
     """
     return Field(
         default,
         description=description,
         examples=[example],
-        json_schema_extra={"unit": unit, "shown": shown},
+        json_schema_extra={"unit": unit, "shown": shown, "among": list(among)},
     )
 
 

@@ -81,6 +81,7 @@ class Capillary(Table):
         "water",
         default=None,
         shown=True,
+        among=catalogue.LIQUIDS,
     )
     humidity: fields.Humidity | None = entry(
         "1",

@@ -23,7 +23,7 @@ class Gas(Table):
 
     name: str | None = entry(
         "", "Name from the catalogue, with `pressure` and `temperature`.", "air", default=None,
-        shown=True,
+        shown=True, among=GASES,
     )  # fmt: skip
     pressure: fields.Pressure | None = entry(
         "Pa", "Pressure of the gas.", "101.325 kPa", default=None, shown=True

@@ -164,7 +164,12 @@ def builtin(name: str) -> Case:
             f"got {shown(name)}{problems.did_you_mean(name, BUILTINS)}",
             key="case",
         )
-    return load((_CASES / f"{name}.toml").read_text(encoding="utf-8"), file=f"{name}.toml")
+    return load(builtin_text(name), file=f"{name}.toml")
+
+
+def builtin_text(name: str) -> str:
+    """Text of a built-in case, one of `BUILTINS`."""
+    return (_CASES / f"{name}.toml").read_text(encoding="utf-8")
 
 
 def template() -> str:

@@ -40,6 +40,30 @@ def _lines(model: BaseModel, place: tuple[str, ...]) -> list[str]:
     return [*header, *values, "", *tables]
 
 
+def text_of(tables: Mapping[str, Any]) -> str:
+    """The tables of a case as TOML, values as they were given; keys that are None are left out.
+
+    Parameters
+    ----------
+    tables : mapping
+        As :func:`tomllib.loads` gives them.
+    """
+    return "\n".join(_given(tables, ())).strip() + "\n"
+
+
+def _given(tables: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
+    inner = {key: value for key, value in tables.items() if isinstance(value, Mapping)}
+    lines = [
+        f"{_key(key)} = {_literal(value)}"
+        for key, value in tables.items()
+        if key not in inner and value is not None
+    ]
+    if place and (lines or not inner):
+        lines = [f"[{'.'.join(_key(part) for part in place)}]", *lines]
+    rest = [line for key, table in inner.items() for line in _given(table, (*place, key))]
+    return [*lines, "", *rest]
+
+
 def ordered(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """Fields of a model, those that it declares itself before the inherited ones."""
     fields = model.model_fields

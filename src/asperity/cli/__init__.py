@@ -10,41 +10,21 @@ from typing import Annotated, Any
 
 import typer
 
+from asperity.cli import completing
 from asperity.cli.arguments import (
-    Align,
     CaseName,
     Cases,
-    Channel,
-    CutOff,
-    Degree,
-    Direction,
     Folder,
     Force,
-    ForceFile,
-    Heights,
-    Hurst,
     InstallCompletion,
     Json,
-    Kurtosis,
-    Long,
-    MadeFile,
-    MadeSize,
     Materials,
     Missing,
     OnlyJson,
-    Points,
     Quiet,
     Refit,
-    Remove,
-    RmsHeight,
-    RmsSlope,
-    RollOff,
-    Seed,
-    Short,
     ShowCompletion,
     Size,
-    Skewness,
-    SurfaceFiles,
     Tables,
     TwoSurfaces,
     Unit,
@@ -53,6 +33,7 @@ from asperity.cli.arguments import (
     VersionJson,
 )
 from asperity.cli.checking import doctor
+from asperity.cli.measuring import add_surfaces_to
 from asperity.cli.studying import add_to
 from asperity.cli.terminal import Commands
 
@@ -169,71 +150,7 @@ def adhesion_map(
     )  # fmt: skip
 
 
-@app.command()
-def surface(
-    files: SurfaceFiles,
-    output: Folder = None,
-    size: Size = None,
-    unit: Unit = None,
-    channel: Channel = None,
-    missing: Missing = None,
-    remove: Remove = None,
-    align: Align = None,
-    direction: Direction = None,
-    degree: Degree = None,
-    short: Short = None,
-    long: Long = None,
-    force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-) -> None:
-    """Describe a measured surface, or two as one.
-
-    With two files the options hold for both. Writes a one-page picture, surface.txt and
-    surface.json to DIR, ./NAME-out unless given.
-    """
-    from asperity.cli.surfaces import describe
-
-    describe(
-        files, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
-        size=size, unit=unit, channel=channel, missing=missing, remove=remove, align=align,
-        direction=direction, degree=degree, short=short, long=long,
-    )  # fmt: skip
-
-
-@app.command()
-def generate(
-    file: MadeFile,
-    size: MadeSize = None,
-    points: Points = "512",
-    hurst: Hurst = 0.8,
-    roll_off: RollOff = None,
-    cut_off: CutOff = None,
-    rms_height: RmsHeight = None,
-    rms_slope: RmsSlope = None,
-    seed: Seed = 0,
-    skewness: Skewness = None,
-    kurtosis: Kurtosis = None,
-    heights: Heights = None,
-    force: ForceFile = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-) -> None:
-    """Make a self-affine random surface.
-
-    Periodic, with Gaussian heights unless another distribution is asked for. An existing file is
-    not overwritten unless --force is given.
-    """
-    from asperity.cli.generating import generate as make
-
-    make(
-        file, force=force, as_json=as_json, quiet=quiet, verbose=verbose, size=size,
-        points=points, hurst=hurst, roll_off=roll_off, cut_off=cut_off,
-        rms_height=rms_height, rms_slope=rms_slope, seed=seed, skewness=skewness,
-        kurtosis=kurtosis, heights=heights,
-    )  # fmt: skip
+add_surfaces_to(app)
 
 
 @app.command()
@@ -286,6 +203,44 @@ def materials(
     from asperity.cli.listing import list_materials
 
     list_materials(names or (), as_json=as_json)
+
+
+@app.command()
+def web(
+    case: Annotated[
+        str,
+        typer.Argument(
+            help="Case to begin with: as for run, but no record.",
+            show_default=False,
+            autocompletion=completing.case,
+        ),
+    ] = "published-exact",
+    port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen at.")
+    ] = "127.0.0.1",
+    names: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--name",
+            metavar="NAME",
+            help="Another name that the page may be asked for by, with --host; repeatable.",
+            show_default=False,
+        ),
+    ] = None,
+    browse: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the page's address as one JSON object.")
+    ] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Show a page with sliders in the browser.
+
+    It listens on this machine alone unless --host says otherwise, until Ctrl-C.
+    """
+    from asperity.cli.showing import show
+
+    show(case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet)
 
 
 add_to(app)

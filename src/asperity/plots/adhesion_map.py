@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from asperity.colours import colour
 from asperity.plots import style
 from asperity.plots.labels import name_points
-from asperity.plots.style import Panel, colour
+from asperity.plots.style import Panel
 from asperity.regimes import Boundary, Frame, Place, regions
 from asperity.studies.drawing import Drawing
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from asperity.colours import colour
 from asperity.plots import impacts, style
-from asperity.plots.style import Panel, Row, colour
+from asperity.plots.style import Panel, Row
 from asperity.result import Result
 
 _MANY = 3

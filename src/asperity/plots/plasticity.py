@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
+from asperity.colours import colour
 from asperity.plots import style
-from asperity.plots.style import Panel, colour
+from asperity.plots.style import Panel
 
 _TINTS = ("motion", "parting", "apex", "gas")
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))

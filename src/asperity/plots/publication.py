@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from asperity.colours import colour
 from asperity.plots import adhesion_map, style
 from asperity.plots.height_map import legible
-from asperity.plots.style import Panel, colour
+from asperity.plots.style import Panel
 from asperity.regimes import Frame
 from asperity.studies.drawing import Drawing
 

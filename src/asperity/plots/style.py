@@ -28,37 +28,6 @@ _HEIGHT = 42.0
 _ONE_ROW = 3
 _MARKER_SCALE = 1.5
 
-COLOURS = {
-    "motion": "#0072B2",
-    "central": "#56B4E9",
-    "apex": "#E69F00",
-    "deepest": "#D55E00",
-    "quiet": "#888888",
-    "contact": "#000000",
-    "total": "#000000",
-    "weight": "#888888",
-    "elastic": "#0072B2",
-    "adhesion": "#D55E00",
-    "capillary": "#009E73",
-    "gas": "#CC79A7",
-    "waves": "#8C6D31",
-    "kinetic": "#0072B2",
-    "potential": "#56B4E9",
-    "stored": "#F0E442",
-    "lost_adhesion": "#D55E00",
-    "lost_capillary": "#009E73",
-    "lost_gas": "#CC79A7",
-    "lost_waves": "#8C6D31",
-    "lost_plastic": "#E69F00",
-    "lost_viscous": "#7F3C8D",
-    "approach": "#0072B2",
-    "parting": "#D55E00",
-    "lost": "#F5D0B5",
-}
-"""Okabe and Ito's colours, which the colour-blind can tell apart; the same thing has the same
-colour in every picture."""
-
-_SPARE = ("#444444", "#A05195", "#5B8C5A")  # of mechanisms of one's own
 
 _LOOK: Any = {
     "font.size": 8.0,
@@ -111,11 +80,6 @@ class Picture(Figure):
 def look() -> Any:
     """A context within which figures take on the style."""
     return mpl.rc_context(_LOOK)
-
-
-def colour(name: str) -> str:
-    """The colour of a quantity; one of a few spare ones for an unknown."""
-    return COLOURS.get(name) or _SPARE[sum(map(ord, name)) % len(_SPARE)]
 
 
 def figure_of(rows: Sequence[Row]) -> Figure:

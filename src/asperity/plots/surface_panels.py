@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
+from asperity.colours import colour
 from asperity.plots import style
-from asperity.plots.style import colour
 from asperity.studies.surface_figures import in_bins
 from asperity.topography.describing.composite import Composite
 from asperity.topography.describing.convolution import HeightDistribution

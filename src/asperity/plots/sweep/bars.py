@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from asperity.colours import colour
 from asperity.plots import style
-from asperity.plots.style import colour
 from asperity.plots.sweep.page import Block, Page
 from asperity.studies.sweep.sensitivity import CONFIDENCE, Index, Sensitivity
 

@@ -9,8 +9,8 @@ from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from asperity.colours import colour
 from asperity.errors import Outcome
-from asperity.plots.style import colour
 from asperity.studies.sweep.layout import OUTCOMES
 
 if TYPE_CHECKING:

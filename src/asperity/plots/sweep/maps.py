@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.patches import Patch
 
-from asperity.plots.style import colour
+from asperity.colours import colour
 from asperity.plots.sweep import cases
 from asperity.plots.sweep.lines import facets
 from asperity.plots.sweep.page import Block, Page

@@ -10,7 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from asperity.plots.style import colour
+from asperity.colours import colour
 from asperity.plots.sweep import cases
 from asperity.plots.sweep.page import Block, Page
 from asperity.plots.sweep.quantities import Quantity, axis_quantity, measure_quantity

@@ -1,0 +1,80 @@
+"""The answer to the user's question in one sentence: does the body bounce or stick, and why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asperity.errors import Outcome
+
+if TYPE_CHECKING:
+    from asperity.result import Result
+
+_TAKERS = {
+    "adhesion": "dry adhesion takes",
+    "capillary": "menisci take",
+    "gas": "the gas film takes",
+    "plastic": "yielding takes",
+    "viscous": "the creeping bulk takes",
+    "waves": "elastic waves take",
+}
+_LITTLE = 1e-9
+"""Share of the energy at the release below which nothing was lost that is worth a word."""
+
+
+def verdict(result: Result) -> str:
+    """E.g. ``sticks after 3 rebounds; menisci take 71 % of the energy lost``.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    """
+    return "; ".join(part for part in (_ending(result), _taken(result.ledger)) if part)
+
+
+def _ending(result: Result) -> str:
+    measures, outcome = result.measures, result.outcome
+    impacts = len(measures["rebound_height"])
+    if not impacts:
+        return "touched nothing before the run ended"
+    if measures["captured"]:
+        return f"sticks {_after(_rebounds_before(result))}"
+    if outcome is Outcome.REST:
+        return f"never sticks, and comes to rest {_after(impacts)}"
+    if outcome is Outcome.ESCAPED:
+        kept = measures["restitution"][-1]
+        share = "" if kept is None else f" with {100.0 * kept:.3g} % of its speed"
+        return f"bounces off{share} and does not come back"
+    if outcome is Outcome.OSCILLATING:
+        return "bounces for ever: nothing takes its energy"
+    if outcome is Outcome.FAILED:
+        return "the numerics failed before there was an answer"
+    return f"still bounces {_after(impacts)}, where the run was stopped"
+
+
+def _rebounds_before(result: Result) -> int:
+    """Rebounds before the impact that captures."""
+    times = np.asarray(result.events["deepest_time"])
+    return int(np.sum(times < result.measures["capture_time"] * (1.0 - 1e-12)))
+
+
+def _after(rebounds: int) -> str:
+    if not rebounds:
+        return "at the first touch"
+    return f"after {rebounds} rebound{'s' * (rebounds > 1)}"
+
+
+def _taken(ledger: dict[str, Any]) -> str:
+    """Who takes most of the energy that is lost."""
+    lost = ledger.get("lost") or {}
+    total, initial = sum(lost.values()), ledger.get("initial") or 0.0
+    if not total > _LITTLE * abs(initial):
+        return "no energy is lost"
+    most = max(lost, key=lambda name: lost[name])
+    share = 100.0 * lost[most] / total
+    words = _TAKERS.get(most, f"{most} takes")
+    if len(lost) == 1 or share > 99.95:
+        return f"{words} all of the energy lost"
+    return f"{words} {share:.2g} % of the energy lost"

@@ -1,0 +1,108 @@
+"""A result as the page shows it: numbers in SI, arrays packed, words."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+
+from asperity.colours import colour
+from asperity.records.layout import json_object, plain
+from asperity.regimes import Frame, Place, region
+from asperity.result import Curve, Result
+from asperity.verdict import verdict
+
+DRAWN = 24
+"""Impacts whose course the page draws."""
+
+_CONTACT = 1e-3
+"""Share of the largest force from which the first impact is shown."""
+
+
+def answer(result: Result, curve: Curve) -> dict[str, Any]:
+    """All that the page shows of a case.
+
+    Parameters
+    ----------
+    result, curve
+        Motion and force curve of the case.
+
+    Returns
+    -------
+    Plain values; arrays are packed by :func:`packed`, all of one length within a part.
+    """
+    return {
+        **json_object(result),
+        "name": result.name,
+        "message": result.outcome.message,
+        "verdict": verdict(result),
+        "motion": {
+            "time": packed(result.time),
+            "separation": packed(result.separation),
+            "central_separation": packed(result.central_separation),
+            "speed": packed(result.speed),
+            "forces": {name: packed(values) for name, values in result.forces.items()},
+            "energies": {name: packed(values) for name, values in result.energies.items()},
+            "impacts": int(np.size(result.events["apex_time"])),
+            "drawn": int(np.sum(result.events["apex_time"] <= result.time[-1])),
+            "first_contact": _first_contact(result),
+        },
+        "curve": {
+            "separation": packed(curve.rigid_separation),
+            "approach": packed(curve.force_approach),
+            "parting": packed(curve.force_parting),
+            **{
+                name: plain(getattr(curve, name))
+                for name in ("deepest", "pull_off", "work_of_separation", "loss")
+            },
+        },
+        "place": _place(result),
+        "colours": {name: colour(name) for name in _names(result)},
+    }
+
+
+def packed(values: np.ndarray) -> str:
+    """Numbers as base64 of little-endian 32-bit floats: what a screen can show, and no more."""
+    return base64.b64encode(np.asarray(values, "<f4").tobytes()).decode("ascii")
+
+
+def _names(result: Result) -> list[str]:
+    return [*result.forces, *result.energies, *(f"lost_{name}" for name in result.ledger["lost"])]
+
+
+def _first_contact(result: Result) -> list[float]:
+    """From when to when [s] the first impact is in contact, with a margin."""
+    deepest, apex = (float(result.events[name][0]) for name in ("deepest_time", "apex_time"))
+    force = np.abs(result.forces["contact"])
+    during = (result.time <= apex) & (force > _CONTACT * force.max(initial=0.0))
+    if not during.any():
+        return [0.0, apex]
+    begin, end = result.time[during][0], result.time[during][-1]
+    margin = 0.1 * (end - begin) or 0.1 * (apex - deepest)
+    return [max(float(begin - margin), 0.0), float(end + margin)]
+
+
+def _place(result: Result) -> dict[str, Any] | None:
+    """Where the case lies on the adhesion map; None where it has no place there."""
+    elasticity, load = (result.regime[key] for key in ("elasticity_parameter", "load_parameter"))
+    if elasticity is None or load is None:
+        return None
+    return {"elasticity": elasticity, "load": load, "region": region(elasticity, load)}
+
+
+def adhesion_map() -> dict[str, Any]:
+    """The lines of the adhesion map over its usual frame; arrays packed, NaN where none."""
+    frame = Frame.around([Place("", 1.0, 1.0)])
+    return {
+        "elasticity": list(frame.elasticity),
+        "load": list(frame.load),
+        "lines": [
+            {
+                "between": list(line.between),
+                "elasticity": packed(line.elasticity),
+                "load": packed(line.load),
+            }
+            for line in frame.boundaries()
+        ],
+    }

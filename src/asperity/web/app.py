@@ -1,0 +1,245 @@
+"""The routes of the page."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import AsyncIterator, Callable, Iterable
+from importlib import resources
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from asperity.case import BUILTINS, Case
+from asperity.case.problems import check
+from asperity.case.reading import SIZE_LIMIT, builtin_text, tables
+from asperity.case.writing import text_of
+from asperity.errors import InputError, OutputError, SimulationError, one_line
+from asperity.web.answer import adhesion_map
+from asperity.web.asking import asked, refuse_depth
+from asperity.web.exploring import FILES, file, glance
+from asperity.web.form import form
+from asperity.web.guard import Guard
+from asperity.web.jobs import Busy, Desk, Event, Job, Task
+from asperity.web.openapi import DESCRIPTION
+from asperity.web.surfaces import Surfaces
+
+LOCAL = ("127.0.0.1", "localhost", "::1")
+"""Names of a server that only this machine can reach."""
+
+PATIENCE = 120.0
+"""How long a computation may take [s]."""
+
+_LINES = "application/x-ndjson"
+_BUSY = "too many computations wait already; try again in a few seconds"
+
+
+def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOCAL) -> Starlette:
+    """The page and what it asks for.
+
+    Parameters
+    ----------
+    first
+        Name and text of the case that the page opens with; a built-in one without it.
+    names
+        Names by which the server may be asked, as in ``Host``; others are refused.
+    """
+    page = _Page(first)
+
+    @contextlib.asynccontextmanager
+    async def alive(app: Starlette) -> AsyncIterator[None]:
+        yield
+        page.surfaces.close()
+
+    static = resources.files("asperity.web") / "static"
+    routes = [
+        Route("/", page.index),
+        Route("/openapi.json", page.description),
+        Route("/api/form", page.form),
+        Route("/api/map", page.map),
+        Route("/api/cases/{name}", page.case),
+        Route("/api/read", page.read, methods=["POST"]),
+        Route("/api/toml", page.toml, methods=["POST"]),
+        Route("/api/explore", page.explore, methods=["POST"]),
+        Route("/api/files/{name}", page.file, methods=["POST"]),
+        Route("/api/surfaces/{name}", page.surface, methods=["POST"]),
+        Mount("/static", StaticFiles(directory=str(static))),
+    ]
+    refusals: dict[Any, Callable[[Request, Any], Any]] = {
+        InputError: _input, OutputError: _output, Busy: _busy, HTTPException: _http,
+    }  # fmt: skip
+    guarded = [Middleware(Guard, names=tuple(names))]
+    return Starlette(routes=routes, middleware=guarded, exception_handlers=refusals, lifespan=alive)
+
+
+class _Page:
+    """What the routes share: the desk, the uploads, the case to begin with."""
+
+    def __init__(self, first: tuple[str, str] | None) -> None:
+        self.desk = Desk()
+        self.surfaces = Surfaces()
+        self._first = first
+        self._form = json.dumps(
+            {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else BUILTINS[-1]}
+        )
+        self._map: str | None = None
+
+    async def index(self, request: Request) -> Response:
+        page = resources.files("asperity.web") / "static" / "index.html"
+        return Response(page.read_bytes(), media_type="text/html; charset=utf-8")
+
+    async def description(self, request: Request) -> Response:
+        return JSONResponse(DESCRIPTION)
+
+    async def form(self, request: Request) -> Response:
+        return Response(self._form, media_type="application/json")
+
+    async def map(self, request: Request) -> Response:
+        if self._map is None:
+            self._map = json.dumps(await run_in_threadpool(adhesion_map))
+        return Response(self._map, media_type="application/json")
+
+    async def case(self, request: Request) -> Response:
+        name = request.path_params["name"]
+        if self._first is not None and name == self._first[0]:
+            text = self._first[1]
+        elif name in BUILTINS:
+            text = builtin_text(name)
+        else:
+            raise HTTPException(404, f"no case of this name; there are {', '.join(BUILTINS)}")
+        return JSONResponse({"name": name, "tables": tables(text, None)})
+
+    async def read(self, request: Request) -> Response:
+        """The tables of a case file that the user has."""
+        body = await _body(request, SIZE_LIMIT)
+        try:
+            text = body.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            raise InputError("a case must be UTF-8 text; got a binary file") from None
+        found = tables(text, None)
+        refuse_depth(found)
+        try:
+            return JSONResponse({"tables": found})
+        except (TypeError, ValueError):
+            raise InputError("a case must hold no dates and no infinite numbers") from None
+
+    async def toml(self, request: Request) -> Response:
+        """The case as the text that `asperity run` takes, as it was given."""
+        what = asked(await _body(request, SIZE_LIMIT))
+        what.case()
+        check(Case, what.tables)  # what it says of output counts here
+        text = text_of(what.tables)
+        assert tables(text, None) == what.tables
+        return JSONResponse({"toml": text})
+
+    async def explore(self, request: Request) -> Response:
+        """Lines of JSON: progress, and in the end the answer or what is wrong."""
+        what = asked(await _body(request, SIZE_LIMIT))
+        what.case()  # refused at once, by its status
+        asker = what.asker or _from(request)
+        job = self.desk.ask(asker, glance(what, self.surfaces))
+        return StreamingResponse(self._lines(asker, job), media_type=_LINES)
+
+    async def _lines(self, asker: str, job: Job) -> AsyncIterator[str]:
+        events = job.events(PATIENCE)
+        try:
+            async for event in events:
+                yield json.dumps(_told(event), allow_nan=False) + "\n"
+        finally:
+            await events.aclose()  # type: ignore[attr-defined]
+            self.desk.forget(asker, job)
+
+    async def file(self, request: Request) -> Response:
+        """A file of the case's results."""
+        name = request.path_params["name"]
+        if name not in FILES:
+            raise HTTPException(404, f"no such file; there are {', '.join(FILES)}")
+        what = asked(await _body(request, SIZE_LIMIT))
+        what.case()
+        asker = f"{what.asker or _from(request)} {name}"
+        event = await self._last(asker, file(what, self.surfaces, name))
+        if event.kind != "answer":
+            refusal = _told(event)
+            return JSONResponse(refusal, 422 if event.kind == "error" else 409)
+        headers = {"content-disposition": f'attachment; filename="{name}"'}
+        return Response(event.value, media_type=FILES[name], headers=headers)
+
+    async def _last(self, asker: str, task: Task) -> Event:
+        job = self.desk.ask(asker, task)
+        events = job.events(PATIENCE)
+        try:
+            async for event in events:
+                if event.last:
+                    return event
+        finally:
+            await events.aclose()  # type: ignore[attr-defined]
+            self.desk.forget(asker, job)
+        raise AssertionError("a computation ends with an event")
+
+    async def surface(self, request: Request) -> Response:
+        """Keep a surface file that was dropped in."""
+        name = request.path_params["name"]
+        body = await request.body()
+        token = await run_in_threadpool(self.surfaces.keep, name, body)
+        return JSONResponse({"name": name, "token": token, "bytes": len(body)})
+
+
+async def _body(request: Request, most: int) -> bytes:
+    """A request's body, never read beyond a limit."""
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > most:
+            raise HTTPException(413, f"a case must be at most {most >> 20} MiB")
+    return bytes(body)
+
+
+def _from(request: Request) -> str:
+    client = request.client
+    return f"{client.host}:{client.port}" if client else "nobody"
+
+
+def _told(event: Event) -> dict[str, Any]:
+    """An event as JSON."""
+    if event.kind == "progress":
+        fraction, text = event.value
+        return {"progress": round(fraction, 3), "text": text}
+    if event.kind == "answer":
+        return {"answer": event.value}
+    if event.kind == "replaced":
+        return {"replaced": True}
+    return {"error": _words(event.value)}
+
+
+def _words(error: Exception) -> dict[str, Any]:
+    """What went wrong, in a line."""
+    if isinstance(error, InputError):
+        return {"kind": "input", "key": error.key, "message": str(error)}
+    if isinstance(error, SimulationError):
+        return {"kind": "numerics", "key": None, "message": one_line(str(error))}
+    return {"kind": "program", "key": None, "message": "the program failed; its log says more"}
+
+
+def _input(request: Request, error: InputError) -> Response:
+    return JSONResponse({"error": _words(error)}, 422)
+
+
+def _output(request: Request, error: OutputError) -> Response:
+    return JSONResponse({"error": {"kind": "output", "key": None, "message": str(error)}}, 507)
+
+
+def _busy(request: Request, error: Busy) -> Response:
+    words = {"kind": "busy", "key": None, "message": _BUSY}
+    return JSONResponse({"error": words}, 503, headers={"retry-after": "3"})
+
+
+def _http(request: Request, error: HTTPException) -> Response:
+    words = {"kind": "request", "key": None, "message": error.detail}
+    return JSONResponse({"error": words}, error.status_code, headers=error.headers)

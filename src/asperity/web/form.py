@@ -1,0 +1,129 @@
+"""The case schema as a form: what the page needs to draw a field for every key."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from asperity.case import Case
+from asperity.case.fields import Number, Quantity
+from asperity.case.problems import tables_of
+from asperity.case.writing import ordered, unit_of
+
+_LEFT_OUT = ("schema", "output", "materials")
+"""What a page has no use for, and tables of any name: a case's own materials stay as they came."""
+
+_SPANS = {
+    "rad": {"scale": "linear", "low": 0.0, "high": 89.0, "unit": "deg"},
+    "K": {"scale": "linear", "low": 0.0, "high": 100.0, "unit": "degC"},
+}
+"""Spans of sliders by the SI unit, where a factor about the value is no way to move it."""
+
+_DECADES = 1e3
+"""Ratio of an interval's ends from which a plain number moves by factors."""
+
+
+def form() -> list[dict[str, Any]]:
+    """Every table of a case with its keys, in the order of a case file.
+
+    Returns
+    -------
+    A list of tables ``{name, help, needed, keys}``; a key is ``{key, kind, unit, help, example,
+    needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number", "whole",
+    "choice", "switch", "list" or "text"; ``slider`` is None where a slider cannot move it.
+    """
+    found = []
+    for name, field in ordered(Case).items():
+        tables = tables_of(field.annotation)
+        if not tables or (field.alias or name) in _LEFT_OUT:
+            continue
+        found.append(
+            {
+                "name": name,
+                "help": inspect.getdoc(tables[0]) or "",
+                "needed": field.is_required(),
+                "keys": [_key(key, inner) for key, inner in ordered(tables[0]).items()],
+            }
+        )
+    return found
+
+
+def _key(name: str, field: FieldInfo) -> dict[str, Any]:
+    extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
+    limits = _limits(field)
+    kind, choices = _kind(field.annotation, limits)
+    return {
+        "key": name,
+        "kind": kind,
+        "unit": unit_of(field),
+        "help": field.description or "",
+        "example": (field.examples or [None])[0],
+        "needed": field.is_required(),
+        "shown": bool(extra.get("shown")) or field.is_required(),
+        "default": None if field.is_required() else field.get_default(),
+        "choices": choices,
+        "among": extra.get("among") or [],
+        "slider": _slider(limits),
+    }
+
+
+def _limits(field: FieldInfo) -> Quantity | Number | None:
+    """What bounds a field's value."""
+    for each in (*field.metadata, *_metadata(field.annotation)):
+        if isinstance(each, Quantity | Number):
+            return each
+    return None
+
+
+def _metadata(annotation: Any) -> list[Any]:
+    """What the parts of a type are annotated with."""
+    found = list(getattr(annotation, "__metadata__", ()))
+    for part in get_args(annotation):
+        found += _metadata(part)
+    return found
+
+
+def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[str]]:
+    if isinstance(limits, Quantity):
+        return "quantity", []
+    if isinstance(limits, Number):
+        return ("whole" if limits.whole else "number"), []
+    choices = _literals(annotation)
+    if choices:
+        return "choice", choices
+    parts = [annotation, *get_args(annotation)]
+    if any(part is bool for part in parts):
+        return "switch", []
+    if any(get_origin(part) is list for part in _flat(annotation)):
+        return "list", []
+    return "text", []
+
+
+def _flat(annotation: Any) -> list[Any]:
+    return [annotation, *(inner for part in get_args(annotation) for inner in _flat(part))]
+
+
+def _literals(annotation: Any) -> list[str]:
+    if get_origin(annotation) is Literal:
+        return [str(value) for value in get_args(annotation)]
+    return [value for part in get_args(annotation) for value in _literals(part)]
+
+
+def _slider(limits: Quantity | Number | None) -> dict[str, Any] | None:
+    """How far a slider goes: between the ends of an interval, or by factors about the value."""
+    if isinstance(limits, Quantity):
+        return _SPANS.get(limits.unit, {"scale": "factor"})
+    if isinstance(limits, Number):
+        low, high = limits.bounds
+        if low > 0.0 and high / low >= _DECADES:
+            return {"scale": "factor", "low": low, "high": high}
+        return {"scale": "linear", "low": low, "high": high, "unit": ""}
+    return None
+
+
+def tables_in(model: type[BaseModel]) -> tuple[str, ...]:
+    """Names of a model's tables."""
+    return tuple(name for name, field in model.model_fields.items() if tables_of(field.annotation))

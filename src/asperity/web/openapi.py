@@ -1,0 +1,122 @@
+"""What the server answers, in OpenAPI's terms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from asperity.web.exploring import FILES
+
+_TEXT = {"type": "string", "maxLength": 100}
+
+_ASKED: dict[str, Any] = {
+    "type": "object",
+    "required": ["case"],
+    "additionalProperties": False,
+    "properties": {
+        "case": {"type": "object", "description": "The tables of a case, as in its file."},
+        "name": _TEXT,
+        "asker": {**_TEXT, "description": "Of one asker only the newest request is answered."},
+        "surfaces": {"type": "object", "additionalProperties": _TEXT},
+    },
+}
+
+_REFUSAL: dict[str, Any] = {
+    "type": "object",
+    "required": ["error"],
+    "properties": {
+        "error": {
+            "type": "object",
+            "required": ["kind", "key", "message"],
+            "properties": {
+                "kind": {"enum": ["input", "numerics", "output", "busy", "request", "program"]},
+                "key": {"type": ["string", "null"]},
+                "message": {"type": "string"},
+            },
+        }
+    },
+}
+
+
+def _json(schema: dict[str, Any], description: str) -> dict[str, Any]:
+    return {"description": description, "content": {"application/json": {"schema": schema}}}
+
+
+_REFUSALS = {
+    str(status): _json(_REFUSAL, words)
+    for status, words in (
+        (400, "No request of HTTP."),
+        (403, "From a page of somebody else's."),
+        (404, "There is no such thing."),
+        (405, "Not to be asked in this way."),
+        (409, "A newer request of the same asker came."),
+        (413, "Too long."),
+        (421, "By a name that is not this server's."),
+        (422, "The case, or the request, is refused."),
+        (503, "Too much is being computed."),
+        (507, "The disk is full."),
+    )
+}
+
+
+def _asking(summary: str, answer: dict[str, Any], *more: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "post": {
+            "summary": summary,
+            "parameters": list(more),
+            "requestBody": {"required": True, "content": {"application/json": {"schema": _ASKED}}},
+            "responses": {"200": answer, **_REFUSALS},
+        }
+    }
+
+
+def _getting(summary: str, *more: dict[str, Any]) -> dict[str, Any]:
+    answer = _json({"type": "object"}, summary)
+    responses = {"200": answer, **_REFUSALS}
+    return {"get": {"summary": summary, "parameters": list(more), "responses": responses}}
+
+
+def _in_path(schema: dict[str, Any]) -> dict[str, Any]:
+    return {"name": "name", "in": "path", "required": True, "schema": schema}
+
+
+def _any(kind: str) -> dict[str, Any]:
+    return {"content": {kind: {"schema": {"type": "string"}}}}
+
+
+DESCRIPTION: dict[str, Any] = {
+    "openapi": "3.1.0",
+    "info": {"title": "asperity", "version": "1", "license": {"name": "MIT"}},
+    "paths": {
+        "/api/form": _getting("The case schema as a form."),
+        "/api/map": _getting("The lines of the adhesion map."),
+        "/api/cases/{name}": _getting("The tables of a case.", _in_path({"type": "string"})),
+        "/api/toml": _asking("The case as text.", _json({"type": "object"}, "The text.")),
+        "/api/explore": _asking(
+            "Compute a case.",
+            {
+                "description": "Progress and the answer, a line each.",
+                **_any("application/x-ndjson"),
+            },
+        ),
+        "/api/files/{name}": _asking(
+            "A file of a case's results.",
+            {"description": "The file.", "content": {kind: {} for kind in {*FILES.values()}}},
+            _in_path({"enum": list(FILES)}),
+        ),
+        "/api/read": {
+            "post": {
+                "summary": "The tables of a case file.",
+                "requestBody": {"required": True, **_any("text/plain")},
+                "responses": {"200": _json({"type": "object"}, "The tables."), **_REFUSALS},
+            }
+        },
+        "/api/surfaces/{name}": {
+            "post": {
+                "summary": "Keep a surface file.",
+                "parameters": [_in_path({"type": "string"})],
+                "requestBody": {"required": True, **_any("application/octet-stream")},
+                "responses": {"200": _json({"type": "object"}, "What it is kept as."), **_REFUSALS},
+            }
+        },
+    },
+}

@@ -1,0 +1,107 @@
+"""The server: one process on one address."""
+
+from __future__ import annotations
+
+import contextlib
+import ipaddress
+import socket
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import uvicorn
+
+from asperity.case import load
+from asperity.errors import InputError, OutputError, SimulationError
+from asperity.web.answer import DRAWN
+from asperity.web.app import LOCAL, application
+
+MOST_CONNECTIONS = 64
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where to listen.
+
+    Parameters
+    ----------
+    host
+        Address of this machine; others than the loopback's are reached from outside.
+    port
+        Port; 0 for a free one.
+    names
+        Other names by which the server may be asked.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 8737
+    names: Sequence[str] = ()
+
+
+def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]) -> None:
+    """Serve the page until the process is asked to end.
+
+    Parameters
+    ----------
+    address
+        Where to listen.
+    first
+        Name and text of the case that the page opens with.
+    ready
+        Called with the page's address once it listens.
+
+    Raises
+    ------
+    InputError, OutputError
+        Where the address is none of this machine's, or taken.
+    """
+    listening = _bound(address)
+    port = listening.getsockname()[1]
+    shown = f"[{address.host}]" if ":" in address.host else address.host
+    names = {*LOCAL, address.host, *address.names} - {"0.0.0.0", "::"}
+    app = application(first, names)
+    config = uvicorn.Config(
+        app,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        limit_concurrency=MOST_CONNECTIONS,
+        timeout_keep_alive=30,
+        timeout_graceful_shutdown=1,
+        lifespan="on",
+    )
+    threading.Thread(target=_warm, args=(first,), daemon=True).start()
+    ready(f"http://{shown}:{port}/")
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _warm(first: tuple[str, str]) -> None:
+    """Compute the first case while the page loads: its question finds all compiled."""
+    from asperity.solver import explore
+
+    # What is wrong with the case is said when the page asks for it.
+    with contextlib.suppress(InputError, SimulationError):
+        explore(load(first[1]), most=DRAWN)
+
+
+def _bound(address: Address) -> socket.socket:
+    if not 0 <= address.port <= 65535:
+        raise InputError(f"`--port` must lie in [0, 65535]; got {address.port}")
+    try:
+        version = ipaddress.ip_address(address.host).version
+    except ValueError:
+        rule = "must be an address of this machine, such as 127.0.0.1"
+        raise InputError(f"`--host` {rule}; got {address.host!r}") from None
+    family = socket.AF_INET6 if version == 6 else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((address.host, address.port))
+        listening.listen(128)
+    except OSError as error:
+        listening.close()
+        raise OutputError(
+            f"{address.host}:{address.port}: cannot be listened at: {error.strerror or error}; "
+            "take another --port (0 for any free one)"
+        ) from None
+    return listening

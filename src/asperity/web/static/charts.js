@@ -1,0 +1,90 @@
+// Line charts: one look, axes with units, one design solid and the other dashed.
+
+import { largest, scaled } from "/static/units.js";
+
+const HEIGHT = 250;
+const WIDEST = 1400;
+
+export const ink = () => getComputedStyle(document.documentElement).getPropertyValue("--ink").trim();
+const quiet = () => getComputedStyle(document.documentElement).getPropertyValue("--quiet").trim();
+const line = () => getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
+
+// The colour of a thing on this page's paper: black is the colour of the ink.
+export const tint = (colour) => (!colour || colour === "#000000" ? ink() : colour);
+
+export class Chart {
+  constructor(id) {
+    this.figure = document.getElementById(id);
+    this.legend = Object.assign(document.createElement("div"), { className: "legend" });
+    this.place = Object.assign(document.createElement("div"), { className: "plot" });
+    this.place.setAttribute("role", "img");
+    this.figure.append(this.legend, this.place);
+    this.kind = "";
+    new ResizeObserver(() => this.fit()).observe(this.figure);
+  }
+
+  fit() {
+    const width = Math.min(this.figure.clientWidth - 16, WIDEST);
+    if (this.plot && width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
+  }
+
+  // Draw groups of lines {x, lines: [{label, y, colour, dashed}]}; axes {x: [name, unit], y: [name, unit]}.
+  show({ groups, axes, range, logarithmic = false, points = false, spoken }) {
+    const lines = groups.flatMap((group) => group.lines);
+    const [acrossBy, acrossUnit] = axes.x[1] ? scaled(largest(range ? [range] : groups.map((g) => g.x)), axes.x[1]) : [1, ""];
+    const [upBy, upUnit] = scaled(largest(lines.map((one) => one.y)), axes.y[1]);
+    const titles = [`${axes.x[0]}${acrossUnit && ` [${acrossUnit}]`}`, `${axes.y[0]} [${upUnit || "–"}]`];
+    const tables = groups.map((g) => [shrunk(g.x, acrossBy), ...g.lines.map((one) => shrunk(one.y, upBy, logarithmic))]);
+    const data = tables.length === 1 ? tables[0] : uPlot.join(tables);
+    const kind = JSON.stringify([titles, logarithmic, points, lines.map((one) => [one.label, tint(one.colour), one.dashed])]);
+    if (kind !== this.kind) this.build(kind, titles, lines, { logarithmic, points });
+    this.plot.setData(data, false);
+    this.plot.setScale("x", range ? { min: range[0] / acrossBy, max: range[1] / acrossBy } : ends(data[0]));
+    this.place.setAttribute("aria-label", `${titles[1]} against ${titles[0]}. ${spoken}`);
+  }
+
+  build(kind, titles, lines, { logarithmic, points }) {
+    this.kind = kind;
+    this.plot?.destroy();
+    const series = lines.map(({ label, colour, dashed }) => ({
+      label, stroke: tint(colour), width: 1.6, dash: dashed ? [7, 4] : undefined, spanGaps: true,
+      points: { show: points, size: 5, fill: tint(colour) },
+    }));
+    const options = {
+      width: Math.max(this.figure.clientWidth - 16, 200), height: HEIGHT, legend: { show: false },
+      scales: { x: { time: false }, y: logarithmic ? { distr: 3 } : {} },
+      cursor: { drag: { x: true, y: false } },
+      series: [{ label: titles[0] }, ...series],
+      axes: [axis(titles[0], 44), axis(titles[1], 62)],
+    };
+    this.plot = new uPlot(options, [[0], ...lines.map(() => [null])], this.place);
+    this.legend.replaceChildren(...lines.map(({ label, colour, dashed }) => chip(label, tint(colour), dashed)));
+  }
+
+  restyle() {
+    this.kind = "";
+  }
+}
+
+export function chip(label, colour, dashed) {
+  const mark = document.createElement("i");
+  mark.className = dashed ? "dashed" : "";
+  mark.style.borderTopColor = colour;
+  const box = document.createElement("span");
+  box.append(mark, label);
+  return box;
+}
+
+export function axis(label, size) {
+  return {
+    label, size, labelSize: 20, labelGap: 2, stroke: quiet(), font: "12px system-ui", labelFont: "13px system-ui",
+    grid: { stroke: line(), width: 0.5 }, ticks: { stroke: line(), width: 0.5, size: 5 },
+    values: (plot, ticks) => ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(6))))),
+  };
+}
+
+function shrunk(values, by, logarithmic = false) {
+  return Float64Array.from(values, (value) => (logarithmic && !(value > 0) ? NaN : value / by));
+}
+
+const ends = (values) => ({ min: values[0], max: values[values.length - 1] });

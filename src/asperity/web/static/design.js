@@ -1,0 +1,126 @@
+// The designs on the page: their cases, their answers, and the one newest question of each.
+
+import { explored, unpacked } from "/static/server.js";
+
+const PATIENT = 600; // ms that a running question may take before a newer one replaces it
+const page = Math.random().toString(36).slice(2);
+
+export class Design {
+  constructor(letter, name, tables, surfaces = {}) {
+    this.letter = letter;
+    this.name = name;
+    this.tables = tables;
+    this.surfaces = surfaces;
+    this.answer = null;
+    this.refusal = null;
+    this.work = null; // {fraction, text} while it is computed
+    this.asked = 0; // number of the newest question
+    this.shown = 0; // number of the question that the answer belongs to
+    this.running = null;
+    this.waiting = false;
+  }
+
+  question() {
+    return { case: this.tables, name: this.name, asker: `${page}-${this.letter}`, surfaces: this.surfaces };
+  }
+
+  get(table, key) {
+    return this.tables[table]?.[key];
+  }
+
+  set(table, key, value) {
+    const inner = { ...(this.tables[table] ?? {}) };
+    if (value === undefined) delete inner[key];
+    else inner[key] = value;
+    this.tables = { ...this.tables, [table]: inner };
+  }
+
+  // Ask for the case as it is now; `show()` is called when anything changes.
+  ask(show, since = performance.now()) {
+    this.asked += 1;
+    this.since = since;
+    if (this.running && performance.now() - this.running.begun < PATIENT) {
+      this.waiting = true; // the newest goes when this one is through
+      return;
+    }
+    this.running?.abort.abort();
+    this.send(show);
+  }
+
+  async send(show) {
+    const number = this.asked;
+    const mine = { abort: new AbortController(), begun: performance.now(), since: this.since };
+    this.running = mine;
+    this.waiting = false;
+    this.work = { fraction: 0, text: "asking" };
+    show("work");
+    // A question that grew old while it waits goes, so that the newest is not kept waiting.
+    const impatient = setInterval(() => {
+      if (this.waiting && performance.now() - mine.begun > PATIENT) mine.abort.abort();
+    }, 100);
+    try {
+      const answer = await explored(this.question(), mine.abort.signal, (fraction, text) => {
+        if (this.running === mine) {
+          this.work = { fraction, text };
+          show("work");
+        }
+      });
+      if (answer && number > this.shown) this.take(answer, number, mine.since);
+    } catch (error) {
+      if (error.name !== "AbortError" && number > this.shown) {
+        this.refusal = error;
+        this.shown = number;
+      }
+    } finally {
+      clearInterval(impatient);
+      if (this.running === mine) {
+        this.running = null;
+        this.work = null;
+        if (this.waiting) this.send(show);
+        show("answer");
+      }
+    }
+  }
+
+  take(answer, number, since) {
+    const { motion, curve } = answer;
+    for (const key of ["time", "separation", "central_separation", "speed"]) motion[key] = unpacked(motion[key]);
+    for (const part of [motion.forces, motion.energies]) for (const key in part) part[key] = unpacked(part[key]);
+    for (const key of ["separation", "approach", "parting"]) curve[key] = unpacked(curve[key]);
+    this.answer = answer;
+    this.refusal = null;
+    this.shown = number;
+    this.answeredSince = since;
+  }
+
+  cancel() {
+    this.waiting = false;
+    this.running?.abort.abort();
+  }
+
+  copy(letter) {
+    return new Design(letter, this.name, structuredClone(this.tables), { ...this.surfaces });
+  }
+
+  toJSON() {
+    return { name: this.name, tables: this.tables, surfaces: this.surfaces };
+  }
+}
+
+// The page's state as the part of a link behind "#", and back.
+export function written(designs) {
+  const bytes = new TextEncoder().encode(JSON.stringify(designs));
+  let letters = "";
+  for (const byte of bytes) letters += String.fromCharCode(byte);
+  return btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+export function read(hash) {
+  const letters = atob(hash.replaceAll("-", "+").replaceAll("_", "/"));
+  const given = JSON.parse(new TextDecoder().decode(Uint8Array.from(letters, (one) => one.charCodeAt(0))));
+  if (!Array.isArray(given) || !given.length || given.length > 2) throw new Error("no designs");
+  return given.map(({ name, tables, surfaces }, number) => {
+    if (typeof name !== "string" || typeof tables !== "object" || tables === null) throw new Error("no design");
+    return new Design("AB"[number], name, tables, surfaces ?? {});
+  });
+}

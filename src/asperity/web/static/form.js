@@ -1,0 +1,177 @@
+// The form, made from the case schema that the server sends: a new key appears by itself.
+
+import { parted, short } from "/static/units.js";
+
+const STEPS = 1000;
+const FACTOR = 10; // a slider without ends goes from a tenth of the value to ten times it
+
+const element = (tag, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+};
+
+const words = (name) => name.replaceAll("_", " ");
+
+export class Form {
+  // `changed(table, key, value)`: value undefined takes the key away; `tabled(table, used)`.
+  constructor(place, tables, { changed, tabled }) {
+    this.place = place;
+    this.tables = tables;
+    this.changed = changed;
+    this.tabled = tabled;
+    this.fields = new Map();
+  }
+
+  // Draw the form anew for a design.
+  show(design) {
+    const open = new Set([...this.place.querySelectorAll("details[open]")].map((one) => one.id));
+    this.fields.clear();
+    this.place.replaceChildren(...this.tables.map((table) => this.table(table, design, open)));
+  }
+
+  table(table, design, open) {
+    const given = design.tables[table.name];
+    const used = given !== undefined || table.needed;
+    const box = element("details", { id: `table-${table.name}` });
+    const roomy = matchMedia("(min-width: 60rem)").matches; // on a telephone the tables begin closed
+    box.open = open.size ? open.has(box.id) : roomy && used && !["numerics", "publication"].includes(table.name);
+    box.append(element("summary", { textContent: words(table.name) }));
+    if (table.help) box.append(element("p", { className: "about", textContent: table.help }));
+    if (!table.needed) {
+      const use = element("input", { type: "checkbox", checked: given !== undefined, id: `use-${table.name}` });
+      use.addEventListener("change", () => this.tabled(table, use.checked));
+      box.append(element("label", { className: "use" }, use, ` use [${table.name}]`));
+    }
+    if (!used) return box;
+    const [shown, more] = [[], []];
+    for (const key of table.keys) {
+      const value = given?.[key.key];
+      (value !== undefined || key.needed ? shown : more).push(this.field(table, key, value));
+    }
+    box.append(...shown);
+    if (more.length) {
+      const rest = element("details", { id: `more-${table.name}` }, element("summary", { textContent: "more keys" }), ...more);
+      rest.open = open.has(rest.id);
+      box.append(rest);
+    }
+    return box;
+  }
+
+  field(table, key, value) {
+    const path = `${table.name}.${key.key}`;
+    const id = `field-${table.name}-${key.key}`;
+    const input = this.input(key, id, value);
+    const label = element("label", { htmlFor: id, textContent: words(key.key), title: key.help });
+    const wrong = element("p", { className: "wrong", id: `${id}-wrong`, hidden: true });
+    const box = element("div", { className: "field" }, label, input);
+    const field = { box, input, wrong, slider: null };
+    input.addEventListener("change", () => {
+      this.tell(table, key, field, performance.now());
+      if (field.slider) this.fit(field, key);
+    });
+    if (key.slider && !["numerics", "publication"].includes(table.name) && key.kind !== "whole") this.slide(table, key, field);
+    box.append(wrong);
+    this.fields.set(path, field);
+    return box;
+  }
+
+  input(key, id, value) {
+    const described = { id, title: key.help };
+    if (key.kind === "choice" || key.kind === "switch") {
+      const choices = key.kind === "switch" ? ["true", "false"] : key.choices;
+      const select = element("select", described);
+      if (!key.needed) select.append(element("option", { value: "", textContent: key.default === null ? "–" : `– (${key.default})` }));
+      select.append(...choices.map((choice) => element("option", { value: choice, textContent: choice })));
+      select.value = value === undefined ? "" : String(value);
+      return select;
+    }
+    const shown = value === undefined ? "" : Array.isArray(value) ? value.join(", ") : String(value);
+    const example = Array.isArray(key.example) ? key.example.join(", ") : String(key.example ?? "");
+    const input = element("input", { ...described, type: "text", value: shown, placeholder: String(key.default ?? `e.g. ${example}`) });
+    if (key.among.length) {
+      const list = element("datalist", { id: `${id}-list` }, ...key.among.map((one) => element("option", { value: one })));
+      document.getElementById(list.id)?.remove();
+      document.body.append(list);
+      input.setAttribute("list", list.id);
+    }
+    return input;
+  }
+
+  slide(table, key, field) {
+    const slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, id: `${field.input.id}-slider` });
+    slider.setAttribute("aria-label", `${words(table.name)} ${words(key.key)}`);
+    field.slider = slider;
+    field.box.append(slider);
+    this.fit(field, key);
+    slider.addEventListener("input", () => {
+      const since = performance.now();
+      const value = short(field.span.value(slider.value / STEPS), 4);
+      field.input.value = field.span.unit ? `${value} ${field.span.unit}` : value;
+      slider.setAttribute("aria-valuetext", field.input.value);
+      this.tell(table, key, field, since);
+    });
+  }
+
+  // The slider's span about what the field holds; no slider for what is no number above 0.
+  fit(field, key) {
+    const { slider, input } = field;
+    const given = parted(input.value);
+    field.span = given && span(key.slider, ...given);
+    slider.hidden = !field.span;
+    if (!field.span) return;
+    slider.value = Math.round(STEPS * field.span.share(given[0]));
+    slider.setAttribute("aria-valuetext", input.value);
+  }
+
+  tell(table, key, field, since) {
+    this.changed(table.name, key.key, valueOf(key, field.input.value), since);
+  }
+
+  // Say at a field what is wrong with it, or at none.
+  refuse(refusal) {
+    for (const { input, wrong } of this.fields.values()) {
+      wrong.hidden = true;
+      wrong.textContent = "";
+      input.removeAttribute("aria-invalid");
+      input.removeAttribute("aria-describedby");
+    }
+    const field = refusal?.key && this.fields.get(refusal.key);
+    if (!field) return false;
+    field.wrong.textContent = refusal.message;
+    field.wrong.hidden = false;
+    field.input.setAttribute("aria-invalid", "true");
+    field.input.setAttribute("aria-describedby", field.wrong.id);
+    for (let around = field.box.parentElement; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
+    return true;
+  }
+}
+
+function valueOf(key, text) {
+  if (text.trim() === "") return undefined;
+  if (key.kind === "switch") return text === "true";
+  if (key.kind === "list") return text.split(",").map((one) => one.trim()).filter(Boolean);
+  const number = Number(text);
+  if (["number", "whole"].includes(key.kind) && Number.isFinite(number)) return number;
+  return text;
+}
+
+// How a slider's share, 0 to 1, and a value belong together; null where it cannot slide.
+function span(spec, value, unit) {
+  if (spec.scale === "linear" && unit === spec.unit) {
+    const edge = 0.005 * (spec.high - spec.low); // the ends are other kinds of case: dry, saturated
+    return linear(spec.low + edge, spec.high - edge, unit);
+  }
+  if (!(value > 0)) return null;
+  const low = Math.max(value / FACTOR, spec.low ?? 0);
+  const high = Math.min(value * FACTOR, spec.high ?? Infinity);
+  if (spec.scale === "linear") return linear(0.5 * value, 1.5 * value, unit);
+  const decades = Math.log(high / low);
+  return { unit, value: (share) => low * Math.exp(share * decades), share: (one) => clip(Math.log(one / low) / decades) };
+}
+
+const linear = (low, high, unit) => ({
+  unit, value: (share) => low + share * (high - low), share: (one) => clip((one - low) / (high - low)),
+});
+
+const clip = (share) => Math.min(Math.max(share, 0), 1);

@@ -1,0 +1,169 @@
+// Everything that shows answers: charts, verdicts, ledger, measures, warnings.
+
+import { Chart, tint } from "/static/charts.js";
+import { amount, short } from "/static/units.js";
+
+const MEASURES = [
+  ["impact speed", (a) => amount(a.measures.impact_speed, "m/s")],
+  ["impacts", (a) => amount(a.motion.impacts)],
+  ["sticks", (a) => (a.measures.captured ? "yes" : "no")],
+  ["time to capture", (a) => amount(a.measures.capture_time, "s")],
+  ["time to rest", (a) => amount(a.measures.stiction_time, "s")],
+  ["first restitution", (a) => amount(a.measures.restitution[0])],
+  ["first logarithmic decrement", (a) => amount(a.measures.log_decrement[0])],
+  ["first power loss", (a) => amount(a.measures.power_loss[0], "W")],
+  ["pull-off force", (a) => amount(a.curve.pull_off, "N")],
+  ["work of separation", (a) => amount(a.curve.work_of_separation, "J")],
+  ["loss in and out", (a) => amount(a.curve.loss, "J")],
+  ["energy at release", (a) => amount(a.ledger.initial, "J")],
+  ["balance closes to", (a) => `${(a.ledger.closure ?? NaN).toExponential(1)} of the impact energy`],
+  ["adhesion law", (a) => a.regime.adhesion_law ?? "–"],
+  ["liquid", (a) => a.regime.wetting ?? "–"],
+];
+
+const text = (tag, words, properties = {}) => Object.assign(document.createElement(tag), { textContent: words, ...properties });
+
+export class Panels {
+  constructor() {
+    this.charts = Object.fromEntries(["motion", "curve", "forces", "energy", "rebounds"].map((id) => [id, new Chart(id)]));
+    this.whole = false; // whether forces are shown over the whole motion
+    this.button = text("button", "whole motion", { type: "button" });
+    this.button.setAttribute("aria-pressed", "false");
+    document.querySelector("#forces figcaption").append(this.button);
+  }
+
+  restyle() {
+    Object.values(this.charts).forEach((chart) => chart.restyle());
+  }
+
+  show(designs) {
+    const answered = designs.filter((one) => one.answer);
+    this.verdicts(designs);
+    if (!answered.length) return;
+    const two = answered.length > 1;
+    const named = (label, design) => (two ? `${design.letter} ${label}` : label);
+    const group = (design, x, series) => ({
+      x, lines: series.map(([label, y, colour]) => ({ label: named(label, design), y, colour, dashed: design.letter === "B" })),
+    });
+    this.motion(answered, group);
+    this.forces(answered, group);
+    this.energies(answered, group);
+    this.curve(answered, group);
+    this.rebounds(answered, group);
+    ledger(answered, two);
+    measures(answered, two);
+    warnings(answered, two);
+    document.querySelectorAll("#panels figure, #ledger").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal)));
+  }
+
+  verdicts(designs) {
+    const lines = designs.flatMap((design) => {
+      const who = designs.length > 1 ? `${design.letter}: ` : "";
+      const said = design.answer ? [text("p", `${who}${design.answer.verdict}`, { className: "said" })] : [];
+      const wrong = design.refusal ? [text("p", `${who}${design.refusal.message}`, { className: "wrong" })] : [];
+      return [...said, ...wrong];
+    });
+    const place = document.getElementById("verdicts");
+    const now = lines.map((one) => one.textContent).join("\n");
+    if (place.innerText.trim() !== now || !lines.length) place.replaceChildren(...lines);
+  }
+
+  motion(answered, group) {
+    const told = answered.map(({ answer, letter }) => `${letter}: ${answer.motion.drawn} of ${answer.motion.impacts} impacts drawn`);
+    this.charts.motion.show({
+      groups: answered.map((d) => group(d, d.answer.motion.time, [["separation", d.answer.motion.separation, "#0072B2"]])),
+      axes: { x: ["time", "s"], y: ["separation", "m"] }, spoken: told.join("; "),
+    });
+  }
+
+  forces(answered, group) {
+    const windows = answered.map((d) => d.answer.motion.first_contact);
+    const range = this.whole ? null : [Math.min(...windows.map((w) => w[0])), Math.max(...windows.map((w) => w[1]))];
+    document.querySelector("#forces figcaption").firstChild.textContent = this.whole ? "Forces" : "Forces, first contact";
+    this.charts.forces.show({
+      groups: answered.map((d) => group(d, d.answer.motion.time, colours(d, d.answer.motion.forces, ["total"]))),
+      axes: { x: ["time", "s"], y: ["force", "N"] }, range, spoken: "Positive forces push the body away.",
+    });
+  }
+
+  energies(answered, group) {
+    this.charts.energy.show({
+      groups: answered.map((d) => group(d, d.answer.motion.time, colours(d, d.answer.motion.energies))),
+      axes: { x: ["time", "s"], y: ["energy", "J"] }, spoken: "Kinetic, potential, stored, and lost by mechanism.",
+    });
+  }
+
+  curve(answered, group) {
+    const told = answered.map(({ answer, letter }) => `${letter}: pull-off ${amount(answer.curve.pull_off, "N")}, loss ${amount(answer.curve.loss, "J")}`);
+    this.charts.curve.show({
+      groups: answered.map((d) => group(d, d.answer.curve.separation, [
+        ["approach", d.answer.curve.approach, "#0072B2"], ["parting", d.answer.curve.parting, "#D55E00"],
+      ])),
+      axes: { x: ["rigid separation", "m"], y: ["force", "N"] }, spoken: told.join("; "),
+    });
+  }
+
+  rebounds(answered, group) {
+    this.charts.rebounds.show({
+      groups: answered.map((d) => {
+        const heights = d.answer.measures.rebound_height.map((one) => one ?? NaN);
+        return group(d, heights.map((_, number) => number + 1), [["height", heights, "#E69F00"]]);
+      }),
+      axes: { x: ["impact", ""], y: ["rebound height", "m"] }, points: true, spoken: "Above static equilibrium.",
+    });
+  }
+}
+
+// Series of a part of the answer; a force that is nothing throughout is left out.
+function colours(design, part, without = []) {
+  return Object.entries(part)
+    .filter(([name, values]) => !without.includes(name) && values.some((value) => value !== 0))
+    .map(([name, values]) => [name.replace("lost_", "lost to ").replaceAll("_", " "), values, design.answer.colours[name]]);
+}
+
+function ledger(answered, two) {
+  document.getElementById("bars").replaceChildren(...answered.flatMap(({ answer, letter }) => {
+    const { initial, lost } = answer.ledger;
+    const parts = Object.entries(lost).map(([name, energy]) => [`lost to ${name}`, energy, tint(answer.colours[`lost_${name}`])]);
+    const gone = parts.reduce((sum, [, energy]) => sum + energy, 0);
+    const whole = Math.max(initial, gone);
+    parts.push(["kept", whole - gone, "transparent"]);
+    const bar = text("div", "", { className: "bar" });
+    bar.setAttribute("aria-hidden", "true");
+    const list = document.createElement("ul");
+    for (const [name, energy, colour] of parts) {
+      const share = text("span", "");
+      share.style.width = `${(100 * energy) / whole}%`;
+      share.style.background = colour;
+      bar.append(share);
+      const mark = document.createElement("i");
+      mark.style.background = colour;
+      const item = document.createElement("li");
+      item.append(mark, `${name}: ${amount(energy, "J")} (${short((100 * energy) / whole, 3)} %)`);
+      list.append(item);
+    }
+    return [...(two ? [text("strong", letter)] : []), bar, list];
+  }));
+}
+
+function measures(answered, two) {
+  const rows = MEASURES.map(([name, of]) => {
+    const row = document.createElement("tr");
+    row.append(text("th", name, { scope: "row" }), ...answered.map(({ answer }) => text("td", of(answer))));
+    return row;
+  });
+  const head = document.createElement("tr");
+  head.append(text("td", ""), ...answered.map(({ letter, name }) => text("th", `${letter}: ${name}`, { scope: "col" })));
+  const [top, body] = ["thead", "tbody"].map((tag) => document.createElement(tag));
+  if (two) top.append(head);
+  body.append(...rows);
+  document.getElementById("measures").replaceChildren(...(two ? [top] : []), body);
+}
+
+// Every warning once, with the designs that it holds for.
+function warnings(answered, two) {
+  const whose = new Map();
+  for (const { answer, letter } of answered) for (const one of answer.warnings) whose.set(one, [...(whose.get(one) ?? []), letter]);
+  const lines = [...whose].map(([one, letters]) => text("li", two ? `${letters.join(", ")}: ${one}` : one));
+  document.getElementById("warning-list").replaceChildren(...(lines.length ? lines : [text("li", "No warnings: the models hold here.")]));
+}

@@ -1,0 +1,391 @@
+"""The page in a real browser: every item that it promises, driven as a user would."""
+
+import base64
+import contextlib
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Error, Page, expect
+
+import asperity
+from asperity.case import Case, load
+from asperity.case.problems import tables_of
+from asperity.case.reading import builtin_text
+from asperity.web.form import form
+from browser import needed, served
+
+CASE = builtin_text("published-exact").replace('"half-space"', '"rigid"')
+PATIENT = 90_000  # ms: a first answer compiles
+
+
+@pytest.fixture(scope="session")
+def browser_type_launch_args():
+    return {"executable_path": needed(), "args": ["--no-sandbox"]}
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "drop.toml"
+    path.write_text(CASE)
+    return path
+
+
+@pytest.fixture(scope="module")
+def address(file):
+    with served(file) as found:
+        yield found
+
+
+@pytest.fixture
+def asked() -> list[str]:
+    """Addresses that the page asked for."""
+    return []
+
+
+@pytest.fixture
+def page(page: Page, address: str, asked: list[str]) -> Page:
+    wrong = []
+    page.set_default_timeout(PATIENT)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(address)
+    page.wait_for_selector("#verdicts .said")
+    page.wait_for_selector("#map canvas")
+    yield page
+    ours = [line for line in wrong if "422" not in line]  # the browser logs every refusal
+    assert ours == []
+
+
+def settled(page: Page) -> None:
+    """Wait until what is shown is the answer to the newest question."""
+    page.wait_for_function(
+        "() => document.body.dataset.busy === 'no' && asperity.designs().every("
+        "(one) => one.shown === one.asked && !one.running)"
+    )
+
+
+def write(page: Page, key: str, text: str) -> None:
+    field = page.locator(f"#field-{key.replace('.', '-')}")
+    field.fill(text)
+    field.press("Enter")
+    field.blur()
+
+
+def slide(page: Page, key: str, share: float) -> None:
+    page.locator(f"#field-{key.replace('.', '-')}-slider").evaluate(
+        "(slider, to) => { slider.value = to; slider.dispatchEvent(new Event('input')); }",
+        round(1000 * share),
+    )
+
+
+def drawn(page: Page, panel: str) -> int:
+    """Pixels of a panel's picture that are not blank."""
+    return page.locator(f"#{panel} canvas").evaluate(
+        "(c) => c.getContext('2d').getImageData(0, 0, c.width, c.height)"
+        ".data.reduce((sum, value, n) => sum + (n % 4 === 3 && value > 0 ? 1 : 0), 0)"
+    )
+
+
+def picture(page: Page, panel: str) -> str:
+    return page.locator(f"#{panel} canvas").evaluate("(c) => c.toDataURL()")
+
+
+def state(page: Page) -> list[dict]:
+    return page.evaluate("() => JSON.parse(JSON.stringify(asperity.designs()))")
+
+
+def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(page, asked):
+    for panel in ("motion", "forces", "energy", "curve", "rebounds", "map"):
+        assert drawn(page, panel) > 2000, panel
+        label = page.locator(f"#{panel} [role=img]").get_attribute("aria-label")
+        assert label, panel
+    result = asperity.solve(load(CASE))
+    expect(page.locator("#verdicts .said")).to_have_text(
+        f"still bounces after {len(result.measures['rebound_height'])} rebounds, where the run was "
+        "stopped; menisci take all of the energy lost"
+    )
+    assert page.locator("#warning-list li").all_text_contents() == result.warnings
+    expect(page.locator("#bars")).to_contain_text("lost to capillary")
+    legend = page.locator("#curve .legend").inner_text().split("\n")
+    assert legend == ["approach", "parting"]
+    expect(page.locator("#measures")).to_contain_text("487.9 µm/s")
+    here = page.url.split("#")[0]
+    assert all(one.startswith((here, "blob:", "data:")) for one in asked)
+
+
+def test_the_form_has_every_key_of_the_schema(page):
+    for table in form():
+        box = page.locator(f"#use-{table['name']}")
+        if not table["needed"] and not box.is_checked():
+            page.locator(f"#table-{table['name']}").evaluate("(one) => { one.open = true; }")
+            box.check()
+    found = set(page.locator("[id^=field-]").evaluate_all("(all) => all.map((one) => one.id)"))
+    for name, field in Case.model_fields.items():
+        for table in tables_of(field.annotation):
+            for key in table.model_fields if name not in ("output", "materials") else ():
+                assert f"field-{name}-{key}" in found
+
+
+def test_a_slider_gives_new_curves_and_the_same_numbers_as_the_program(page):
+    before = picture(page, "curve")
+    slide(page, "roughness.rms_height", 0.47)
+    settled(page)
+    assert picture(page, "curve") != before
+    text = page.locator("#field-roughness-rms_height").input_value()
+    assert text.endswith(" nm")
+    assert float(text.split()[0]) < 10.5
+    case = load(CASE).replace({"roughness.rms_height": text})
+    shown = page.evaluate("() => asperity.designs()[0].answer.measures.restitution[0]")
+    assert shown == asperity.solve(case).measures["restitution"][0]
+    assert page.evaluate("() => asperity.latencies.length") >= 2
+
+
+def test_a_slider_moves_by_keyboard_and_says_its_value(page):
+    slider = page.get_by_role("slider", name="roughness rms height")
+    slider.focus()
+    slider.press("ArrowLeft")
+    settled(page)
+    value = page.locator("#field-roughness-rms_height").input_value()
+    assert value != "10.5 nm"
+    assert slider.get_attribute("aria-valuetext") == value
+
+
+def test_every_control_has_a_name_and_the_keyboard_reaches_it(page):
+    page.locator("#compare").click()
+    settled(page)
+    nameless = page.evaluate(
+        "() => [...document.querySelectorAll('input, select, button, textarea, summary')].filter("
+        "(one) => !(one.labels?.length || one.getAttribute('aria-label') || "
+        "one.textContent.trim())).map((one) => one.outerHTML)"
+    )
+    assert nameless == []
+    page.locator(".skip").focus()
+    reached = []
+    for _ in range(14):
+        reached.append(
+            page.evaluate("() => document.activeElement.id || document.activeElement.className")
+        )
+        page.keyboard.press("Tab")
+    for wanted in ("case", "own-case", "own-surface", "compare", "copy-case", "copy-link", "theme"):
+        assert wanted in reached
+
+
+def test_a_bad_value_is_said_beside_its_field_and_the_last_picture_stays(page):
+    before, verdict = picture(page, "motion"), page.locator("#verdicts .said").inner_text()
+    write(page, "body.radius", "-5 um")
+    wrong = page.locator("#field-body-radius-wrong")
+    expect(wrong).to_contain_text("`radius` must be positive")
+    field = page.locator("#field-body-radius")
+    assert field.get_attribute("aria-invalid") == "true"
+    assert field.get_attribute("aria-describedby") == "field-body-radius-wrong"
+    assert picture(page, "motion") == before
+    assert page.locator("#verdicts .said").inner_text() == verdict
+    write(page, "body.radius", "50 um")
+    settled(page)
+    expect(wrong).to_be_hidden()
+    assert page.locator("#verdicts .wrong").count() == 0
+
+
+def test_a_release_within_contact_is_said_at_its_own_field(page):
+    write(page, "impact.release_gap", "30 nm")
+    expect(page.locator("#field-impact-release_gap-wrong")).to_contain_text("outside contact")
+
+
+def test_two_designs_stand_side_by_side(page):
+    page.locator("#compare").click()
+    write(page, "capillary.humidity", "0.3")
+    settled(page)
+    assert page.locator("#verdicts .said").count() == 2
+    heads = page.locator("#measures thead th").all_text_contents()
+    assert heads == ["A: drop", "B: drop"]
+    assert "B parting" in page.locator("#curve .legend").inner_text()
+    first, second = state(page)
+    assert first["tables"]["capillary"]["humidity"] == 0.6
+    assert second["tables"]["capillary"]["humidity"] == 0.3
+    page.get_by_label("A", exact=True).check()
+    assert page.locator("#field-capillary-humidity").input_value() == "0.6"
+    page.locator("#compare").click()
+    assert page.locator("#verdicts .said").count() == 1
+
+
+def test_a_built_in_case_and_a_case_of_ones_own_can_be_chosen(page, tmp_path):
+    page.locator("#case").select_option("published")
+    settled(page)
+    assert page.locator("#use-publication").is_checked()
+    own = tmp_path / "mine.toml"
+    own.write_text(CASE.replace('"50 um"', '"40 um"'))
+    page.locator("#own-case").set_input_files(own)
+    expect(page.locator("#notice")).to_have_text("mine.toml is open.")
+    settled(page)
+    assert page.locator("#field-body-radius").input_value() == "40 um"
+    own.write_text("[body\n")
+    page.locator("#own-case").set_input_files(own)
+    expect(page.locator("#notice")).to_contain_text("not TOML")
+    assert page.locator("#field-body-radius").input_value() == "40 um"
+
+
+def test_copy_case_gives_what_the_program_takes(page):
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    write(page, "body.radius", "42 um")
+    settled(page)
+    page.locator("#copy-case").click()
+    text = page.locator("#text-content")
+    expect(text).to_have_value(re.compile("42 um"))
+    given = text.input_value()
+    assert page.evaluate("() => navigator.clipboard.readText()") == given
+    assert load(given) == load(CASE).replace({"body.radius": "42 um"})
+    assert tomllib.loads(given)["body"]["radius"] == "42 um"
+    page.locator("#text-close").click()
+
+
+def test_a_link_keeps_both_designs(page):
+    write(page, "body.radius", "42 um")
+    page.locator("#compare").click()
+    write(page, "capillary.humidity", "0.3")
+    settled(page)
+    page.locator("#copy-link").click()
+    link, before = page.url, state(page)
+    assert "#" in link
+    page.goto("about:blank")
+    page.goto(link)
+    page.wait_for_selector("#verdicts .said")
+    settled(page)
+    assert state(page) == before
+    assert page.locator("#field-body-radius").input_value() == "42 um"
+    page.goto("about:blank")
+    page.goto(link.split("#")[0] + "#nonsense")
+    expect(page.locator("#notice")).to_contain_text("does not hold a whole state")
+
+
+def test_files_are_downloaded(page, tmp_path):
+    page.locator("#downloads summary").click()
+    for name in ("motion.png", "motion.csv", "record.nc"):
+        with page.expect_download() as begun:
+            page.get_by_role("button", name=name, exact=True).click()
+        begun.value.save_as(tmp_path / name)
+    assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")
+    head = (tmp_path / "motion.csv").read_text().split("\n")[0]
+    assert head.startswith("time [s],separation [m]")
+    assert asperity.read(tmp_path / "record.nc").case == load(CASE)
+
+
+def test_a_surface_dropped_in_becomes_the_roughness(page, tmp_path):
+    heights = np.random.default_rng(1).normal(0.0, 5e-9, (64, 64))
+    text = "# size[um] 4 4\n# unit m\n" + "\n".join(
+        " ".join(f"{value:.6e}" for value in row) for row in heights
+    )
+    page.evaluate(
+        """([name, content]) => {
+          const bytes = Uint8Array.from(atob(content), (one) => one.charCodeAt(0));
+          const data = new DataTransfer();
+          data.items.add(new File([bytes], name));
+          document.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true}));
+        }""",
+        ["wafer.csv", base64.b64encode(text.encode()).decode()],
+    )
+    expect(page.locator("#notice")).to_have_text("wafer.csv is the surface now.")
+    assert page.locator("#field-roughness-files").input_value() == "wafer.csv"
+    write(page, "impact.release_gap", "200 nm")
+    settled(page)
+    assert page.locator("#verdicts .wrong").all_text_contents() == []
+    surface = page.evaluate("() => asperity.designs()[0].answer.surface")
+    assert surface["files"][0]["file"] == "wafer.csv"
+    assert surface["surface_rms_height"] == pytest.approx(5e-9, rel=0.05)
+    bad = tmp_path / "bad.csv"
+    bad.write_text("1 2 3\n4 5 6\n7 8 9\n")
+    page.locator("#own-surface").set_input_files(bad)
+    expect(page.locator("#field-roughness-files-wrong")).to_contain_text("must have a unit")
+
+
+def test_a_stale_answer_never_overwrites_a_newer_one(page):
+    held = []
+
+    def hold(route):
+        if not held:
+            held.append(route)  # the first answer comes last
+        else:
+            route.continue_()
+
+    page.route("**/api/explore", hold)
+    write(page, "body.radius", "41 um")
+    page.wait_for_timeout(800)  # more than the page's patience with a running question
+    write(page, "body.radius", "43 um")
+    settled(page)
+    said = page.locator("#measures").inner_text()
+    assert page.evaluate("() => asperity.designs()[0].tables.body.radius") == "43 um"
+    with contextlib.suppress(Error):  # the page has let go of it
+        held[0].continue_()
+    page.wait_for_timeout(500)
+    assert page.locator("#measures").inner_text() == said
+    first = asperity.solve(load(CASE).replace({"body.radius": "43 um"}))
+    shown = page.evaluate("() => asperity.designs()[0].answer.measures.impact_speed")
+    assert shown == first.measures["impact_speed"]
+
+
+def test_a_slow_case_shows_progress_and_can_be_cancelled(page):
+    page.route("**/api/explore", lambda route: None)  # an answer that never comes
+    before = picture(page, "motion")
+    write(page, "body.radius", "41 um")
+    expect(page.locator("#work")).to_be_visible()
+    expect(page.get_by_role("progressbar")).to_be_visible()
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#work")).to_be_hidden()
+    expect(page.locator("#notice")).to_contain_text("Cancelled")
+    assert picture(page, "motion") == before
+    page.unroute("**/api/explore")
+    write(page, "body.radius", "42 um")
+    settled(page)
+    assert page.locator("#verdicts .wrong").count() == 0
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_nothing_runs_off_the_screen(page, width):
+    page.set_viewport_size({"width": width, "height": 800})
+    page.locator("#compare").click()
+    settled(page)
+    assert page.evaluate("() => document.documentElement.scrollWidth") <= width
+    for panel in ("motion", "map"):
+        box = page.locator(f"#{panel} canvas").bounding_box()
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= width
+    expect(page.locator("#verdicts")).to_be_in_viewport()
+
+
+def test_letters_stand_out_in_light_and_dark(page):
+    for _ in range(2):
+        colours = page.evaluate(
+            "() => Object.fromEntries(['paper', 'panel', 'ink', 'quiet', 'accent', 'wrong'].map("
+            "(name) => [name, getComputedStyle(document.documentElement)"
+            ".getPropertyValue('--' + name).trim()]))"
+        )
+        for letters in ("ink", "quiet", "wrong"):
+            for ground in ("paper", "panel"):
+                assert contrast(colours[letters], colours[ground]) >= 4.5, (letters, ground)
+        assert contrast(colours["accent"], colours["paper"]) >= 3.0
+        before = picture(page, "motion")
+        page.locator("#theme").click()
+        assert picture(page, "motion") != before
+
+
+def contrast(one: str, other: str) -> float:
+    """Ratio of luminances, WCAG 2.2."""
+
+    def luminance(colour: str) -> float:
+        parts = [int(colour[n : n + 2], 16) / 255 for n in (1, 3, 5)]
+        linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_the_state_in_a_link_is_plain_json(page):
+    page.locator("#copy-link").click()
+    letters = page.url.split("#")[1]
+    text = base64.urlsafe_b64decode(letters + "=" * (-len(letters) % 4))
+    assert json.loads(text)[0]["tables"] == tomllib.loads(CASE)
