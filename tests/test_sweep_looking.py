@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 import asperity
-from asperity.cli import looking
+from asperity.cli import exporting, looking
 from asperity.errors import InputError, OutputError
 from asperity.plots import style, sweep
 from asperity.plots.sweep.maps import boundary
@@ -745,11 +745,11 @@ def test_held_axes_of_the_command_are_key_and_value(
 
 def test_export_wants_one_kind_of_file(stores: dict[str, Path]):
     with pytest.raises(InputError, match="got none"):
-        looking.export(str(stores["grid"]))
+        exporting.export(str(stores["grid"]))
     with pytest.raises(InputError, match="--output and --restitution"):
-        looking.export(str(stores["grid"]), output="a.csv", restitution="b.csv")
+        exporting.export(str(stores["grid"]), output="a.csv", restitution="b.csv")
     with pytest.raises(InputError, match="of a case; got a store"):
-        looking.export(str(stores["grid"]), force_table="f.table")
+        exporting.export(str(stores["grid"]), force_table="f.table")
 
 
 def test_export_writes_restitution_at_held_values(
@@ -757,6 +757,6 @@ def test_export_writes_restitution_at_held_values(
 ):
     file = tmp_path / "e.csv"
     held = [f"{ROUGH}=10 nm", f"{HUMID}=0.2", "adhesion.model=none"]
-    looking.export(str(stores["many"]), restitution=str(file), at=held)
-    assert capsys.readouterr().out == f"written to {file}\n"
+    exporting.export(str(stores["many"]), restitution=str(file), at=held)
+    assert capsys.readouterr().out.split() == ["written", "to", str(file)]
     assert len(file.read_text().splitlines()) == 4

@@ -13,6 +13,7 @@ import contextlib
 import hashlib
 import os
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
@@ -25,6 +26,9 @@ import jaxlib.version
 import numpy as np
 
 from ._jax import jax
+
+KEPT, TRACED = "/asperity/program/kept", "/asperity/program/traced"
+"""Names under which JAX's monitoring is told of programs: found in their traced form, or traced."""
 
 P = ParamSpec("P")
 Answer = TypeVar("Answer")
@@ -128,10 +132,13 @@ class Program(Generic[P, Answer]):
             return traced.lower(shapes)
         name = f"{self._function.__module__}.{self._function.__qualname__} {key}"
         file = folder / f"{hashlib.sha256((_ground() + name).encode()).hexdigest()}.jax"
+        begun = time.perf_counter()
         exported = _read(file)
+        told = TRACED if exported is None else KEPT
         if exported is None:
             exported = jax.export.export(traced)(shapes)
             _write(file, exported.serialize())
+        jax.monitoring.record_event_duration_secs(told, time.perf_counter() - begun)
         return jax.jit(exported.call, compiler_options=self._options).lower(shapes)
 
 

@@ -65,7 +65,7 @@ def solve(
     SimulationError
         If the numerics fail; its ``partial`` is the result so far.
     """
-    tell = progress or (lambda fraction, text: None)
+    tell = progress or _silently
     problem, flight = _flown(case, tell, stop)
     result = _told(case, name, problem, flight, tell, None)
     tell(1.0, "done")
@@ -97,7 +97,7 @@ def explore(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or (lambda fraction, text: None)
+    tell = progress or _silently
     problem, flight = _flown(case, tell, stop)
     result = _told(case, name, problem, flight, tell, most)
     if flight.outcome is Outcome.FAILED:
@@ -112,9 +112,8 @@ def explore(
 def _flown(case: Case, tell: Report, stop: threading.Event | None) -> tuple[Problem, Flight]:
     """What is built from a case, and its motion."""
     problem = build(case)
-    tell(0.02, "force curves")
     limits = Limits.of(case.tolerance)
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, drawn=True)
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=True)
     _check_release(problem, table)
     if problem.late is None and problem.creep is None:
         return problem, _fly(problem.body, contact, table, datum, limits, tell, stop)
@@ -157,10 +156,9 @@ def curve(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or (lambda fraction, text: None)
-    tell(0.1, "force curves")
+    tell = progress or _silently
     problem = build(case)
-    contact, motion = _first_impact(case, problem)
+    contact, motion = first_impact(case, problem, tell)
     check_surface(case, problem, AtDepth.of(contact, motion))
     tell(0.6, "parting")
     drawn = trace(contact, motion.table, motion.impacts)
@@ -187,12 +185,15 @@ def assess(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or (lambda fraction, text: None)
-    tell(0.1, "first impact")
+    tell = progress or _silently
     problem = build(case)
-    contact, motion = _first_impact(case, problem)
+    contact, motion = first_impact(case, problem, tell)
     tell(1.0, "done")
     return assessment_of(case, name, problem, contact, motion)
+
+
+def _silently(fraction: float, text: str) -> None:
+    """Report nothing."""
 
 
 def _kept_elastic(case: Case) -> float | None:
@@ -205,18 +206,32 @@ def _kept_elastic(case: Case) -> float | None:
     elastic = case.model_copy(update={"plasticity": None})
     problem = build(elastic)
     try:
-        contact, motion = _first_impact(elastic, problem)
+        contact, motion = first_impact(elastic, problem)
     except (InputError, SimulationError):
         return math.nan  # it may be released within contact, or pull too hard to be solved
     return first_restitution(Flight(motion, contact, Outcome.MAX_IMPACTS), problem.body)
 
 
-def _first_impact(case: Case, problem: Problem) -> tuple[Contact, Motion]:
-    """The contact with its curves, and the motion as far as the first impact."""
+def first_impact(case: Case, problem: Problem, tell: Report = _silently) -> tuple[Contact, Motion]:
+    """The contact with its curves, and the motion as far as the first impact.
+
+    Parameters
+    ----------
+    case, problem
+        A case, and what was built from it.
+    tell
+        As ``progress`` of :func:`solve`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, drawn=False)
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=False)
     _check_release(problem, table)
     body = problem.body
+    tell(0.3, "first impact")
     first, origin = _start(contact, body, table)
     progress, rows = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
     impacts = jax.tree_util.tree_map(np.asarray, rows)
@@ -224,17 +239,20 @@ def _first_impact(case: Case, problem: Problem) -> tuple[Contact, Motion]:
 
 
 def _prepared(
-    problem: Problem, tolerance: float, limits: Limits, *, drawn: bool
+    problem: Problem, tolerance: float, limits: Limits, tell: Report, *, drawn: bool
 ) -> tuple[Contact, Table, Datum]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
     Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
     for factor in _REFINEMENTS:
+        tell(0.02, "compilation")
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn)
-        table, datum = _prepare(contact, problem.body)
+        prepared = _prepare.ready(contact, problem.body)
+        tell(0.06, "force curves")
+        table, datum = prepared()
         if float(table.error) <= max(tolerance, contact.blur):
             break
     else:
@@ -304,7 +322,12 @@ def _fly(
     progress, origin = _start(contact, body, table)
     chunks: list[Impacts] = []
     while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
-        progress, rows = _fly_some(contact, body, table, datum, origin, progress, limits, _CHUNK)
+        if not chunks:
+            tell(0.08, "compilation")
+        fly_on = _fly_some.ready(contact, body, table, datum, origin, progress, limits, _CHUNK)
+        if not chunks:
+            tell(0.1, "motion")
+        progress, rows = fly_on()
         chunks.append(jax.tree_util.tree_map(np.asarray, rows))
         count = int(progress.made)
         tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
@@ -326,6 +349,7 @@ def _fly_stepped(
 ) -> Flight:
     """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
     body, creep, late = problem.body, problem.creep, problem.late
+    tell(0.1, "motion")
 
     def made(count: int) -> None:
         tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")

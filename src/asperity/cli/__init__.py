@@ -10,40 +10,30 @@ from typing import Annotated, Any
 
 import typer
 
+from asperity.cli import completing
 from asperity.cli.arguments import (
-    Align,
     CaseName,
-    Channel,
-    CutOff,
-    Degree,
-    Direction,
+    Cases,
     Folder,
     Force,
-    ForceFile,
-    Heights,
-    Hurst,
+    InstallCompletion,
     Json,
-    Kurtosis,
-    Long,
-    MadeFile,
-    MadeSize,
+    Materials,
     Missing,
-    Points,
+    OnlyJson,
     Quiet,
     Refit,
-    Remove,
-    RmsHeight,
-    RmsSlope,
-    RollOff,
-    Seed,
-    Short,
+    ShowCompletion,
     Size,
-    Skewness,
-    SurfaceFiles,
     Tables,
     TwoSurfaces,
     Unit,
+    Verbose,
+    Version,
+    VersionJson,
 )
+from asperity.cli.checking import doctor
+from asperity.cli.measuring import add_surfaces_to
 from asperity.cli.studying import add_to
 from asperity.cli.terminal import Commands
 
@@ -58,24 +48,18 @@ app = typer.Typer(
 )
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"asperity {version('asperity')}")
-        raise typer.Exit
-
-
-@app.callback()
+@app.callback(invoke_without_command=True)
 def asperity(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
-        ),
-    ] = False,
+    context: typer.Context,
+    version: Version = False,
+    as_json: VersionJson = False,
+    show_completion: ShowCompletion = None,
+    install_completion: InstallCompletion = None,
 ) -> None:
     """Impact of a small body on a rough surface: bounce or stick, and where the energy goes."""
+    from asperity.cli.asking import answer
+
+    answer(context, version, as_json, show_completion, install_completion)
 
 
 @app.command()
@@ -85,12 +69,15 @@ def run(
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Compute a motion: bounce or stick.
 
     Writes record.nc, pictures and summary.txt to DIR, ./NAME-out unless given.
     """
-    _compute("solve", case, output=output, force=force, as_json=as_json, quiet=quiet)
+    _compute(
+        "solve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
+    )
 
 
 @app.command()
@@ -100,13 +87,16 @@ def curve(
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Compute force against separation.
 
     In and out, without motion. Writes curve.nc, a picture and curve.txt to DIR, ./NAME-out unless
     given.
     """
-    _compute("curve", case, output=output, force=force, as_json=as_json, quiet=quiet)
+    _compute(
+        "curve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
+    )
 
 
 def _compute(what: str, case: str, **options: Any) -> None:
@@ -118,7 +108,9 @@ def _compute(what: str, case: str, **options: Any) -> None:
 @app.command()
 def regime(
     case: CaseName,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Say which models hold in a case.
 
@@ -126,14 +118,12 @@ def regime(
     """
     from asperity.cli.regimes import tell_regime
 
-    tell_regime(case, as_json=as_json)
+    tell_regime(case, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
 @app.command()
 def adhesion_map(
-    cases: Annotated[
-        list[str], typer.Argument(metavar="CASE...", help="As for run.", show_default=False)
-    ],
+    cases: Cases,
     output: Annotated[
         str | None,
         typer.Option(
@@ -146,6 +136,8 @@ def adhesion_map(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier map.")] = False,
     as_json: Json = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Draw the adhesion map with cases on it.
 
@@ -153,70 +145,12 @@ def adhesion_map(
     """
     from asperity.cli.regimes import draw_map
 
-    draw_map(cases, output=output, force=force, as_json=as_json)
-
-
-@app.command()
-def surface(
-    files: SurfaceFiles,
-    output: Folder = None,
-    size: Size = None,
-    unit: Unit = None,
-    channel: Channel = None,
-    missing: Missing = None,
-    remove: Remove = None,
-    align: Align = None,
-    direction: Direction = None,
-    degree: Degree = None,
-    short: Short = None,
-    long: Long = None,
-    force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Describe a measured surface, or two as one.
-
-    With two files the options hold for both. Writes a one-page picture, surface.txt and
-    surface.json to DIR, ./NAME-out unless given.
-    """
-    from asperity.cli.surfaces import describe
-
-    describe(
-        files, output=output, force=force, as_json=as_json, quiet=quiet,
-        size=size, unit=unit, channel=channel, missing=missing, remove=remove, align=align,
-        direction=direction, degree=degree, short=short, long=long,
+    draw_map(
+        cases, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
     )  # fmt: skip
 
 
-@app.command()
-def generate(
-    file: MadeFile,
-    size: MadeSize = None,
-    points: Points = "512",
-    hurst: Hurst = 0.8,
-    roll_off: RollOff = None,
-    cut_off: CutOff = None,
-    rms_height: RmsHeight = None,
-    rms_slope: RmsSlope = None,
-    seed: Seed = 0,
-    skewness: Skewness = None,
-    kurtosis: Kurtosis = None,
-    heights: Heights = None,
-    force: ForceFile = False,
-    quiet: Quiet = False,
-) -> None:
-    """Make a self-affine random surface.
-
-    Periodic, with Gaussian heights unless another distribution is asked for. An existing file is
-    not overwritten unless --force is given.
-    """
-    from asperity.cli.generating import generate as make
-
-    make(
-        file, force=force, quiet=quiet, size=size, points=points, hurst=hurst, roll_off=roll_off,
-        cut_off=cut_off, rms_height=rms_height, rms_slope=rms_slope, seed=seed,
-        skewness=skewness, kurtosis=kurtosis, heights=heights,
-    )  # fmt: skip
+add_surfaces_to(app)
 
 
 @app.command()
@@ -231,6 +165,7 @@ def reproduce(
     missing: Missing = None,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Compute the seed publication's tables and figures, and audit it.
 
@@ -241,13 +176,14 @@ def reproduce(
 
     compute(
         output=output, force=force, refit=refit, tables=tables, as_json=as_json, quiet=quiet,
-        surfaces=surfaces, size=size, unit=unit, missing=missing,
+        verbose=verbose, surfaces=surfaces, size=size, unit=unit, missing=missing,
     )  # fmt: skip
 
 
 @app.command()
 def init(
     file: Annotated[str, typer.Argument(help="File to write.")] = "case.toml",
+    as_json: OnlyJson = False,
 ) -> None:
     """Write a commented case file.
 
@@ -255,24 +191,29 @@ def init(
     """
     from asperity.cli.listing import write_template
 
-    write_template(file)
+    write_template(file, as_json=as_json)
 
 
 @app.command()
 def materials(
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")] = False,
+    names: Materials = None,
+    as_json: OnlyJson = False,
 ) -> None:
     """List solids, liquids and gases with their sources."""
     from asperity.cli.listing import list_materials
 
-    list_materials(as_json=as_json)
+    list_materials(names or (), as_json=as_json)
 
 
 @app.command()
 def web(
     case: Annotated[
         str,
-        typer.Argument(help="Case to begin with: as for run, but no record.", show_default=False),
+        typer.Argument(
+            help="Case to begin with: as for run, but no record.",
+            show_default=False,
+            autocompletion=completing.case,
+        ),
     ] = "published-exact",
     port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
     host: Annotated[
@@ -303,6 +244,7 @@ def web(
 
 
 add_to(app)
+app.command()(doctor)
 
 
 def main() -> None:

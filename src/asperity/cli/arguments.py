@@ -6,11 +6,42 @@ from typing import Annotated, Any
 
 import typer
 
+from asperity.cli import completing
+from asperity.errors import InputError
+
+
+def _one_voice(ctx: typer.Context, value: bool) -> bool:
+    """Refuse to be quiet and verbose at once; the later of the two options finds the other."""
+    both = value and (ctx.params.get("quiet") or ctx.params.get("verbose"))
+    if both and not ctx.resilient_parsing:
+        raise InputError("`--quiet` must be given without `--verbose`; got both")
+    return value
+
+
 CaseName = Annotated[
     str,
     typer.Argument(
         help="Name of a built-in case (published-exact), a FILE.toml, or a record.nc to repeat.",
         show_default=False,
+        autocompletion=completing.case,
+    ),
+]
+Cases = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="CASE...",
+        help="As for run.",
+        show_default=False,
+        autocompletion=completing.case,
+    ),
+]
+Materials = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[NAME]...",
+        help="Only these.",
+        show_default=False,
+        autocompletion=completing.material,
     ),
 ]
 Folder = Annotated[
@@ -26,13 +57,56 @@ Json = Annotated[
         "--json", help="Print one JSON object, in SI units; write files only if -o is given."
     ),
 ]
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")]
+OnlyJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI units.")]
+Quiet = Annotated[
+    bool,
+    typer.Option("-q", "--quiet", callback=_one_voice, help="Print nothing but errors and JSON."),
+]
+Verbose = Annotated[
+    bool,
+    typer.Option(
+        "-v", "--verbose", callback=_one_voice, help="Say each step and how long it took."
+    ),
+]
+Version = Annotated[
+    bool, typer.Option("--version", help="Print the version, and those of the stack.")
+]
+VersionJson = Annotated[bool, typer.Option("--json", help="With --version: one JSON object.")]
+ShowCompletion = Annotated[
+    str | None,
+    typer.Option(
+        completing.SHOW,
+        metavar="[SHELL]",
+        help="Print the script that completes words in bash, zsh or fish.",
+        show_default=False,
+        autocompletion=completing.one_of(*completing.SHELLS),
+    ),
+]
+InstallCompletion = Annotated[
+    str | None,
+    typer.Option(
+        completing.INSTALL,
+        metavar="[SHELL]",
+        help="Install it for this user.",
+        show_default=False,
+        autocompletion=completing.one_of(*completing.SHELLS),
+    ),
+]
 
 
-def optional(name: str, metavar: str, words: str, note: str | None = None) -> Any:
-    """An option that takes a text and has no default of its own."""
+def optional(
+    name: str, metavar: str, words: str, note: str | None = None, *, values: Any = None
+) -> Any:
+    """An option that takes a text and has no default of its own; a shell completes ``values``."""
     shown = f"{words}{f'  [default: {note}]' if note else ''}"
-    return typer.Option(f"--{name}", metavar=metavar, help=shown, show_default=False)
+    return typer.Option(
+        f"--{name}", metavar=metavar, help=shown, show_default=False, autocompletion=values
+    )
+
+
+def choice(name: str, metavar: str, words: str, note: str, *values: str) -> Any:
+    """An option that takes one of some words."""
+    return optional(name, metavar, words, note, values=completing.one_of(*values))
 
 
 Size = Annotated[
@@ -47,8 +121,12 @@ Unit = Annotated[
     ),
 ]
 Missing = Annotated[
-    str | None, optional("missing", "refuse|keep|fill", "Missing pixels.", "refuse")
-]
+    str | None,
+    choice(
+        "missing", "refuse|keep|fill", "Missing pixels.", "refuse",
+        "refuse", "keep", "fill",
+    ),
+]  # fmt: skip
 
 SurfaceFiles = Annotated[
     list[str],
@@ -61,15 +139,26 @@ SurfaceFiles = Annotated[
 ]
 Channel = Annotated[str | None, optional("channel", "NAME|N", "Channel of an instrument's file.")]
 Remove = Annotated[
-    str | None, optional("remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt")
-]
+    str | None,
+    choice(
+        "remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt",
+        "none", "mean", "tilt", "curvature", "sphere",
+    ),
+]  # fmt: skip
 Align = Annotated[
     str | None,
-    optional("align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none"),
-]
+    choice(
+        "align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none",
+        "none", "median", "median-difference", "polynomial",
+    ),
+]  # fmt: skip
 Direction = Annotated[
-    str | None, optional("direction", "rows|columns", "What a scan line is.", "rows")
-]
+    str | None,
+    choice(
+        "direction", "rows|columns", "What a scan line is.", "rows",
+        "rows", "columns",
+    ),
+]  # fmt: skip
 Degree = Annotated[int | None, optional("degree", "N", "Degree of a scan line's polynomial.", "1")]
 Short = Annotated[
     str | None, optional("short", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")

@@ -8,9 +8,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from asperity.cli.looking import done, written_to
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import progress_bar
+from asperity.cli.looking import done
+from asperity.cli.voice import Voice
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,14 +19,11 @@ SENSITIVITY_FILES = ("sensitivity.png", "sensitivity.svg", "sensitivity.json")
 """Names of the files that the command may write."""
 
 
+_WIDEST = 28
+
+
 def sensitivity(
-    study: str,
-    *,
-    measure: str,
-    output: str | None,
-    force: bool,
-    as_json: bool,
-    quiet: bool,
+    study: str, *, measure: str, output: str | None, force: bool, **manner: bool
 ) -> None:
     """Compute Sobol's indices of a measure over the axes of a study, keep them and say them.
 
@@ -39,30 +35,32 @@ def sensitivity(
         Name of the measure.
     output : str or None
         Folder for the files.
-    force, as_json, quiet : bool
-        The options of these names.
+    force : bool
+        Whether earlier files may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
     from asperity.records import check_folder, write_folder
 
+    voice = Voice(**manner)
     folder = None
-    if output is not None or not as_json:
+    if output is not None or not voice.as_json:
         folder = Path(output or f"{Path(study).stem}-sensitivity")
         check_folder(folder, SENSITIVITY_FILES, force=force)
-    found = _indices(study, measure, quiet=quiet or as_json)
-    text = json.dumps(found.json_object(), allow_nan=False)
-    if as_json:
-        tell(text)
-    elif not quiet:
-        tell("\n".join(_index_lines(found)))
+    found = _indices(study, measure, voice)
+    voice.answer(lambda: "\n".join(_index_lines(found)), found.json_object)
     if folder is not None:
-        files = done(lambda: importlib.import_module("asperity.plots.sweep.bars").pictures(found))
-        files["sensitivity.json"] = text.encode() + b"\n"
-        written = write_folder(folder, files, SENSITIVITY_FILES, force=force)
-        if not quiet:
-            (say if as_json else tell)(("" if as_json else "\n") + written_to(written))
+        with voice.step("pictures and files"):
+            files = done(
+                lambda: importlib.import_module("asperity.plots.sweep.bars").pictures(found)
+            )
+            text = json.dumps(found.json_object(), allow_nan=False)
+            files["sensitivity.json"] = text.encode() + b"\n"
+            written = write_folder(folder, files, SENSITIVITY_FILES, force=force)
+        voice.written(written)
 
 
-def _indices(file: str, measure: str, *, quiet: bool) -> Sensitivity:
+def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
     """The indices, computed in a thread of its own."""
     import dataclasses
 
@@ -79,7 +77,7 @@ def _indices(file: str, measure: str, *, quiet: bool) -> Sensitivity:
         raise
     batch = importlib.import_module("asperity.studies.sweep.batch")
     cases, computed = study.size * (len(study.axes) + 2), 0
-    with progress_bar(not quiet) as progress:
+    with voice.watch() as progress:
 
         def tell_of(count: int) -> None:
             nonlocal computed
@@ -98,7 +96,7 @@ def _index_lines(found: Sensitivity) -> list[str]:
     """The indices as a table."""
     from asperity.studies.sweep.sensitivity import CONFIDENCE
 
-    wide = max(len(key) for key in found.keys)
+    wide = min(max(len(key) for key in found.keys), _WIDEST)
     lines = [
         f"{found.measure}: share of its variance that each axis makes, {found.cases} cases",
         "",
@@ -109,6 +107,9 @@ def _index_lines(found: Sensitivity) -> list[str]:
             f"{index.value[k]:6.3f} [{index.low[k]:6.3f}, {index.high[k]:6.3f}]"
             for index in (found.first, found.total)
         ]
+        if len(key) > wide:  # a long key stands on a line of its own
+            lines.append(f"  {key}")
+            key = ""
         lines.append(f"  {key:<{wide}}  {cells[0]:<24}{cells[1]:<24}".rstrip())
     total = math.fsum(found.first.value)
     return [

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
-import json
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,8 +12,9 @@ import typer
 
 from asperity import summary
 from asperity.cli.sources import Source, source
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import say
+from asperity.cli.voice import Voice, files_of, written_to
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.records import CURVE_FILES, RUN_FILES, check_folder, json_object, read, write_folder
 from asperity.result import Curve, Result
@@ -30,13 +30,10 @@ class _Request:
     source: Source
     folder: Path | None
     force: bool
-    as_json: bool
-    quiet: bool
+    voice: Voice
 
 
-def compute(
-    what: str, case: str, *, output: str | None, force: bool, as_json: bool, quiet: bool
-) -> None:
+def compute(what: str, case: str, *, output: str | None, force: bool, **manner: bool) -> None:
     """Compute a case, keep the result, and say what came out.
 
     Parameters
@@ -47,17 +44,20 @@ def compute(
         As the user named it.
     output : str or None
         Folder for the files.
-    force, as_json, quiet : bool
-        The options of these names.
+    force : bool
+        Whether earlier results may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
+    voice = Voice(**manner)
     given = source(case)
     folder = None
-    if output is not None or not as_json:
+    if output is not None or not voice.as_json:
         folder = Path(output or given.case.output.directory or f"{given.name}-out")
         check_folder(folder, _FILES[what], force=force)
-    request = _Request(what, given, folder, force, as_json, quiet)
+    request = _Request(what, given, folder, force, voice)
     try:
-        with progress_bar(not (quiet or as_json)) as progress:
+        with voice.watch() as progress:
             work = Work(lambda stop: _task(request, stop, progress))
             result, code = work.wait()
     except InputError as error:
@@ -71,7 +71,7 @@ def compute(
         ended = _ended(request, result, Outcome.INTERRUPTED if code else None)
         code = _deliver(ended, request, code)
     elif code:
-        say("asperity: interrupted before there was anything to keep")
+        say("asperity: interrupted before there was anything to keep", whole=True)
     if code:
         raise typer.Exit(code)
 
@@ -104,16 +104,9 @@ def _deliver(result: Result | Curve, request: _Request, code: int) -> int:
     """Write the files and print the answer; the exit code, an interruption's if one came."""
     written, code = _keep(result, request, code)
     if code:
-        say(f"asperity: {Outcome.INTERRUPTED.message}")
-    if request.as_json:
-        tell(json.dumps(json_object(result), allow_nan=False))
-    elif not request.quiet:
-        tell(_brief(result))
-    if written and not request.quiet:
-        if request.as_json:
-            say(_written(written))
-        else:
-            tell("\n" + _written(written))
+        say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
+    request.voice.answer(lambda: _brief(result), lambda: json_object(result))
+    request.voice.written(written)
     return code
 
 
@@ -131,16 +124,14 @@ def _keep(result: Result | Curve, request: _Request, code: int) -> tuple[Sequenc
     files = None
     if not code:
         # In a thread, where no interruption can be lost in a callback of somebody else's.
-        files, code = Work(lambda stop: result.files()).wait()
+        with request.voice.step("record and pictures"):
+            files, code = Work(lambda stop: result.files()).wait()
     files = files or result.files(pictures=False)
-    return write_folder(request.folder, files, own, force=request.force), code
+    with request.voice.step("files"):
+        return write_folder(request.folder, files, own, force=request.force), code
 
 
-def _written(paths: Sequence[Path]) -> str:
-    return f"written to {paths[0].parent}:\n  {' '.join(path.name for path in paths)}"
-
-
-def redraw(record: str, output: str | None, *, force: bool) -> None:
+def redraw(record: str, output: str | None, *, force: bool, **manner: bool) -> None:
     """Draw the pictures of a record again.
 
     Parameters
@@ -151,15 +142,20 @@ def redraw(record: str, output: str | None, *, force: bool) -> None:
         Folder for the pictures; without it they go beside the record, in place of those there.
     force : bool
         Whether pictures in ``output`` may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
     from asperity import plots
 
-    result = read(record)
-    pictures = plots.pictures(result)
+    voice = Voice(**manner)
+    with voice.step("record"):
+        result = read(record)
+    with voice.step("pictures"):
+        pictures = plots.pictures(result)
     if not pictures:
         raise InputError(
             f"{record}: a record must hold its motion to be drawn; it has none", file=record
         )
     folder = Path(record).parent if output is None else Path(output)
     written = write_folder(folder, pictures, tuple(pictures), force=force or output is None)
-    tell(_written(written))
+    voice.answer(lambda: written_to(written), lambda: {"record": record, **files_of(written)})

@@ -13,8 +13,9 @@ import numpy as np
 import typer
 
 from asperity.cli.options import in_options
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import WIDTH, say
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, OutputError, one_line
 from asperity.records import check_folder
 from asperity.studies.surface_report import pixel_in_words, rows
@@ -54,20 +55,23 @@ class _Made(NamedTuple):
     error: SpectrumError | None
 
 
-def generate(file: str, *, force: bool, quiet: bool, **options: Any) -> None:
+def generate(
+    file: str, *, force: bool, as_json: bool, quiet: bool, verbose: bool, **options: Any
+) -> None:
     """Make a surface, write it, and say what it is.
 
     Parameters
     ----------
     file : str
         The file.
-    force, quiet : bool
+    force, as_json, quiet, verbose : bool
         The options of these names.
     options
         ``size``, ``points``, ``roll_off``, ``cut_off``, ``rms_height`` as text; ``hurst``,
         ``rms_slope``, ``seed``, ``skewness``, ``kurtosis`` as numbers; ``heights``, a file; None
         where one is not given.
     """
+    voice = Voice(as_json=as_json, quiet=quiet, verbose=verbose)
     target = check_target(file, force=force)
     if not target.parent.is_dir():
         raise OutputError(f"{file}: cannot be written: no folder {target.parent}", path=file)
@@ -75,14 +79,14 @@ def generate(file: str, *, force: bool, quiet: bool, **options: Any) -> None:
     distribution = "kurtosis" if options["heights"] is None else "heights"
     with in_options(heights=distribution):
         wanted = _wanted(options)
-        with progress_bar(not quiet) as progress:
+        with voice.watch(compiles=False) as progress:
             made, code = Work(lambda stop: _make(wanted, progress)).wait()
     if code or made is None:
-        say("asperity: interrupted; nothing was written")
+        say("asperity: interrupted; nothing was written", whole=True)
         raise typer.Exit(code)
-    write_topography(made.topography, file, force=force)
-    if not quiet:
-        tell("\n".join(_lines(file, wanted, made)))
+    with voice.step("file"):
+        write_topography(made.topography, file, force=force)
+    voice.answer(lambda: "\n".join(_lines(file, wanted, made)), lambda: _object(file, wanted, made))
 
 
 def _wanted(options: dict[str, Any]) -> _Wanted:
@@ -200,8 +204,30 @@ def _lines(file: str, wanted: _Wanted, made: _Made) -> list[str]:
         f"{file}: a self-affine surface",
         *rows([*table, *_of_error(made.error)]),
         "describe it with:",
-        f"  {_command(file, surface)}",
+        *_command(file, surface),
     ]
+
+
+def _object(file: str, wanted: _Wanted, made: _Made) -> dict[str, Any]:
+    """What was made as plain values, in SI."""
+    surface, found, shape = made.topography, made.description, made.description.heights
+    spectrum = wanted.spectrum
+    return {
+        "file": file,
+        "points": list(wanted.points),
+        "pixel_size": list(wanted.pixel_size),
+        "physical_size": list(surface.physical_size),
+        "hurst": spectrum["hurst"],
+        "roll_off": spectrum["rolloff"],
+        "cut_off": spectrum["cutoff"] or 2.0 * max(wanted.pixel_size),
+        "seed": wanted.rest["seed"],
+        "rms_height": found.rms_height,
+        "rms_slope": sqrt(2.0 * found.spectral.m2),
+        "skewness": shape.skewness if shape else None,
+        "kurtosis": shape.kurtosis if shape else None,
+        "moments": [found.spectral.m0, found.spectral.m2, found.spectral.m4],
+        "spectrum_error": None if made.error is None else made.error._asdict(),
+    }
 
 
 def _slope(asked: float | None, found: Description) -> str:
@@ -221,10 +247,13 @@ def _of_error(error: SpectrumError | None) -> list[tuple[str, str]]:
     ]  # fmt: skip
 
 
-def _command(file: str, surface: Topography) -> str:
-    """The command that reads the file back; an .npy holds heights alone."""
-    command = f"asperity surface {shlex.quote(file)}"
+def _command(file: str, surface: Topography) -> list[str]:
+    """The command that reads the file back, as a shell takes it; an .npy holds heights alone."""
+    command = f"  asperity surface {shlex.quote(file)}"
     if suffix_of(file) != ".npy":
-        return command
+        return [command]
     width, length = surface.physical_size
-    return f'{command} --size "{width!r} m x {length!r} m" --unit m'
+    options = f'--size "{width!r} m x {length!r} m" --unit m'
+    if len(command) + 1 + len(options) <= WIDTH:
+        return [f"{command} {options}"]
+    return [f"{command} \\", f"    {options}"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import math
 import textwrap
 import threading
@@ -14,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from asperity.cli.sources import Source, source
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import say
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, SimulationError
 from asperity.records import check_folder, plain, write_folder
 from asperity.regimes import LAW_NAMES, Boundary, Frame, Place, Verdict, region
@@ -28,30 +28,39 @@ MAP_FILE = "adhesion-map.png"
 """The map's picture unless another is named."""
 
 _NAMES, _VALUES = 22, 17
+_WIDEST = 24  # of a case's name on the map
 
 
-def tell_regime(case: str, *, as_json: bool) -> None:
+def tell_regime(case: str, **manner: bool) -> None:
     """Print the numbers of a case with what each says.
 
     Parameters
     ----------
     case : str
         As the user named it.
-    as_json : bool
-        Whether to print one JSON object.
+    **manner : bool
+        As `Voice` takes them.
     """
-    (found,) = _assessed([source(case)], quiet=as_json)
-    if as_json:
-        numbers = {name: one._asdict() for name, one in found.verdicts.items()}
-        shown = {"name": found.name, "regime": numbers, "warnings": found.warnings}
-        tell(json.dumps(plain(shown), allow_nan=False))
-        return
+    voice = Voice(**manner)
+    (found,) = _assessed([source(case)], voice)
+    voice.answer(lambda: _regime_text(found), lambda: _regime_object(found))
+
+
+def _regime_text(found: Assessment) -> str:
     rows = [line for name, one in found.verdicts.items() for line in _row(name, one)]
     title = f"{found.name}: which models hold"
-    tell("\n".join([title, "", *rows, *warning_lines(found.warnings)]))
+    return "\n".join([title, "", *rows, *warning_lines(found.warnings)])
 
 
-def draw_map(cases: Sequence[str], *, output: str | None, force: bool, as_json: bool) -> None:
+def _regime_object(found: Assessment) -> dict[str, Any]:
+    numbers = {name: one._asdict() for name, one in found.verdicts.items()}
+    shown: dict[str, Any] = plain(
+        {"name": found.name, "regime": numbers, "warnings": found.warnings}
+    )
+    return shown
+
+
+def draw_map(cases: Sequence[str], *, output: str | None, force: bool, **manner: bool) -> None:
     """Draw the adhesion map with cases on it.
 
     Parameters
@@ -60,34 +69,33 @@ def draw_map(cases: Sequence[str], *, output: str | None, force: bool, as_json: 
         As the user named them.
     output : str or None
         The picture's path; the other files go beside it.
-    force, as_json : bool
-        The options of these names.
+    force : bool
+        Whether an earlier map may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
+    voice = Voice(**manner)
     given = [source(case) for case in cases]
     for one in given:
         _need_a_place(one)
     picture = None
-    if output is not None or not as_json:
+    if output is not None or not voice.as_json:
         picture = Path(output or MAP_FILE)
         _check_picture(picture, force=force)
-    found = _assessed(given, quiet=as_json)
+    found = _assessed(given, voice)
     places = _places(given, found)
-    frame = Frame.around(places)
-    boundaries = frame.boundaries()
-    written = _keep(picture, frame, boundaries, places) if picture else []
-    if as_json:
-        tell(json.dumps(plain(_map_object(boundaries, places, found)), allow_nan=False))
-    else:
-        tell("\n".join(_map_lines(places, found)))
-    if written:
-        text = f"written to {written[0].parent}:\n  {' '.join(path.name for path in written)}"
-        if as_json:
-            say(text)
-        else:
-            tell("\n" + text)
+    with voice.step("map"):
+        frame = Frame.around(places)
+        boundaries = frame.boundaries()
+        written = _keep(picture, frame, boundaries, places) if picture else []
+    voice.answer(
+        lambda: "\n".join(_map_lines(places, found)),
+        lambda: plain(_map_object(boundaries, places, found)),
+    )
+    voice.written(written)
 
 
-def _assessed(given: Sequence[Source], *, quiet: bool) -> list[Assessment]:
+def _assessed(given: Sequence[Source], voice: Voice) -> list[Assessment]:
     """What each case's numbers say; an error names the file."""
 
     def task(stop: threading.Event, progress: Progress | None) -> list[Assessment]:
@@ -105,10 +113,10 @@ def _assessed(given: Sequence[Source], *, quiet: bool) -> list[Assessment]:
                 raise SimulationError(f"{one.file or one.name}: {error}", error.partial) from error
         return found
 
-    with progress_bar(not quiet) as progress:
+    with voice.watch() as progress:
         found, code = Work(lambda stop: task(stop, progress)).wait()
     if code or found is None:
-        say("asperity: interrupted; nothing was written")
+        say("asperity: interrupted; nothing was written", whole=True)
         raise typer.Exit(code)
     return found
 
@@ -162,12 +170,15 @@ def _region(place: Place) -> str | None:
 
 
 def _map_lines(places: Sequence[Place], found: Sequence[Assessment]) -> list[str]:
-    wide = max(4, *(len(place.name) for place in places)) + 2
+    wide = min(max(4, *(len(place.name) for place in places)) + 2, _WIDEST)
     lines = [f"{'case':<{wide}}{'elasticity':<12}{'load':<12}{'region':<16}law in use"]
     for place, assessed in zip(places, found, strict=True):
         law = LAW_NAMES[assessed.regime.adhesion_law]
         numbers = f"{place.elasticity:<12.4g}{amount(place.load):<12}"
-        lines.append(f"{place.name:<{wide}}{numbers}{_region(place) or '-':<16}{law}")
+        if len(place.name) > wide - 2:  # a long name stands on a line of its own
+            lines.append(place.name)
+        name = place.name if len(place.name) <= wide - 2 else ""
+        lines.append(f"{name:<{wide}}{numbers}{_region(place) or '-':<16}{law}")
     return lines
 
 

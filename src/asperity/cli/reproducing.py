@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import say
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.records import REPRODUCTION_FILES, check_folder, write_folder
 from asperity.studies import report
@@ -33,6 +33,7 @@ def compute(
     tables: str | None,
     as_json: bool,
     quiet: bool,
+    verbose: bool = False,
     surfaces: tuple[str, str] | None = None,
     **options: Any,
 ) -> None:
@@ -44,29 +45,31 @@ def compute(
         Folder for the files.
     tables : str or None
         CSV of tables to compare with.
-    refit, force, as_json, quiet : bool
+    refit, force, as_json, quiet, verbose : bool
         The options of these names.
     surfaces : tuple of str or None
         Files of the two surfaces of Figures 2 and 3.
     options
         ``size``, ``unit`` and ``missing`` of these files, None where not given.
     """
+    voice = Voice(as_json=as_json, quiet=quiet, verbose=verbose)
     read_tables(tables)  # before anything is computed
     _refuse_loose(surfaces, options)
     folder = None
     if output is not None or not as_json:
         folder = Path(output or FOLDER)
         check_folder(folder, REPRODUCTION_FILES, force=force)
-    done, code = _computed(
-        tables, refit, None if surfaces is None else (surfaces, options), quiet or as_json
-    )
+    done, code = _computed(tables, refit, None if surfaces is None else (surfaces, options), voice)
     if done is None:
-        say("asperity: interrupted before there was anything to keep")
+        say("asperity: interrupted before there was anything to keep", whole=True)
         raise typer.Exit(code)
-    written, code = _keep(done, folder, code, force=force)
+    with voice.step("figures as pictures, and files"):
+        written, code = _keep(done, folder, code, force=force)
     if code:
-        say(f"asperity: {Outcome.INTERRUPTED.message}")
-    _tell(done, written, as_json=as_json, quiet=quiet)
+        say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
+    voice.answer(lambda: "\n".join([report.brief(done), *_about_surfaces(done)]), done.json_object)
+    if written:
+        voice.below(_written(written, done))
     if code:
         raise typer.Exit(code)
     if done.problems:
@@ -84,7 +87,7 @@ def _computed(
     tables: str | None,
     refit: bool,
     measured: tuple[tuple[str, str], dict[str, Any]] | None,
-    quiet: bool,
+    voice: Voice,
 ) -> tuple[Reproduction | None, int]:
     """The reproduction, or what there is of it, and the exit code of an interruption."""
     kept: list[Reproduction] = []
@@ -99,7 +102,7 @@ def _computed(
             keep=kept.append,
         )
 
-    with progress_bar(not quiet) as progress:
+    with voice.watch() as progress:
         done, code = Work(lambda stop: task(stop, progress)).wait()
     return done or (kept[-1] if kept else None), code
 
@@ -109,20 +112,6 @@ def _pair(surfaces: tuple[str, str], options: dict[str, Any]) -> Pair:
     from asperity.cli.surfaces import pair_of, treatment
 
     return pair_of(surfaces, treatment(options))
-
-
-def _tell(done: Reproduction, written: list[Path], *, as_json: bool, quiet: bool) -> None:
-    """The answer on standard output, and where the files are."""
-    if as_json:
-        tell(json.dumps(done.json_object(), allow_nan=False))
-    elif not quiet:
-        tell("\n".join([report.brief(done), *_about_surfaces(done)]))
-    if written and not quiet:
-        where = _written(written, done)
-        if as_json:
-            say(where)
-        else:
-            tell("\n" + where)
 
 
 def _about_surfaces(done: Reproduction) -> list[str]:

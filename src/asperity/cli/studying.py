@@ -9,11 +9,16 @@ from typing import Annotated
 
 import typer
 
-from asperity.cli.arguments import Folder, Json, Quiet, optional
+from asperity.cli import completing
+from asperity.cli.arguments import Folder, Json, OnlyJson, Quiet, Verbose, optional
 
 StudyFile = Annotated[
-    str, typer.Argument(metavar="STUDY.toml", help="The study.", show_default=False)
-]
+    str,
+    typer.Argument(
+        metavar="STUDY.toml", help="The study.", show_default=False,
+        autocompletion=completing.study,
+    ),
+]  # fmt: skip
 StoreName = Annotated[
     str | None,
     typer.Option(
@@ -22,7 +27,6 @@ StoreName = Annotated[
     ),
 ]  # fmt: skip
 Replace = Annotated[bool, typer.Option("--force", help="Replace what is there.")]
-OnlyJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")]
 At = Annotated[
     list[str] | None,
     typer.Option(
@@ -64,6 +68,7 @@ def sweep(
     force: Replace = False,
     as_json: OnlyJson = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Compute all cases of a study.
 
@@ -75,31 +80,48 @@ def sweep(
     compute(
         study, output=output, resume=resume, repair=repair, shard=shard, workers=workers,
         scheduler=scheduler, yes=yes, force=force, as_json=as_json, quiet=quiet,
+        verbose=verbose,
     )  # fmt: skip
 
 
 def merge(
     stores: Annotated[
-        list[str], typer.Argument(metavar="STORE...", help="Stores of shards.", show_default=False)
+        list[str],
+        typer.Argument(
+            metavar="STORE...",
+            help="Stores of shards.",
+            show_default=False,
+            autocompletion=completing.store,
+        ),
     ],
     output: StoreName = None,
     force: Replace = False,
     as_json: OnlyJson = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Make one store of those of a study's shards."""
     from asperity.cli.sweeping import merge as join
 
-    join(stores, output=output, force=force, as_json=as_json, quiet=quiet)
+    join(
+        stores, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
+    )  # fmt: skip
 
 
 def plot(
     record: Annotated[
-        str, typer.Argument(metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.")
+        str,
+        typer.Argument(
+            metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.",
+            autocompletion=completing.record_or_store,
+        ),
     ],
     output: Folder = None,
     measure: Annotated[
-        str | None, optional("measure", "NAME", "Of a store: what to draw.")
+        str | None,
+        optional(
+            "measure", "NAME", "Of a store: what to draw.", values=completing.column
+        ),
     ] = None,
     x: Annotated[str | None, optional("x", "KEY", "Of a store: the axis to the right.")] = None,
     y: Annotated[str | None, optional("y", "KEY", "Of a store: the axis upwards.")] = None,
@@ -112,6 +134,9 @@ def plot(
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace pictures in DIR.")] = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Draw a record's pictures again, or the results of a study.
 
@@ -122,7 +147,7 @@ def plot(
     if is_store(record):
         plot_store(
             record, output=output, force=force, measure=measure, x=x, y=y, at=at or (),
-            pareto=pareto,
+            pareto=pareto, as_json=as_json, quiet=quiet, verbose=verbose,
         )  # fmt: skip
         return
     from asperity.cli.computing import redraw
@@ -132,14 +157,14 @@ def plot(
     for name, value in given.items():
         if value:
             raise InputError(f"`--{name}` must be given with a store; got a record", file=record)
-    redraw(record, output, force=force)
+    redraw(record, output, force=force, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
 def export(
     source: Annotated[
         str,
         typer.Argument(metavar="STORE|CASE", help="A store, or a case for --force-table.",
-                       show_default=False),
+                       show_default=False, autocompletion=completing.store_or_case),
     ],
     output: Annotated[
         str | None,
@@ -155,17 +180,20 @@ def export(
     ] = None,
     at: At = None,
     force: Replace = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Write results for other programs.
 
     A table of all cases of a store, the restitution over the impact speed, or the force table of
     one case.
     """
-    from asperity.cli.looking import export as write
+    from asperity.cli.exporting import export as write
 
     write(
         source, output=output, restitution=restitution, force_table=force_table, at=at or (),
-        force=force,
+        force=force, as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
 
 
@@ -178,6 +206,7 @@ def sensitivity(
     force: Replace = False,
     as_json: Json = False,
     quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
     """Say which axes of a study a measure depends on.
 
@@ -186,4 +215,7 @@ def sensitivity(
     """
     from asperity.cli.attributing import sensitivity as attribute
 
-    attribute(study, measure=measure, output=output, force=force, as_json=as_json, quiet=quiet)
+    attribute(
+        study, measure=measure, output=output, force=force, as_json=as_json, quiet=quiet,
+        verbose=verbose,
+    )  # fmt: skip

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import textwrap
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,13 +11,13 @@ from typing import Any
 import typer
 
 from asperity.cli.options import PREPARATION, in_options
-from asperity.cli.terminal import say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import say
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError
 from asperity.records import SURFACE_FILES, check_folder, plain, write_folder
 from asperity.studies import surface_report
 from asperity.studies.surfaces import Pair, Surface, Treatment, pair, surface, surfaces
-from asperity.summary import WIDTH
 from asperity.topography.preparing.preparation import Preparation
 from asperity.units import lengths, quantity
 
@@ -33,12 +31,18 @@ class _Request:
 
     folder: Path | None
     force: bool
-    as_json: bool
-    quiet: bool
+    voice: Voice
 
 
 def describe(
-    files: list[str], *, output: str | None, force: bool, as_json: bool, quiet: bool, **options: Any
+    files: list[str],
+    *,
+    output: str | None,
+    force: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool = False,
+    **options: Any,
 ) -> None:
     """Describe one surface or two, keep the answer, and say it.
 
@@ -48,26 +52,26 @@ def describe(
         One or two files.
     output : str or None
         Folder for the files.
-    force, as_json, quiet : bool
+    force, as_json, quiet, verbose : bool
         The options of these names.
     options
         As `treatment`.
     """
     if len(files) > _MOST_FILES:
         raise InputError(f"one or two files must be given; got {len(files)}; name two at most")
-    asked = treatment(options)
+    asked, voice = treatment(options), Voice(as_json=as_json, quiet=quiet, verbose=verbose)
     folder = None
     if output is not None or not as_json:
         folder = Path(output or "-".join([*map(_stem, files), "out"]))
         check_folder(folder, SURFACE_FILES, force=force)
-    found, code = _found(files, asked, shown=not (quiet or as_json))
+    found, code = _found(files, asked, voice)
     if found is None:
-        say("asperity: interrupted; nothing was written")
+        say("asperity: interrupted; nothing was written", whole=True)
         raise typer.Exit(code)
     for one in found.surfaces if isinstance(found, Pair) else (found,):
         with in_options():
             one.description.summits.at_least()
-    _deliver(found, _Request(folder, force, as_json, quiet))
+    _deliver(found, _Request(folder, force, voice))
 
 
 def treatment(options: Mapping[str, Any]) -> Treatment:
@@ -113,40 +117,26 @@ def pair_of(files: tuple[str, str], asked: Treatment) -> Pair:
         return pair(*(surface(file, asked) for file in files))
 
 
-def _found(files: list[str], asked: Treatment, *, shown: bool) -> tuple[Surface | Pair | None, int]:
+def _found(files: list[str], asked: Treatment, voice: Voice) -> tuple[Surface | Pair | None, int]:
     """The description, and the exit code of an interruption."""
 
     def task(stop: threading.Event, progress: Progress | None) -> Surface | Pair | None:
         with in_options(*PREPARATION):
             return surfaces(tuple(files), asked, progress, stop)
 
-    with progress_bar(shown) as progress:
+    with voice.watch(compiles=False) as progress:
         found, code = Work(lambda stop: task(stop, progress)).wait()
     return (None if code else found), code
 
 
 def _deliver(found: Surface | Pair, request: _Request) -> None:
     """Write the files and print the answer."""
-    written, code = _keep(found, request)
+    with request.voice.step("pictures and files"):
+        written, code = _keep(found, request)
     if code:
-        say("asperity: interrupted while drawing; the rest is kept")
-    if request.as_json:
-        tell(json.dumps(plain(found.json_object()), allow_nan=False))
-    elif not request.quiet:
-        tell(surface_report.text(found))
-    if written and not request.quiet:
-        names = textwrap.wrap(
-            " ".join(path.name for path in written),
-            WIDTH,
-            initial_indent="  ",
-            subsequent_indent="  ",
-            break_on_hyphens=False,
-        )
-        where = "\n".join([f"written to {written[0].parent}:", *names])
-        if request.as_json:
-            say(where)
-        else:
-            tell("\n" + where)
+        say("asperity: interrupted while drawing; the rest is kept", whole=True)
+    request.voice.answer(lambda: surface_report.text(found), lambda: plain(found.json_object()))
+    request.voice.written(written)
     if code:
         raise typer.Exit(code)
 

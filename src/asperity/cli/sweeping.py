@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,8 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import typer
 
 from asperity.cli.tallying import about, lines, lines_of, progress_of, took, warnings
-from asperity.cli.terminal import exit_code_of, say, tell
-from asperity.cli.working import Progress, Work, progress_bar
+from asperity.cli.terminal import exit_code_of, say
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress, Work
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ def sweep(
     scheduler: str | None = None,
     yes: bool = False,
     force: bool = False,
-    as_json: bool = False,
-    quiet: bool = False,
+    **manner: bool,
 ) -> None:
     """Compute the cases of a study that its store misses, and say what came out.
 
@@ -75,11 +74,14 @@ def sweep(
         Address of a dask scheduler whose workers compute.
     yes : bool
         Whether a very large study is meant.
-    force, as_json, quiet : bool
-        The options of these names.
+    force : bool
+        Whether a store that is there may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
     from asperity.studies.sweep.running import one_thread
 
+    voice = Voice(**manner)
     one_thread(at_once=True)
     _refuse_both(force=force, resume=resume)
     _refuse_both(force=force, repair=repair)
@@ -87,13 +89,12 @@ def sweep(
     if workers is not None and workers < 1:
         raise InputError(f"`--workers` must be at least 1; got {workers}")
     request = _request(study, output, shard, workers, scheduler)
-    if not quiet:
-        for warning in request.study.warnings:
-            say(f"asperity: {warning}")
+    for warning in request.study.warnings:
+        voice.note(f"asperity: {warning}")
     _refuse_huge(request.study, yes)
-    store, tasks = _opened(request, resume=resume, repair=repair, force=force)
-    tally, code = _filled(request, store, tasks, quiet=quiet or as_json)
-    _tell_sweep(request, store, tally, code, as_json=as_json, quiet=quiet)
+    store, tasks = _opened(request, voice, resume=resume, repair=repair, force=force)
+    tally, code = _filled(request, store, tasks, voice)
+    _tell_sweep(request, store, tally, code, voice)
     if code:
         raise typer.Exit(code)
 
@@ -141,7 +142,7 @@ def _refuse_huge(study: Study, yes: bool) -> None:
 
 
 def _opened(
-    request: _Request, *, resume: bool, repair: bool, force: bool
+    request: _Request, voice: Voice, *, resume: bool, repair: bool, force: bool
 ) -> tuple[Store, Sequence[int]]:
     """The store, open for writing, and the tasks wanted of it."""
     from asperity.studies.sweep.mending import remove
@@ -150,7 +151,7 @@ def _opened(
     study, path = request.study, request.path
     tasks = range(study.tasks) if request.shard is None else request.shard.tasks(study.tasks)
     if repair:
-        store, damaged = _mended(request)
+        store, damaged = _mended(request, voice)
         return store, tasks if resume else damaged
     if force:
         remove(path)
@@ -169,17 +170,18 @@ def _is_empty(path: Path, study: Study) -> bool:
         return False
 
 
-def _mended(request: _Request) -> tuple[Store, Sequence[int]]:
+def _mended(request: _Request, voice: Voice) -> tuple[Store, Sequence[int]]:
     """The store with nothing in it that is not as it was written, and the tasks that went."""
     from asperity.studies.sweep.mending import mend
     from asperity.studies.sweep.store import Store
 
     for file in mend(request.path, request.study):
-        say(f"asperity: {file}: written again")
+        voice.note(f"asperity: {file}: written again")
     store = Store.open(request.path, request.study, writable=True)
     damaged = store.check()
     for task, name in damaged:
-        say(f"asperity: {store.chunk_file(task, name)}: column {name}, task {task} is corrupt")
+        chunk = store.chunk_file(task, name)
+        voice.note(f"asperity: {chunk}: column {name}, task {task} is corrupt")
     tasks = sorted({task for task, _ in damaged})
     if tasks:
         store.forget(tasks)
@@ -204,7 +206,7 @@ def _runner(request: _Request) -> Iterator[Runner]:
 
 
 def _filled(
-    request: _Request, store: Store, tasks: Sequence[int], *, quiet: bool
+    request: _Request, store: Store, tasks: Sequence[int], voice: Voice
 ) -> tuple[Tally | None, int]:
     """What the run did, None where it did not stop in time; and its exit code."""
     from asperity.studies.sweep.files import beside
@@ -219,15 +221,16 @@ def _filled(
             log.task(task, effort, tally)
             for case, line in effort.warned:
                 log.write(f"case {case}: {line}")
+            voice.detail(f"task {task}: {effort.cases:,} cases in {effort.wall:.3g} s")
             if bar is not None:
                 bar(tally.cases / tally.cases_wanted, progress_of(tally))
 
         if bar is not None:
-            bar(0.0, "the first tasks are compiled")
+            bar(0.0, "tasks (the first are compiled)")
         with _runner(request) as runner:
             return fill(request.study, store, runner, tasks=tasks, progress=kept, stop=stop)
 
-    with progress_bar(not quiet) as bar:
+    with voice.watch() as bar:
         try:
             tally, code = Work(lambda stop: task(stop, bar)).wait()
         except KeyboardInterrupt as impatience:  # a second Ctrl-C
@@ -237,23 +240,25 @@ def _filled(
 
 
 def _tell_sweep(
-    request: _Request, store: Store, tally: Tally | None, code: int, *, as_json: bool, quiet: bool
+    request: _Request, store: Store, tally: Tally | None, code: int, voice: Voice
 ) -> None:
     """What is in the store now, and what this run took."""
     if code:
         say(
             f"asperity: interrupted; {store.cases_done:,} of {store.size:,} cases are kept in "
-            f"{store.path}, `--resume` goes on with them"
+            f"{store.path}, `--resume` goes on with them",
+            whole=True,
         )
-    if as_json:
-        tell(json.dumps(about(store) | took(tally), allow_nan=False))
-    elif not quiet and not code:
-        tell("\n".join([*lines(store), *lines_of(tally)]))
-    for warning in [] if as_json or quiet else warnings(tally):
-        say(f"asperity: {warning}")
+    if voice.as_json or not code:
+        voice.answer(
+            lambda: "\n".join([*lines(store), *lines_of(tally)]),
+            lambda: about(store) | took(tally),
+        )
+    for warning in [] if voice.as_json else warnings(tally):
+        voice.note(f"asperity: {warning}")
     missing = store.size - store.cases_done
-    if missing and not code and request.shard is None and not quiet:
-        say(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")
+    if missing and not code and request.shard is None:
+        voice.note(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")
 
 
 def merge(
@@ -261,8 +266,7 @@ def merge(
     *,
     output: str | None = None,
     force: bool = False,
-    as_json: bool = False,
-    quiet: bool = False,
+    **manner: bool,
 ) -> None:
     """Make one store of those of a study's shards, and say what it holds.
 
@@ -272,30 +276,30 @@ def merge(
         The stores.
     output : str or None
         The store to make, NAME.zarr for NAME.i-of-N.zarr unless given.
-    force, as_json, quiet : bool
-        The options of these names.
+    force : bool
+        Whether a store that is there may be replaced.
+    **manner : bool
+        As `Voice` takes them.
     """
     from asperity.studies.sweep.joining import join, whole
 
+    voice = Voice(**manner)
     path = Path(output) if output is not None else whole(Path(stores[0]))
     if path.resolve() in {Path(store).resolve() for store in stores}:
         raise InputError(f"`--output` must be none of the stores to merge; got {path}")
-    with progress_bar(not (quiet or as_json)) as bar:
+    with voice.watch(compiles=False) as bar:
 
         def copied(count: int, of: int) -> None:
             if bar is not None:
                 bar(count / of, f"{count:,} of {of:,} tasks")
 
         joined = join(path, stores, replace=force, progress=copied)
-    if as_json:
-        tell(json.dumps(about(joined), allow_nan=False))
-    elif not quiet:
-        tell("\n".join(lines(joined)))
+    voice.answer(lambda: "\n".join(lines(joined)), lambda: about(joined))
     missing = [task for task in range(joined.tasks) if task not in joined.done]
     if missing:
         named = ", ".join(str(task) for task in missing[:_NAMED])
         more = f" and {len(missing) - _NAMED:,} more" if len(missing) > _NAMED else ""
-        say(
+        voice.note(
             f"asperity: {path}: tasks {named}{more} are missing in the stores; "
             f"`asperity sweep STUDY -o {path} --resume` computes them"
         )

@@ -18,7 +18,7 @@ _NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 def progress_of(tally: Tally) -> str:
     """How far a run is, for the bar."""
     return (
-        f"{tally.cases:,} of {tally.cases_wanted:,} cases, {rate(tally)}, "
+        f"{tally.cases:,} of {tally.cases_wanted:,}, {rate(tally)}, "
         f"lanes {tally.lanes:.0%}, {duration(tally.left)} left"
     )
 

@@ -6,6 +6,7 @@ import contextlib
 import os
 import signal
 import sys
+import textwrap
 import types
 import warnings
 from typing import Any, NoReturn
@@ -13,6 +14,7 @@ from typing import Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
+from asperity.cli.completing import ASKED, with_shell
 from asperity.errors import (
     EXIT_INPUT,
     EXIT_INTERRUPTED,
@@ -23,6 +25,9 @@ from asperity.errors import (
     SimulationError,
     one_line,
 )
+
+WIDTH = 80
+"""Columns of a terminal."""
 
 FATAL = 128
 """A program that a signal ended has this plus the signal's number as its exit code."""
@@ -37,6 +42,11 @@ class Terminated(KeyboardInterrupt):
 
 class Commands(TyperGroup):
     """The commands, with the project's errors as one line and an exit code."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the program's own options."""
+        parsed: list[str] = super().parse_args(ctx, with_shell(args))
+        return parsed
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that the arguments name."""
@@ -58,12 +68,48 @@ def exit_code_of(stop: KeyboardInterrupt) -> int:
     return EXIT_TERMINATED if isinstance(stop, Terminated) else EXIT_INTERRUPTED
 
 
-def say(text: str) -> None:
-    """A line for a human, on standard error."""
+def say(text: str, *, whole: bool = False) -> None:
+    """A note for a human, on standard error, in lines of 80 columns.
+
+    Parameters
+    ----------
+    text : str
+        The note.
+    whole : bool
+        Whether each line of it stays one, as an error does.
+    """
+    if not whole:
+        text = "\n".join(line for given in text.split("\n") for line in wrapped(given))
     if sys.stderr is not None:
         with contextlib.suppress(OSError):  # nobody is listening
             sys.stderr.write(text + "\n")
             sys.stderr.flush()
+
+
+def wrapped(text: str, indent: str = "", hanging: int | None = None) -> list[str]:
+    """A line in lines of 80 columns; a word that is longer, such as a path, stays whole.
+
+    Parameters
+    ----------
+    text : str
+        The line.
+    indent : str
+        What every line begins with.
+    hanging : int, optional
+        Blanks before the second line and the rest, in place of ``indent``; without either they
+        stand two columns further right than the first.
+    """
+    if len(indent + text) <= WIDTH:
+        return [indent + text]
+    margin = indent or "  " + " " * (len(text) - len(text.lstrip(" ")))
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=indent,
+        subsequent_indent=margin if hanging is None else " " * hanging,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def tell(text: str) -> None:
@@ -92,6 +138,10 @@ def tell(text: str) -> None:
 
 def prepare() -> None:
     """Set up signals, streams and warnings for a program of its own."""
+    if ASKED in os.environ:
+        from typer.completion import completion_init  # type: ignore[attr-defined]
+
+        completion_init()
     signal.signal(signal.SIGTERM, raise_stop)
     for stream in (sys.stdout, sys.stderr):
         if stream is not None and hasattr(stream, "reconfigure"):
@@ -141,7 +191,7 @@ def _abandon_stdout() -> None:
 
 
 def _fail(message: str, code: int) -> int:
-    say(f"asperity: {one_line(message)}")
+    say(f"asperity: {one_line(message)}", whole=True)
     return code
 
 

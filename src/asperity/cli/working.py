@@ -9,9 +9,13 @@ import threading
 import time
 import types
 from collections.abc import Callable, Iterator
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from asperity.cli.terminal import FATAL, raise_stop
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress as RichProgress
 
 Answer = TypeVar("Answer")
 Progress = Callable[[float, str], None]
@@ -20,6 +24,7 @@ PATIENCE = 1.2
 """How long an interrupted computation may take to hand over what it has [s]."""
 
 _LISTEN = 0.01
+_BAR, _TIME = 40, 7  # columns of the bar at most, of the time at least
 
 
 class Work(Generic[Answer]):
@@ -99,13 +104,26 @@ def progress_bar(wanted: bool) -> Iterator[Progress | None]:
         yield None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with _bar_on(Console(stderr=True)) as bar:
         task = bar.add_task("starting", total=1.0)
 
         def advance(fraction: float, text: str) -> None:
             bar.update(task, completed=min(max(fraction, 0.0), 1.0), description=text)
 
         yield advance
+
+
+def _bar_on(console: Console) -> RichProgress:
+    """A bar that takes the room that its words and the time leave."""
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as RichProgress
+    from rich.table import Column
+
+    whole = Column(min_width=_TIME, no_wrap=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None, table_column=Column(ratio=1, max_width=_BAR)),
+        TimeElapsedColumn(table_column=whole),
+    )
+    return RichProgress(*columns, console=console, transient=True, expand=True)

@@ -1,0 +1,124 @@
+"""``asperity export``: the results of a study for other programs."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from asperity.cli.looking import done, held_axes, is_store
+from asperity.cli.voice import Voice
+from asperity.cli.working import Progress
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    from asperity.result import Curve
+
+Exported = tuple[Path, dict[str, Any]]
+"""A file that was written, and what is in it."""
+
+
+def export(
+    source: str,
+    *,
+    output: str | None = None,
+    restitution: str | None = None,
+    force_table: str | None = None,
+    at: Sequence[str] = (),
+    force: bool = False,
+    **manner: bool,
+) -> None:
+    """Write a study's results, or what a particle code reads of a study or a case.
+
+    Parameters
+    ----------
+    source : str
+        A store; a case for ``force_table``.
+    output : str or None
+        File for all results: ``.csv``, ``.parquet`` or ``.nc``.
+    restitution : str or None
+        File for restitution against impact speed.
+    force_table : str or None
+        File for force against distance.
+    at : sequence of str
+        Axes held fixed for ``restitution``, as ``KEY=VALUE``.
+    force : bool
+        Whether files may be replaced.
+    **manner : bool
+        As `Voice` takes them.
+    """
+    options = {"output": output, "restitution": restitution, "force-table": force_table}
+    given = [name for name, file in options.items() if file is not None]
+    if len(given) != 1:
+        raise InputError(
+            f"one of --output, --restitution and --force-table must be given; got "
+            f"{' and '.join(f'--{name}' for name in given) or 'none'}"
+        )
+    if at and restitution is None:
+        raise InputError("`at` must go with --restitution; got it without", key="at")
+    voice = Voice(**manner)
+    if force_table is not None:
+        written, facts = _export_force(source, force_table, voice, force=force)
+    elif restitution is not None:
+        written, facts = _export_restitution(source, restitution, held_axes(at), voice, force=force)
+    else:
+        assert output is not None
+        written, facts = _export_table(source, output, voice, force=force)
+    found = {"file": str(written), "bytes": written.stat().st_size, **facts}
+    voice.answer(lambda: f"written to {written}", lambda: found)
+
+
+def _export_table(source: str, output: str, voice: Voice, *, force: bool) -> Exported:
+    from asperity.studies.sweep.dataset import open_results
+    from asperity.studies.sweep.export import export as write
+
+    with voice.step("table"):
+        path: Path = done(lambda: write(source, output, force=force))
+    found = open_results(source)
+    columns = [*(axis.key for axis in found.study.axes), *found.columns]
+    facts = {"kind": "table", "cases": found.study.size, "done": found.store.cases_done}
+    return path, {**facts, "columns": columns}
+
+
+def _export_restitution(
+    source: str, file: str, held: dict[str, str], voice: Voice, *, force: bool
+) -> Exported:
+    from asperity.studies.sweep.dataset import dataset_of, open_results
+    from asperity.studies.sweep.restitution_table import restitution_of, write_restitution
+    from asperity.studies.sweep.view import at
+
+    with voice.step("restitution"):
+        found = open_results(source)
+        found.refuse_empty()
+        names = [n for n in ("outcome", "impact_speed", "restitution") if n in found.columns]
+        dataset, taken = at(dataset_of(found, names), held)
+        table = restitution_of(dataset, taken)
+        path = write_restitution(table, file, force=force)
+    speeds, bounces = table.speed.tolist(), table.restitution.tolist()
+    return path, {"kind": "restitution", "impact_speed": speeds, "restitution": bounces}
+
+
+def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Exported:
+    from asperity.cli.sources import source as case_of
+    from asperity.studies.sweep.force_table import check_force_table, write_force_table
+
+    if is_store(source):
+        raise InputError(f"{source}: a table of forces must be of a case; got a store", file=source)
+    given = case_of(source)
+    check_force_table(Path(file), force=force)
+
+    def task(progress: Progress | None) -> Curve:
+        solver = importlib.import_module("asperity.solver")
+        curve: Curve = solver.curve(given.case, name=given.name, progress=progress)
+        return curve
+
+    try:
+        with voice.watch() as progress:
+            curve = done(lambda: task(progress))
+        path = write_force_table(curve, file, force=force)
+    except InputError as error:
+        error.file = error.file or given.file
+        raise
+    return path, {"kind": "force-table", "points": int(curve.rigid_separation.size),
+                  "pull_off": curve.pull_off, "loss": curve.loss}  # fmt: skip

@@ -1,0 +1,196 @@
+"""Completion in a shell: its script, commands and options, and what can stand for a value."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from asperity.case import BUILTINS
+from asperity.cli import app, completing
+from asperity.materials import SOLIDS
+
+BASH = shutil.which("bash")
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a case, a study's store and other things."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("drop.toml", "notes.txt", "a record.nc", ".hidden.toml", "deep/er/case.toml"):
+        Path(name).parent.mkdir(parents=True, exist_ok=True)
+        Path(name).touch()
+    for name in ("outcome", "restitution"):
+        Path("study.zarr", name).mkdir(parents=True)
+        Path("study.zarr", name, "zarr.json").touch()
+    return tmp_path
+
+
+def asked(shell: str, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """What the program answers to a shell about a line whose last word is incomplete."""
+    words = line.split(" ")
+    given = {
+        "_ASPERITY_COMPLETE": f"complete_{shell}",
+        "_TYPER_COMPLETE_ARGS": line,
+        "COMP_WORDS": "\n".join(words),
+        "COMP_CWORD": str(len(words) - 1),
+        **environment,
+    }
+    return subprocess.run(
+        [sys.executable, "-m", "asperity"],
+        env={**os.environ, **given},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+
+
+def offered(line: str) -> list[str]:
+    ran = asked("bash", line)
+    assert (ran.returncode, ran.stderr) == (0, "")
+    return ran.stdout.split()
+
+
+def test_commands_and_options_are_completed():
+    assert offered("asperity ru") == ["run"]
+    assert {"doctor", "sweep", "export"} <= set(offered("asperity "))
+    assert {"--output", "--json", "--quiet", "--verbose"} <= set(offered("asperity run --"))
+
+
+def test_a_case_is_a_built_in_name_a_case_file_or_a_record():
+    assert offered("asperity run pub") == sorted(BUILTINS)
+    assert offered("asperity curve ") == [*sorted(BUILTINS), "drop.toml", "deep/", "study.zarr/"]
+    assert offered("asperity adhesion-map drop.toml d") == ["drop.toml", "deep/"]
+
+
+def test_a_folder_alone_is_entered():
+    assert offered("asperity run deep") == ["deep/er/case.toml"]
+    assert offered("asperity run no/such/folder/") == []
+
+
+def test_hidden_files_only_when_asked_for_and_names_with_blanks_are_left_to_the_shell():
+    assert offered("asperity run .hid") == [".hidden.toml"]
+    assert completing.case("a") == sorted(BUILTINS)
+
+
+def test_stores_and_their_columns_are_completed():
+    assert offered("asperity plot st") == ["study.zarr"]
+    assert offered("asperity merge st") == ["study.zarr"]
+    assert offered("asperity plot study.zarr --measure re") == ["restitution"]
+    assert offered("asperity sweep d") == ["drop.toml", "deep/"]
+
+
+def test_words_of_an_option_and_materials_are_completed():
+    assert offered("asperity surface x.npy --missing ") == ["refuse", "keep", "fill"]
+    assert offered("asperity surface x.npy --align med") == ["median", "median-difference"]
+    assert "silica" in SOLIDS
+    assert "silica" in offered("asperity materials sil")
+    assert offered("asperity --show-completion z") == ["zsh"]
+
+
+def test_what_an_option_takes_any_file_for_is_left_to_the_shell():
+    assert offered("asperity surface no") == []
+
+
+def test_options_that_exclude_each_other_do_not_break_completion():
+    assert offered("asperity run -q -v pub") == sorted(BUILTINS)
+
+
+def test_zsh_and_fish_get_their_own_form():
+    ran = asked("zsh", "asperity ru")
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert ran.stdout.startswith('_arguments \'*: :(("run":"Compute a motion')
+    assert asked("zsh", "asperity surface no").stdout == "_files\n"
+    assert '"drop.toml"' in asked("zsh", "asperity run dr").stdout
+    ran = asked("fish", "asperity run pub", _TYPER_COMPLETE_FISH_ACTION="get-args")
+    assert ran.stdout.split() == sorted(BUILTINS)
+
+
+def test_completion_imports_nothing_heavy():
+    program = (
+        "import sys; from typer.main import get_command; from asperity.cli import app, completing; "
+        "get_command(app); completing.case(''); completing.material(''); "
+        "heavy = ('jax', 'matplotlib', 'pint', 'xarray', 'numpy', 'netCDF4', 'pydantic'); "
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    command = [sys.executable, "-c", program]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert ran.stdout == "[]\n"
+
+
+@pytest.mark.skipif(BASH is None, reason="no bash")
+def test_bash_completes_with_the_printed_script(place: Path):
+    """The script in a shell, as a press of the key runs it."""
+    script = call("--show-completion", "bash").stdout
+    (place / "asperity").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m asperity "$@"\n')
+    (place / "asperity").chmod(0o755)
+    pressed = (
+        f"{script}\nCOMP_WORDS=(asperity run published-); COMP_CWORD=2\n"
+        'PATH="$PWD:$PATH"; _asperity_completion asperity; echo "${COMPREPLY[@]}"\n'
+    )
+    assert BASH is not None
+    ran = subprocess.run([BASH, "-c", pressed], capture_output=True, text=True, check=True)
+    assert ran.stdout == "published-exact\n"
+
+
+def call(*arguments: str) -> Any:
+    return CliRunner().invoke(app, list(arguments), prog_name="asperity")
+
+
+@pytest.mark.parametrize("shell", completing.SHELLS)
+def test_the_script_is_printed_for_each_shell(shell: str):
+    for form in ((f"--show-completion={shell}",), ("--show-completion", shell)):
+        ran = call(*form)
+        assert ran.exit_code == 0
+        assert f"_ASPERITY_COMPLETE=complete_{shell}" in ran.stdout
+
+
+def test_a_shell_without_a_script_is_one_line_and_exit_2():
+    for option in ("--show-completion", "--install-completion"):
+        ran = call(option, "tcsh")
+        assert ran.exit_code == 2
+        assert ran.stderr == f"asperity: `{option}` must be bash, zsh or fish; got 'tcsh'\n"
+
+
+def test_the_shell_in_use_is_found_or_asked_for(monkeypatch: pytest.MonkeyPatch):
+    import shellingham
+
+    monkeypatch.setattr(shellingham, "detect_shell", lambda: ("zsh", "zsh"))
+    assert "complete_zsh" in call("--show-completion").stdout
+
+    def unknown() -> tuple[str, str]:
+        raise shellingham.ShellDetectionFailure
+
+    monkeypatch.setattr(shellingham, "detect_shell", unknown)
+    ran = call("--show-completion")
+    assert ran.exit_code == 2
+    assert ran.stderr.count("\n") == 1
+    assert "must name the shell, bash zsh fish" in ran.stderr
+
+
+@pytest.mark.parametrize("shell", completing.SHELLS)
+def test_the_script_is_installed_for_the_user(
+    shell: str, place: Path, monkeypatch: pytest.MonkeyPatch
+):
+    home = place / "home"
+    home.mkdir()
+    monkeypatch.setenv("HOME", str(home))
+    ran = call("--install-completion", shell)
+    assert ran.exit_code == 0
+    written = [path.read_text() for path in home.rglob("*asperity*") if path.is_file()]
+    assert any(f"complete_{shell}" in text for text in written)
+
+
+def test_a_home_that_cannot_be_written_is_exit_4(place: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("HOME", str(place / "drop.toml"))
+    ran = call("--install-completion", "fish")
+    assert ran.exit_code == 4
+    assert ran.stderr.count("\n") == 1
+    assert "cannot be written" in ran.stderr
