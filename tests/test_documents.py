@@ -71,7 +71,7 @@ def test_commands_of_pages_that_run_are_of_the_program():
 
     known = set(get_command(app).commands)  # type: ignore[attr-defined]
     for page in DOCS.glob("*.md"):
-        cells = re.findall(r"^%%bash -e\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+        cells = re.findall(r"^%%bash -e.*?\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
         named = set(re.findall(r"^asperity (\S+)", "".join(cells), re.MULTILINE))
         assert named <= known, page.name
 
