@@ -33,6 +33,7 @@ def test_there_is_an_example_for_each_question():
         "drop-in-air",
         "dry-drop",
         "fast-impact",
+        "glass-bead",
         "jkr-bounce",
         "jkr-stick",
         "measured-surface",
@@ -78,6 +79,16 @@ def test_wet_drop_comes_to_rest_captured_by_menisci(solved):
     assert measures["restitution"][0] == pytest.approx(0.922199, abs=1e-5)
     assert measures["stiction_time"] == pytest.approx(8.164e-3, rel=1e-3)
     assert set(result.ledger["lost"]) == {"capillary"}
+
+
+def test_glass_bead_is_captured_by_menisci_at_its_fifth_touch(solved):
+    result = solved("glass-bead")
+    measures = result.measures
+    assert measures["captured"]
+    assert measures["restitution"][0] == pytest.approx(0.800, abs=1e-3)
+    assert measures["restitution"][-1] == 0.0
+    assert len(measures["restitution"]) == 5
+    assert measures["capture_time"] == pytest.approx(8.2e-3, rel=1e-2)
 
 
 def test_air_takes_most_of_the_drop_in_air(solved):

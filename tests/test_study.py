@@ -90,6 +90,14 @@ def test_value_of_an_axis_is_the_float_of_a_case_file(text):
     assert found.case(0).body.radius == base.replace({"body.radius": text}).body.radius
 
 
+def test_a_listed_whole_number_stays_whole_beside_an_equal_float():
+    floats = study(f'"{HUMIDITY}" = {{values = [1.0]}}')
+    whole = study('"numerics.max_impacts" = {values = [1]}')
+    assert floats.values(0, 1)[HUMIDITY].dtype == np.float64
+    assert whole.values(0, 1)["numerics.max_impacts"].dtype == np.int64
+    assert load(whole.case(0).toml()) == whole.case(0)
+
+
 def test_whole_numbers_stay_whole_and_differ():
     found = study(
         '"numerics.max_impacts" = {from = 1, to = 1000, steps = 4, scale = "log"}\n'

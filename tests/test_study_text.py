@@ -193,7 +193,11 @@ def test_every_example_of_a_study_can_be_computed_and_says_first_what_to_expect(
 
 def test_example_studies_hold_as_many_cases_as_they_say():
     sizes = {path.stem: read(str(path)).size for path in EXAMPLES}
-    assert sizes == {"humidity-and-roughness": 10_000, "what-matters": 1024}
+    assert sizes == {
+        "humidity-and-roughness": 10_000,
+        "safe-humidity": 8091,
+        "what-matters": 1024,
+    }
 
 
 def test_examples_of_the_page_on_studies_are_read_as_it_says():

@@ -82,7 +82,7 @@ class Axis:
             SI floats, whole numbers (int64), switches (bool) or text (object); shape of `index`.
         """
         if self.listed:
-            return _array(self.listed)[index]
+            return _array(self.listed, tuple(map(type, self.listed)))[index]
         if self.steps <= _HELD:
             return _held(self)[index]
         return self._between(index / (self.steps - 1.0), whole_steps=True)
@@ -134,8 +134,8 @@ def _held(axis: Axis) -> np.ndarray:
 
 
 @functools.lru_cache(maxsize=64)
-def _array(values: tuple[Value, ...]) -> np.ndarray:
-    """Listed values as an array."""
-    kinds = {type(value) for value in values}
+def _array(values: tuple[Value, ...], types: tuple[type, ...]) -> np.ndarray:
+    """Listed values of these types as an array: 1, 1.0 and true are equal, and not the same."""
+    kinds = set(types)
     dtypes: dict[type, type] = {float: np.float64, int: np.int64, bool: np.bool_}
     return np.array(values, dtype=dtypes.get(kinds.pop(), object) if len(kinds) == 1 else object)

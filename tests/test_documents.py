@@ -1,0 +1,84 @@
+"""The documentation: pages that run, what they must hold, and that a broken one is found."""
+
+import ast
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import asperity
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+SOURCE = ROOT / "src" / "asperity"
+RUN = """---
+file_format: mystnb
+kernelspec:
+  name: python3
+  display_name: Python 3
+---
+
+# Page
+
+"""
+
+
+def built(folder: Path, cell: str) -> subprocess.CompletedProcess[str]:
+    """Sphinx, called as by `make docs`, on one page with one cell and the project's settings."""
+    shutil.copy(DOCS / "conf.py", folder)
+    (folder / "index.md").write_text(f"{RUN}```{{code-cell}} python\n{cell}\n```\n")
+    command = [sys.executable, "-m", "sphinx", "-E", "-W", "--keep-going", "-q", "-b", "html"]
+    return subprocess.run(
+        [*command, str(folder), str(folder / "out")], capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.parametrize("cell", ["1 / 0", "%%bash -e\nfalse\ntrue"])
+def test_a_broken_example_fails_the_build(cell: str, tmp_path: Path):
+    ran = built(tmp_path, cell)
+    assert ran.returncode != 0
+    assert "Error" in ran.stderr
+
+
+def test_a_sound_example_does_not(tmp_path: Path):
+    ran = built(tmp_path, "%%bash -e\necho sound")
+    assert ran.returncode == 0, ran.stderr
+    assert "sound" in (tmp_path / "out" / "index.html").read_text()
+
+
+def test_every_equation_of_the_theory_has_a_source_and_a_file():
+    page = (DOCS / "theory.md").read_text()
+    labels = re.findall(r"^\$\$ \(([\w-]+)\)$", page, re.MULTILINE)
+    rows = re.findall(r"^\| \{eq\}`([\w-]+)` \| .+? \| (.+?) \| `(.+?)` \|$", page, re.MULTILINE)
+    assert len(labels) > 50
+    assert [label for label, _, _ in rows] == labels
+    there = {file for *_, file in rows if (SOURCE / file).exists() or (ROOT / file).exists()}
+    assert there == {file for *_, file in rows}
+
+
+def test_every_public_name_is_documented():
+    page = (DOCS / "api.md").read_text()
+    named = set(re.findall(r"auto(?:class|function|exception):: (\w+)", page))
+    assert set(asperity.__all__) <= named
+
+
+def test_commands_of_pages_that_run_are_of_the_program():
+    from typer.main import get_command
+
+    from asperity.cli import app
+
+    known = set(get_command(app).commands)  # type: ignore[attr-defined]
+    for page in DOCS.glob("*.md"):
+        cells = re.findall(r"^%%bash -e.*?\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+        named = set(re.findall(r"^asperity (\S+)", "".join(cells), re.MULTILINE))
+        assert named <= known, page.name
+
+
+def test_every_page_that_uses_an_example_names_one_that_is_there():
+    for page in DOCS.glob("*.md"):
+        for call in re.findall(r"^enter\(.*\)$", page.read_text(), re.MULTILINE):
+            names = [ast.literal_eval(one) for one in ast.parse(call).body[0].value.args]
+            assert all((ROOT / "examples" / name).is_file() for name in names), page.name
