@@ -211,6 +211,19 @@ def test_an_open_connection_is_answered_without_delay():
     assert min(waits[5:]) < 0.03
 
 
+def test_silent_connections_do_not_keep_others_out():
+    """More than there are places for; they are closed where no request comes."""
+    with served("--quiet") as (_, port), contextlib.ExitStack() as held:
+        for _ in range(70):
+            silent = held.enter_context(socket.create_connection(("127.0.0.1", port), timeout=30))
+            silent.sendall(b"GET / HT")
+        until, status = time.monotonic() + 40.0, 503
+        while status != 200 and time.monotonic() < until:
+            time.sleep(1.0)
+            status = answered(port)
+        assert status == 200
+
+
 def test_ten_thousand_requests_leave_it_answering_in_bounded_memory():
     with served("--quiet") as (running, port):
         flood(port, 1000, within=20.0)

@@ -12,7 +12,8 @@ import numpy as np
 from ._jax import jax, jnp
 from .case import Case
 from .case.build import CLEARANCE, Problem, build
-from .contact import Contact
+from .contact import Contact, ElasticContact, RigidContact
+from .contact.resolution import in_steps
 from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
@@ -65,8 +66,8 @@ def solve(
     SimulationError
         If the numerics fail; its ``partial`` is the result so far.
     """
-    tell = progress or _silently
-    problem, flight = _flown(case, tell, stop)
+    tell, problem = progress or _silently, build(case)
+    flight = _flown(case, problem, tell, stop)
     result = _told(case, name, problem, flight, tell, None)
     tell(1.0, "done")
     if flight.outcome is Outcome.FAILED and throw:
@@ -84,6 +85,9 @@ def explore(
 ) -> tuple[Result, Curve]:
     """Motion and force curve of a case, from the same tables: what somebody sees at a glance.
 
+    Curves are cut in one of a few ways, each at least as fine as :func:`solve` cuts them, so that
+    cases that differ in values run the same programs.
+
     Parameters
     ----------
     case, name, progress, stop
@@ -97,8 +101,8 @@ def explore(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or _silently
-    problem, flight = _flown(case, tell, stop)
+    tell, problem = progress or _silently, _in_steps(build(case))
+    flight = _flown(case, problem, tell, stop)
     result = _told(case, name, problem, flight, tell, most)
     if flight.outcome is Outcome.FAILED:
         raise SimulationError(_failure(case), result)
@@ -109,15 +113,23 @@ def explore(
     return result, Curve(case, name, **drawn)
 
 
-def _flown(case: Case, tell: Report, stop: threading.Event | None) -> tuple[Problem, Flight]:
-    """What is built from a case, and its motion."""
-    problem = build(case)
+def _in_steps(problem: Problem) -> Problem:
+    """The problem with its curves cut in one of a few ways."""
+    contact = problem.contact
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return problem
+    resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
+    return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
+
+
+def _flown(case: Case, problem: Problem, tell: Report, stop: threading.Event | None) -> Flight:
+    """The motion of what was built from a case."""
     limits = Limits.of(case.tolerance)
     contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=True)
     _check_release(problem, table)
     if problem.late is None and problem.creep is None:
-        return problem, _fly(problem.body, contact, table, datum, limits, tell, stop)
-    return problem, _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+        return _fly(problem.body, contact, table, datum, limits, tell, stop)
+    return _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
 
 
 def _told(

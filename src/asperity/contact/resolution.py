@@ -72,6 +72,28 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
     return Resolution(panels, nodes, pieces + (share > 0.1))
 
 
+_RIGID = (Resolution(7, 16, 2),)
+_DEFORMS = (Resolution(6, 8, 2), Resolution(9, 16, 3))
+
+
+def in_steps(resolved: Resolution, *, deforms: bool) -> Resolution:
+    """The first of a few resolutions that is at least as fine, so that few are compiled."""
+    steps = [*(_DEFORMS if deforms else _RIGID)]
+    while any(have < need for have, need in zip(steps[-1][:4], resolved[:4], strict=True)):
+        last = steps[-1]
+        steps.append(last._replace(
+            panels=2 * last.panels, nodes=max(16, resolved.nodes), pieces=2 * last.pieces,
+            shared=2 * last.shared,
+        ))  # fmt: skip
+    step = next(
+        step for step in steps
+        if all(have >= need for have, need in zip(step[:4], resolved[:4], strict=True))
+    )  # fmt: skip
+    return resolved._replace(
+        panels=step.panels, nodes=step.nodes, pieces=step.pieces, shared=step.shared
+    )
+
+
 def _shared(reach: float, panels: int) -> int:
     """Even pieces of quadratures that the places of the outermost panel share."""
     step = (asinh(reach / LINEAR) + asinh(_DEEP / LINEAR)) / panels

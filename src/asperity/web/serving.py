@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import ipaddress
 import socket
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from asperity.case import load
 from asperity.errors import InputError, OutputError, SimulationError
@@ -17,6 +20,9 @@ from asperity.web.answer import DRAWN
 from asperity.web.app import LOCAL, application
 
 MOST_CONNECTIONS = 64
+
+SILENCE = 10.0
+"""How long a connection may wait for a request [s], at least; at most twice as long."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +42,34 @@ class Address:
     host: str = "127.0.0.1"
     port: int = 8737
     names: Sequence[str] = ()
+
+
+class Impatient(H11Protocol):
+    """HTTP that closes a connection on which no request comes.
+
+    The server has places for `MOST_CONNECTIONS`: silent ones must not take them all.
+    """
+
+    _checks: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        """Begin to look at the clock."""
+        super().connection_made(transport)
+        self._checks = self.loop.call_later(SILENCE, self._check, None)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        """Look no longer."""
+        if self._checks is not None:
+            self._checks.cancel()
+        super().connection_lost(error)
+
+    def _check(self, before: object) -> None:
+        """Close where no request has come since the last look, else look again."""
+        cycle = self.cycle
+        if cycle is before and (cycle is None or cycle.response_complete):
+            self.transport.close()
+            return
+        self._checks = self.loop.call_later(SILENCE, self._check, cycle)
 
 
 def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]) -> None:
@@ -62,6 +96,7 @@ def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]
     app = application(first, names)
     config = uvicorn.Config(
         app,
+        http=Impatient,
         log_level="warning",
         access_log=False,
         server_header=False,
