@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-import asperity
 from asperity import records
 from asperity.case import load_file
 from asperity.case.reading import builtin_text, tables
 from asperity.errors import InputError
 from asperity.records.layout import json_object
+from asperity.solver import explore
 from asperity.topography.making.generation import self_affine
 from asperity.web import surfaces as dropped
 from asperity.web.app import application
@@ -194,7 +194,7 @@ def test_a_case_of_paths_is_not_what_a_page_begins_with(tmp_path: Path):
 def test_an_upload_gives_what_the_file_itself_gives(
     client: TestClient, surface: bytes, tmp_path: Path
 ):
-    """The same asperities, motion and warnings as `asperity run` beside the file."""
+    """The same asperities, motion and warnings as of a case beside the file."""
     token = upload(client, "scan.csv", surface)
     tables = case_of("scan.csv", source="gaussian", remove="mean")
     found = explored(client, tables, **{"scan.csv": token})["answer"]
@@ -202,7 +202,7 @@ def test_an_upload_gives_what_the_file_itself_gives(
     (tmp_path / "scan.csv").write_bytes(surface)
     toml = client.post("/api/toml", json={"case": tables}).json()["toml"]
     (tmp_path / "drop.toml").write_text(toml)
-    result = asperity.solve(load_file(tmp_path / "drop.toml"), name="drop")
+    result, _ = explore(load_file(tmp_path / "drop.toml"), name="drop")
     wanted = json.loads(json.dumps(json_object(result)).replace(f"{tmp_path}/", ""))
     assert found["surface"]["files"][0]["file"] == "scan.csv"
     assert found["surface"]["files"][0]["sha256"] == wanted["surface"]["files"][0]["sha256"]

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import importlib
 import io
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from asperity.case import Case
 from asperity.errors import InputError, SimulationError
 from asperity.result import Curve, Result
 from asperity.web.answer import DRAWN, answer
 from asperity.web.asking import Asked
 from asperity.web.jobs import Report
-from asperity.web.surfaces import Surfaces, renamed, retold
+from asperity.web.surfaces import Surfaces, Upload, renamed, retold
 
 FILES = {
     "record.nc": "application/x-netcdf",
@@ -29,27 +32,36 @@ FILES = {
 }
 """Files that can be downloaded, and what they are."""
 
-Explored = tuple[Result, Curve]
-
 
 def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], Any]:
     """A computation that gives what the page shows."""
 
     def compute(tell: Report, stop: threading.Event) -> dict[str, Any]:
-        result, curve = _explored(asked, surfaces, tell, stop, DRAWN)
-        return answer(result, curve)
+        with _resolved(asked, surfaces, tell) as (case, uploads):
+            solver = importlib.import_module("asperity.solver")  # which loads JAX
+            result, curve = solver.explore(
+                case, name=asked.name, most=DRAWN, progress=tell, stop=stop
+            )
+            return answer(renamed(result, asked.case(), uploads), curve)
 
     return compute
 
 
 def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threading.Event], bytes]:
-    """A computation that gives one of `FILES`."""
+    """A computation that gives one of `FILES`, as `asperity run` and `asperity curve` write it."""
 
     def compute(tell: Report, stop: threading.Event) -> bytes:
-        result, curve = _explored(asked, surfaces, tell, stop, None)
+        with _resolved(asked, surfaces, tell) as (case, uploads):
+            solver = importlib.import_module("asperity.solver")  # which loads JAX
+            made: Result | Curve
+            if name.startswith("curve"):
+                drawn = solver.curve(case, name=asked.name, progress=tell, stop=stop)
+                made = replace(drawn, case=asked.case())
+            else:
+                result = solver.solve(case, name=asked.name, progress=tell, stop=stop)
+                made = renamed(result, asked.case(), uploads)
         if name.endswith(".csv"):
-            return table(curve if name.startswith("curve") else result)
-        made = curve if name.startswith("curve") else result
+            return table(made)
         if name.endswith(".png"):
             return picture(made, name.removesuffix(".png"))
         return made.files(pictures=False)[name]
@@ -57,21 +69,19 @@ def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threa
     return compute
 
 
-def _explored(
-    asked: Asked, surfaces: Surfaces, tell: Report, stop: threading.Event, most: int | None
-) -> Explored:
-    case = asked.case()
+@contextlib.contextmanager
+def _resolved(
+    asked: Asked, surfaces: Surfaces, tell: Report
+) -> Iterator[tuple[Case, Mapping[str, Upload]]]:
+    """The case to compute; errors within name files as the user does."""
     tell(0.0, "loading")
-    from asperity.solver import explore  # which loads JAX
-
-    resolved, uploads = surfaces.resolved(case, asked.surfaces)
+    case, uploads = surfaces.resolved(asked.case(), asked.surfaces)
     try:
-        result, curve = explore(resolved, name=asked.name, most=most, progress=tell, stop=stop)
+        yield case, uploads
     except InputError as error:
         raise InputError(retold(str(error), uploads), key=error.key) from error
     except SimulationError as error:
         raise SimulationError(retold(str(error), uploads)) from error
-    return renamed(result, case, uploads), replace(curve, case=case)
 
 
 _drawing = threading.Lock()
