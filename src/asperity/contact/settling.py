@@ -214,7 +214,15 @@ class _Matrix(NamedTuple):
 
 @jax.custom_batching.sequential_vmap
 def _factors(matrix: jax.Array) -> tuple[jax.Array, jax.Array]:
-    factors, _, order = jax.lax.linalg.lu(matrix)
+    factors, pivots, _ = jax.lax.linalg.lu(matrix)
+    rows = jnp.arange(len(pivots), dtype=pivots.dtype)
+    # Next to no matrix here needs an exchange of rows, and to find their order takes as long as
+    # half the factors.
+    order = jax.lax.cond(
+        jnp.all(pivots == rows),
+        lambda: rows,
+        lambda: jax.lax.linalg.lu_pivots_to_permutation(pivots, len(pivots)),
+    )
     return factors, order
 
 
