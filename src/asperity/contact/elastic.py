@@ -19,7 +19,7 @@ from .base import Contact, Held, State, Way
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
-from .settling import Rest, resting, rise_of, settle
+from .settling import Matrix, Rest, resting, rise_of, settle
 
 _ALIKE = 3.0  # rms heights between reversals whose ways are interpolated
 
@@ -256,7 +256,8 @@ class ElasticContact(Contact):
         frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
         bound = old.size > 0.0
         first = jnp.where(bound, old.size, first_size(frozen, place))
-        size, rest = fitted(frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound))
+        free, blank = jnp.logical_not(bound), Matrix.blank(self.rings)
+        size, rest, _ = fitted(frozen, place, old.thresholds, first, old.lift, free, blank)
         return size, self._rest(separation, memory.thresholds, size, rest)
 
     def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:

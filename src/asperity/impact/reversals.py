@@ -14,17 +14,28 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
-from ..contact.base import Contact, Held, Memory, Way
+from ..contact.base import Contact, Held, Memory
 from ..polynomials import NODES, chebyshev_sum, local
 from ..program import kept
 from .datum import Datum
 from .history import Body
-from .table import CENTRAL, FORCE, SIZE, TOUCHING, Pieces, Table, all_rows, fit, outer_row, quantities
+from .table import (
+    CENTRAL,
+    FORCE,
+    SIZE,
+    TOUCHING,
+    Pieces,
+    Table,
+    all_rows,
+    fit,
+    outer_row,
+    quantities,
+)
 
 CLOSE = 1e-8
 """Error of the work along a way, over the impact energy, up to which the polynomial serves."""
 
-_NONE = 1e-280  # touching asperities: their logarithm is finite
+_NONE = 1e-120  # touching asperities: their logarithm and its derivatives are finite
 _FALL = 0.1  # of the coefficients over the place of the reversal, from one to the next, at least
 _BEND = 2  # degree of the size of the mesh over that place
 
@@ -101,16 +112,17 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     )
     jobs = places, held, jnp.broadcast_to(wanted[:, None], (2, ways))
     jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(2 * ways, *leaf.shape[2:]), jobs)
-    solved = jax.lax.map(lambda job: contact.way_from(*job, within), jobs)
+    solved = jax.lax.map(lambda job: contact.way_from(job[0], job[1], job[2], within), jobs)
     rows = jax.vmap(all_rows)(solved.states)
     touching = jnp.where(rows[..., TOUCHING] > _NONE, rows[..., TOUCHING], _NONE)
     rows = rows / _scales(touching, rows.shape[-1])
     length = jnp.abs(solved.leave - jobs[0][:, None])
-    fitted = [_over_places(x, nodes) for x in (length, jnp.log(touching), rows)]
+    each = length, jnp.log(touching), rows
+    length, numbers, rows = (_over_places(x, nodes) for x in each)
     most = jnp.max(touching.reshape(2, -1), axis=1)
-    error = most * _error(*fitted) / jnp.where(energy > 0.0, energy, 1.0)
+    error = most * _error(length, numbers, rows) / jnp.where(energy > 0.0, energy, 1.0)
     error = jnp.where(wanted, error, jnp.inf)
-    return table._replace(reversals=Reversals(low, high, *fitted, error))
+    return table._replace(reversals=Reversals(low, high, length, numbers, rows, error))
 
 
 def _scales(touching: jax.Array, count: int) -> jax.Array:
@@ -188,9 +200,7 @@ def _solved(
     return _along(way.enter, way.leave, fit(all_rows(way.states)), parting)
 
 
-def _along(
-    enter: jax.Array, leave: jax.Array, values: jax.Array, parting: jax.Array
-) -> Pieces:
+def _along(enter: jax.Array, leave: jax.Array, values: jax.Array, parting: jax.Array) -> Pieces:
     """Pieces of polynomials in the direction of motion."""
     odd = (-1.0) ** np.arange(NODES)[:, None]
     values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
