@@ -262,7 +262,7 @@ def _prepared(
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn)
-        prepared = _prepare.ready(contact, problem.body)
+        prepared = _prepare.ready(contact, problem.body, drawn)
         tell(0.06, "force curves")
         table, datum = prepared()
         if float(table.error) <= max(tolerance, contact.blur):
@@ -283,7 +283,7 @@ def _prepared(
 
 def _compile(contact: Contact, body: Body, limits: Limits, *, drawn: bool) -> None:
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
-    table, datum = _prepare.ahead(contact, body)
+    table, datum = _prepare.ahead(contact, body, drawn)
     progress, origin = _start.ahead(contact, body, table)
     _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
     if drawn:

@@ -209,6 +209,29 @@ class Contact(eqx.Module):
         """
         return None
 
+    @property
+    def reversals(self) -> int:
+        """Number of ways in each direction that stand for all; 0 where none is worth keeping."""
+        return 0
+
+    def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
+        """Whether few ways stand for those from all reversals between two separations [m]."""
+        return jnp.zeros(jnp.shape(low), bool)
+
+    def way_from(
+        self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
+    ) -> Way:
+        """The way from a reversal on an outermost branch, that came there as ``held`` says.
+
+        Size and field of ``held`` need not be those of the branch. Nothing is solved where it is
+        not ``wanted``.
+        """
+        raise NotImplementedError
+
+    def on_branch(self, memory: Memory) -> jax.Array:
+        """Whether the last reversal was on an outermost branch, for :meth:`way_from`."""
+        return jnp.asarray(False)
+
     @abc.abstractmethod
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """Memory after a monotone motion from ``memory`` to ``separation``."""

@@ -19,7 +19,9 @@ from .base import Contact, Held, State, Way
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
-from .settling import Rest, resting, rise_of
+from .settling import Matrix, Rest, resting, rise_of, settle
+
+_ALIKE = 3.0  # rms heights between reversals whose ways are interpolated
 
 
 @kept
@@ -34,11 +36,14 @@ class RingMemory(NamedTuple):
         Length [m] of the mesh; 0 where all thresholds are infinite and the mesh is free.
     lift
         Displacement [m] of the rings at the last reversal, shape (rings + 1,).
+    outer
+        Whether that was on an outermost branch.
     """
 
     thresholds: Thresholds
     size: jax.Array
     lift: jax.Array
+    outer: jax.Array
 
 
 class ElasticContact(Contact):
@@ -103,7 +108,8 @@ class ElasticContact(Contact):
         return self.interface.blur
 
     def refined(self, factor: int) -> ElasticContact:
-        finer = self.resolved._replace(panels=factor * self.resolved.panels)
+        now = self.resolved
+        finer = now._replace(panels=factor * now.panels, reversals=factor * now.reversals)
         return dataclasses.replace(self, resolved=finer)
 
     def fresh(self) -> RingMemory:
@@ -113,7 +119,7 @@ class ElasticContact(Contact):
         rows = tuple(
             jnp.full(self.rings + 1, -jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded
         )
-        return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1))
+        return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1), jnp.asarray(False))
 
     def state(self, separation: jax.Array, memory: RingMemory) -> State:
         size, rest = self._alone(separation, memory)
@@ -211,27 +217,63 @@ class ElasticContact(Contact):
         bound = jnp.logical_and(memory.size > 0.0, start < self.reach)
         return jax.lax.cond(bound, back, nowhere)
 
+    @property
+    def reversals(self) -> int:
+        return self.resolved.reversals if self.mechanisms else 0
+
+    def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
+        """Where forces fall off along a way by about as much from all of them, and it is short."""
+        widths = [law.breaking_gap - law.forming_gap for law in self.interface.hysteretic]
+        rms = self.interface.heights.rms
+        apart = high - low
+        short = apart * jnp.max(jnp.stack(widths)) < rms**2
+        return short & (apart < _ALIKE * rms) & (high < self.reach)
+
+    def way_from(
+        self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
+    ) -> Way:
+        size = jax.lax.stop_gradient(held.size)
+        old = self._swept(held)
+        rest = settle(*jax.lax.stop_gradient((self, start, old, size, held.field)), self.rings)
+        rest = self._rest(start, old, size, rest)
+        before = RingMemory(old, size, rest.lift, held.outer)
+        memory = self.turned(before, start, held._replace(field=rest.lift))
+        memory = memory._replace(size=jnp.where(wanted, size, 0.0))
+        way = self.way(memory, start, ~held.parting, within)
+        assert way is not None
+        return way
+
+    def on_branch(self, memory: RingMemory) -> jax.Array:
+        return memory.outer
+
+    def _swept(self, held: Held) -> Thresholds:
+        """Thresholds on the branch on which a body comes."""
+        whole = jnp.where(held.parting, -jnp.inf, jnp.full(self.rings + 1, jnp.inf))
+        return (whole,) * len(self.mechanisms)
+
     def _alone(self, separation: jax.Array, memory: RingMemory) -> tuple[jax.Array, Rest]:
         """Size of the mesh and the rings at one separation, from nothing."""
         frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
         bound = old.size > 0.0
         first = jnp.where(bound, old.size, first_size(frozen, place))
-        size, rest = fitted(frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound))
+        free, blank = jnp.logical_not(bound), Matrix.blank(self.rings)
+        size, rest, _ = fitted(frozen, place, old.thresholds, first, old.lift, free, blank)
         return size, self._rest(separation, memory.thresholds, size, rest)
 
     def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
         size, rest = self._alone(separation, memory)
         h = separation + rise_of(self, size, self.rings) + rest.lift
-        return RingMemory(self.interface.remember(memory.thresholds, h), size, rest.lift)
+        thresholds = self.interface.remember(memory.thresholds, h)
+        return RingMemory(thresholds, size, rest.lift, jnp.asarray(False))
 
     def turned(self, memory: RingMemory, separation: jax.Array, held: Held) -> RingMemory:
         """From the displacement that the curves give there."""
         size = jax.lax.stop_gradient(held.size)
         h = separation + rise_of(self, size, self.rings) + held.field
         # On an outermost branch no ring holds to what it remembered on its former mesh.
-        swept = jnp.where(held.parting, -jnp.inf, jnp.inf)
-        old = tuple(jnp.where(held.outer, swept, b) for b in memory.thresholds)
-        return RingMemory(self.interface.remember(old, h), size, held.field)
+        pairs = zip(self._swept(held), memory.thresholds, strict=True)
+        old = tuple(jnp.where(held.outer, swept, b) for swept, b in pairs)
+        return RingMemory(self.interface.remember(old, h), size, held.field, held.outer)
 
     def bonded(self, memory: RingMemory) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)

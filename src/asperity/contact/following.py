@@ -10,7 +10,7 @@ from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
 from .base import pieces_to, way_points
 from .resolution import Resolution
-from .settling import Rest, Rough, asked_size, settle
+from .settling import Matrix, Rest, Rough, asked_size, settle_near
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
@@ -115,24 +115,26 @@ def fitted(
     size: jax.Array,
     lift: jax.Array,
     free: jax.Array,
-) -> tuple[jax.Array, Rest]:
+    matrix: Matrix,
+) -> tuple[jax.Array, Rest, Matrix]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
     rings = contact.rings
     flat = jnp.zeros_like(lift)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
-        size, ratio, rest, passes = now
+        size, ratio, rest, matrix, passes = now
         size = size * ratio
-        rest = settle(contact, place, thresholds, size, rest.lift, rings)
-        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
+        rest, matrix = settle_near(contact, place, thresholds, size, rest.lift, matrix)
+        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, matrix, passes + 1
 
     def unfit(now: tuple[Any, ...]) -> jax.Array:
-        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[3] < _PASSES)
-        return jnp.logical_or(now[3] == 0, off)
+        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[-1] < _PASSES)
+        return jnp.logical_or(now[-1] == 0, off)
 
     blank = Rest(lift, flat, flat[:-1], jnp.zeros(()))
-    size, _, rest, _ = jax.lax.while_loop(unfit, again, (size, jnp.ones(()), blank, 0))
-    return size, rest
+    begin = size, jnp.ones(()), blank, matrix, 0
+    size, _, rest, matrix, _ = jax.lax.while_loop(unfit, again, begin)
+    return size, rest, matrix
 
 
 def descend(
@@ -144,25 +146,26 @@ def descend(
     flat = jnp.zeros(contact.rings + 1)
     above = Trail.straight(corners[0] + sigma, flat, flat, -sigma)
 
-    def step(carry: tuple[Trail, jax.Array, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
-        trail, factor, sizes = carry
+    def step(carry: tuple[Any, ...], job: tuple[jax.Array, jax.Array]) -> Any:
+        trail, factor, sizes, matrix = carry
         k, place = job
         corner = k < count
         trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
         light = first_size(contact, place)
         between = jnp.interp(place, corners[::-1], sizes[::-1])
-        size, rest = fitted(
+        size, rest, matrix = fitted(
             contact,
             place,
             thresholds,
             jnp.where(corner, light * factor, between),
             jnp.where(corner, trail.lifts[0], trail.guess(place)),
             corner,
+            matrix,
         )
         sizes = jnp.where(jnp.arange(count) == k, size, sizes)
-        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
+        return (trail.append(place, rest.lift), size / light, sizes, matrix), (size, rest)
 
-    begin = (above, jnp.ones(()), jnp.ones(count))
+    begin = above, jnp.ones(()), jnp.ones(count), Matrix.blank(contact.rings)
     jobs = jnp.concatenate([corners, places])
     _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
     sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
@@ -185,13 +188,13 @@ def retrace(
     whole = jnp.broadcast_to(start, (pieces,))
     flat = jnp.zeros_like(memory.lift)
 
-    def step(carry: tuple[Trail, jax.Array, jax.Array], k: jax.Array) -> Any:
-        trail, enter, leave = carry
+    def step(carry: tuple[Any, ...], k: jax.Array) -> Any:
+        trail, enter, leave, matrix = carry
         piece = jnp.maximum(k - 1, 0) // nodes
         share = jnp.asarray(steps)[jnp.maximum(k - 1, 0) % nodes]
         place = enter[piece] + (leave - enter)[piece] * share
         lift = jnp.where(k == 0, memory.lift, trail.guess(place))
-        rest = settle(contact, place, memory.thresholds, size, lift, contact.rings)
+        rest, matrix = settle_near(contact, place, memory.thresholds, size, lift, matrix)
         marks = _marks(contact, memory, start, parting, rest)
         pair = pieces_to(marks, start, parting, within)
         enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
@@ -200,10 +203,11 @@ def retrace(
         trail = jax.tree_util.tree_map(
             lambda a, b: jnp.where(k == 0, a, b), straight, trail.append(place, rest.lift)
         )
-        return (trail, enter, leave), (place, rest)
+        return (trail, enter, leave, matrix), (place, rest)
 
-    begin = (Trail.straight(start, memory.lift, flat, sigma), whole, whole)
-    (_, enter, leave), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
+    trail = Trail.straight(start, memory.lift, flat, sigma)
+    begin = trail, whole, whole, Matrix.blank(contact.rings)
+    (_, enter, leave, _), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
     places, rests = jax.tree_util.tree_map(
         lambda leaf: leaf[1:].reshape(pieces, nodes, *leaf.shape[1:]), found
     )

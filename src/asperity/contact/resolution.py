@@ -31,12 +31,15 @@ class Resolution(NamedTuple):
         Number of these pieces, for each law.
     shared
         Even pieces of the quadratures that the places of one panel share.
+    reversals
+        Ways back from reversals that are solved for each direction, where they stand for all.
     """
 
     panels: int
     nodes: int
     pieces: int
     shared: int = EVEN
+    reversals: int = 10
 
 
 def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:

@@ -1,7 +1,8 @@
 """Equilibrium of rings: separation h = d + rise + u(p(h)) on a half-space.
 
 Newton's method that keeps its matrix as long as it gains a digit with it: a solution next to
-a known one then costs one factorization. Derivatives pass by the implicit function theorem.
+a known one then costs one factorization, or none where the bulk hardly gives way and the matrix
+of the known one serves. Derivatives pass by the implicit function theorem.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from ..shapes import Sphere
 
 _ENOUGH = 1e-12  # relative change left in the separation
 _STALE = 0.1  # a matrix that gains less than this factor a step is made anew
+_SOFT = 0.02  # rates of separation this near to 1: the matrix changes too little along a path
 _RESTART = 20  # steps after which a bad first guess is given up
 _STEPS = 120
 
@@ -99,53 +101,85 @@ def settle(
     """Rings in equilibrium at a rigid separation, from a first guess of their ``lift``.
 
     Without derivatives; :func:`resting` gives them.
+    """
+    return settle_near(contact, separation, thresholds, size, lift, Matrix.blank(rings))[0]
+
+
+def settle_near(
+    contact: Rough,
+    separation: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    lift: jax.Array,
+    matrix: Matrix,
+) -> tuple[Rest, Matrix]:
+    """The same near a known solution, from its ``matrix``; and the matrix of this one.
 
     Too small a separation is the safe side to start from: pressure falls and is convex in
     h, so that a step never leaves that side far behind. A guess that does not converge is
     given up for that side.
     """
-    mesh = ring_mesh(rings)
-    count = len(mesh.radius)
-    rows = _rows(contact, size, rings)
+    rings = len(matrix.slope)
     safe = separation + rise_of(contact, size, rings)
-    sigma = contact.interface.heights.rms
-
+    newton = _Newton(contact, thresholds, safe, _rows(contact, size, rings))
     one = jnp.ones(())
+    first = _Step(safe + lift, jnp.zeros(rings), one, one, jnp.zeros(()), jnp.asarray(0))
+    now = jax.lax.cond(matrix.serves, lambda: newton.nearby(first, matrix), lambda: first)
 
-    def moved(now: _Step, pressure: jax.Array, matrix: _Matrix) -> _Step:
-        move = matrix.back(now.h - safe - rows @ pressure[:-1])
-        change = jnp.max(jnp.abs(move) / (sigma + jnp.abs(now.h)))
+    def go_on(carry: tuple[_Step, Matrix]) -> jax.Array:
+        now, _ = carry
+        return jnp.logical_not(now.enough) & (now.steps < _STEPS)
+
+    end, matrix = jax.lax.while_loop(go_on, lambda carry: newton.anew(carry[0]), (now, matrix))
+    return Rest(end.h - safe, matrix.rates, end.pressure, end.off), matrix
+
+
+class _Newton(NamedTuple):
+    """The rings at one place: separations from ``safe`` on, and displacement per pressure."""
+
+    contact: Rough
+    thresholds: Thresholds
+    safe: jax.Array
+    rows: jax.Array
+
+    def pressure(self, h: jax.Array) -> jax.Array:
+        return self.contact.interface.pressure(h, self.thresholds)
+
+    def moved(self, now: _Step, pressure: jax.Array, matrix: Matrix) -> _Step:
+        """One step on, from where the pressure is known."""
+        area = ring_mesh(len(matrix.slope)).area
+        move = matrix.back(now.h - self.safe - self.rows @ pressure[:-1])
+        change = jnp.max(jnp.abs(move) / (self.contact.interface.heights.rms + jnp.abs(now.h)))
         rate = change / now.change
-        load = jnp.sum(mesh.area * jnp.abs(pressure[:-1]))
-        off = jnp.sum(mesh.area * jnp.abs(matrix.slope * move[:-1]))
+        load = jnp.sum(area * jnp.abs(pressure[:-1]))
+        off = jnp.sum(area * jnp.abs(matrix.slope * move[:-1]))
         off = jnp.minimum(rate, 1.0) * off / jnp.where(load > 0.0, load, 1.0)
         return _Step(now.h - move, pressure[:-1], change, rate, off, now.steps + 1)
 
-    def anew(carry: tuple[_Step, _Matrix]) -> tuple[_Step, _Matrix]:
-        """One step with a new matrix, and more with the same while it serves."""
-        now, _ = carry
-        pressure, slope = _pressed(contact, thresholds, now.h)
-        matrix = _Matrix.of(rows, slope[:-1])
+    def more(self, now: _Step, matrix: Matrix) -> _Step:
+        """Further steps with the same matrix while it serves."""
 
         def serves(now: _Step) -> jax.Array:
             return jnp.logical_not(now.enough) & (now.rate < _STALE)
 
-        def again(now: _Step) -> _Step:
-            return moved(now, contact.interface.pressure(now.h, thresholds), matrix)
+        return jax.lax.while_loop(
+            serves, lambda now: self.moved(now, self.pressure(now.h), matrix), now
+        )
 
-        now = jax.lax.while_loop(serves, again, moved(now, pressure, matrix))
+    def nearby(self, first: _Step, matrix: Matrix) -> _Step:
+        """First with the matrix of a known solution; two steps show how well it serves."""
+        now = self.moved(first, self.pressure(first.h), matrix)
+        return self.more(now._replace(rate=jnp.maximum(now.rate, _SOFT)), matrix)
+
+    def anew(self, now: _Step) -> tuple[_Step, Matrix]:
+        """One step with a new matrix, and more with the same."""
+        pressure, slope = _pressed(self.contact, self.thresholds, now.h)
+        matrix = Matrix.of(self.rows, slope[:-1])
+        now = self.more(self.moved(now, pressure, matrix), matrix)
         restart = (now.steps > _RESTART) & (now.steps < 2 * _RESTART) & ~now.enough
-        begun = _Step(safe, now.pressure, one, one, now.off, jnp.asarray(2 * _RESTART))
+        one = jnp.ones(())
+        begun = _Step(self.safe, now.pressure, one, one, now.off, jnp.asarray(2 * _RESTART))
         return jax.tree_util.tree_map(lambda a, b: jnp.where(restart, a, b), begun, now), matrix
-
-    def go_on(carry: tuple[_Step, _Matrix]) -> jax.Array:
-        now, _ = carry
-        return jnp.logical_not(now.enough) & (now.steps < _STEPS)
-
-    first = _Step(safe + lift, jnp.zeros(count), one, one, jnp.zeros(()), jnp.asarray(0))
-    blank = _Matrix(jnp.eye(count), jnp.arange(count, dtype=jnp.int32), *(jnp.zeros(count),) * 2)
-    end, matrix = jax.lax.while_loop(go_on, anew, (first, blank))
-    return Rest(end.h - safe, matrix.back(jnp.ones(count + 1)), end.pressure, end.off)
 
 
 @eqx.filter_custom_jvp
@@ -188,20 +222,44 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
     return lift, jnp.append(inner, push[-1] + (rows[-1] * slope[:-1]) @ inner)
 
 
-class _Matrix(NamedTuple):
-    """I - C diag(slope), factorized; the mesh's end carries no pressure itself."""
+class Matrix(NamedTuple):
+    """I - C diag(slope), factorized; the mesh's end carries no pressure itself.
+
+    Attributes
+    ----------
+    factors, order, last, slope
+        The factors, the order of their rows, the row of the end, and the slope.
+    rates
+        Rate of the separation of the rings and of the end per rigid separation.
+    """
 
     factors: jax.Array
     order: jax.Array
     last: jax.Array
     slope: jax.Array
+    rates: jax.Array
 
     @classmethod
-    def of(cls, rows: jax.Array, slope: jax.Array) -> _Matrix:
+    def of(cls, rows: jax.Array, slope: jax.Array) -> Matrix:
         """The matrix of a displacement per pressure and the slope of the pressure."""
         scaled = rows * slope
         factors, order = _factors(jnp.eye(len(slope)) - scaled[:-1])
-        return cls(factors, order, scaled[-1], slope)
+        ones = jnp.ones(len(slope) + 1)
+        matrix = cls(factors, order, scaled[-1], slope, ones)
+        return matrix._replace(rates=matrix.back(ones))
+
+    @classmethod
+    def blank(cls, rings: int) -> Matrix:
+        """Of no known solution."""
+        count = len(ring_mesh(rings).radius)
+        none = jnp.zeros(count)
+        rates = jnp.full(count + 1, jnp.nan)
+        return cls(jnp.eye(count), jnp.arange(count, dtype=jnp.int32), none, none, rates)
+
+    @property
+    def serves(self) -> jax.Array:
+        """Whether it may serve for a solution near its own: where the bulk hardly gives way."""
+        return jnp.max(jnp.abs(self.rates - 1.0)) < _SOFT
 
     def back(self, right: jax.Array) -> jax.Array:
         """Its inverse times ``right``."""
@@ -214,7 +272,15 @@ class _Matrix(NamedTuple):
 
 @jax.custom_batching.sequential_vmap
 def _factors(matrix: jax.Array) -> tuple[jax.Array, jax.Array]:
-    factors, _, order = jax.lax.linalg.lu(matrix)
+    factors, pivots, _ = jax.lax.linalg.lu(matrix)
+    rows = jnp.arange(len(pivots), dtype=pivots.dtype)
+    # Next to no matrix here needs an exchange of rows, and to find their order takes as long as
+    # half the factors.
+    order = jax.lax.cond(
+        jnp.all(pivots == rows),
+        lambda: rows,
+        lambda: jax.lax.linalg.lu_pivots_to_permutation(pivots, len(pivots)),
+    )
     return factors, order
 
 

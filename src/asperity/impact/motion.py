@@ -13,13 +13,13 @@ from .damping import fall_to_rest
 from .datum import Datum, find_datum
 from .history import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
 from .phase import Turn, in_order, look_ahead, pull_work, row_at, travel_time
+from .reversals import inner_pieces, solve_reversals
 from .table import (
     FORCE,
     SIZE,
     STORED,
     TOUCHING,
     Table,
-    inner_pieces,
     join,
     outer_row,
     quantities,
@@ -35,8 +35,16 @@ LEAST_RISE = 1e-9
 """Share of the fall: a body that rises less stays where it turned."""
 
 
-def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
-    """Tabulate a contact over all separations that a body can reach, and find its datum."""
+FEW = 8
+"""Impacts up to which each reversal is better solved as it comes."""
+
+
+def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Datum]:
+    """Tabulate a contact over all separations that a body can reach, and find its datum.
+
+    With the ways back from reversals where ``many`` impacts follow (static): fewer are flown
+    sooner without.
+    """
     low = jax.lax.stop_gradient(contact.floor(body.release, body.kinetic, body.weight))
     falls = body.weight > 0.0
     rise = body.kinetic / jnp.where(falls, body.weight, 1.0)
@@ -49,8 +57,12 @@ def prepare(contact: Contact, body: Body) -> tuple[Table, Datum]:
     else:
         table = tabulate(contact, low, high)
     if contact.datum is None:
-        return table, find_datum(table, body.weight, contact.resting)
-    return table, Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
+        datum = find_datum(table, body.weight, contact.resting)
+    else:
+        datum = Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
+    if many and not contact.yields:
+        table = solve_reversals(contact, body, table, datum)
+    return table, datum
 
 
 def _worn_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
@@ -135,7 +147,7 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
     """
     tolerance = tolerance or Tolerance()
-    table, datum = prepare(contact, body)
+    table, datum = prepare(contact, body, tolerance.max_impacts > FEW)
     progress, origin = start(contact, body, table)
     end, impacts = fly(
         contact, body, table, datum, origin, progress, Limits.of(tolerance), tolerance.max_impacts

@@ -102,6 +102,8 @@ class Table(NamedTuple):
         Largest error estimate of the contact itself.
     left
         What the first impact left of a contact that yields; empty without one.
+    reversals
+        The ways back to the branches; empty where each is solved as it comes.
     """
 
     ends: jax.Array
@@ -110,6 +112,7 @@ class Table(NamedTuple):
     error: jax.Array
     residual: jax.Array
     left: Any = ()
+    reversals: Any = ()
 
     @property
     def looks(self) -> jax.Array:
@@ -200,7 +203,7 @@ def _tabulated(
     points = chebyshev.chebpts1(NODES)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
     states = contact.curves(ends, places)
-    values, errors = jax.vmap(_fit)(states), states.error
+    values, errors = jax.vmap(lambda branch: fit(all_rows(branch)))(states), states.error
     values = joined(ends, places, values)
     force = values[..., FORCE]
     width = jnp.diff(ends)
@@ -219,7 +222,7 @@ def _read_again(table: Table, places: jax.Array) -> jax.Array:
     x = local(table.ends[panel, None], table.ends[panel + 1, None], places)
     coefficients = jnp.moveaxis(table.values[0, panel], 1, 0)
     rows = chebyshev_sum(coefficients[:, :, None, :], x[..., None])
-    return jnp.einsum("kn,pnq->pkq", _to_coefficients(NODES), rows)
+    return fit(rows)
 
 
 def _works(ends: jax.Array, values: jax.Array) -> Works:
@@ -236,9 +239,13 @@ def _works(ends: jax.Array, values: jax.Array) -> Works:
     return Works(integral, force @ look.T, force @ node.T)
 
 
-def _fit(states: State) -> jax.Array:
-    """Coefficients [piece, NODES, rows] of states at the Chebyshev points of pieces."""
-    rows = jax.vmap(jax.vmap(rows_of))(states)
+def all_rows(states: State) -> jax.Array:
+    """The numbers of states at places of pieces, shape (pieces, places, rows)."""
+    return jax.vmap(jax.vmap(rows_of))(states)
+
+
+def fit(rows: jax.Array) -> jax.Array:
+    """Coefficients [piece, NODES, rows] of rows at the Chebyshev points of pieces."""
     return jnp.einsum("kn,pnq->pkq", _to_coefficients(rows.shape[1]), rows)
 
 
@@ -247,22 +254,6 @@ def _to_coefficients(nodes: int) -> np.ndarray:
     out = np.zeros((NODES, nodes))
     out[:nodes] = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1))
     return out
-
-
-def inner_pieces(
-    contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
-) -> Pieces:
-    """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
-    now = contact.after(table.left) if table.left else contact
-    way = now.way(memory, start, parting, (table.ends[0], table.ends[-1]))
-    if way is None:
-        none = jnp.zeros(0)
-        return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
-    odd = (-1.0) ** np.arange(NODES)[:, None]
-    values = _fit(way.states)
-    values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
-    low, high = jnp.minimum(way.enter, way.leave), jnp.maximum(way.enter, way.leave)
-    return Pieces(low, high, way.enter, way.leave, values)
 
 
 def join(

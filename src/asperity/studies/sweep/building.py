@@ -27,6 +27,7 @@ Values = Mapping[str, np.ndarray]
 _KINDS = (
     Resolution(6, 8, 1, 7),
     Resolution(8, 16, 1, 7),
+    Resolution(8, 8, 2, 7),
     Resolution(16, 16, 2, 14),
     Resolution(32, 16, 4, 28),
     Resolution(64, 16, 8, 56),

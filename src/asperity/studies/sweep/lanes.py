@@ -77,7 +77,7 @@ def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
 
     def one(flown: Flown) -> tuple[Begun, Checks, Rows]:
         contact, body = flown.contact, flown.body
-        table, datum = prepare(contact, body)
+        table, datum = prepare(contact, body, True)
         progress, origin = start(contact, body, table)
         force = jnp.abs(outer_row(table, 0, body.release)[FORCE])
         largest = jnp.max(jnp.abs(table.values[..., 0, FORCE]))

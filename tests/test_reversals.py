@@ -1,0 +1,153 @@
+"""Ways back from reversals, tabulated over their place, beside ways that are solved one by one."""
+
+import dataclasses
+from math import pi, radians
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from asperity._jax import jax, jnp
+from asperity.contact import ElasticContact
+from asperity.contact.base import Held
+from asperity.contact.settling import Matrix, settle, settle_near
+from asperity.errors import Tolerance
+from asperity.impact import Body, Limits, fly, prepare, start
+from asperity.impact.reversals import CLOSE
+from asperity.impact.table import FORCE, SIZE, all_rows, fit
+from asperity.interface import Interface
+from asperity.laws import Hertz, Meniscus
+from asperity.polynomials import chebyshev_sum
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+
+RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
+MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)
+BODY = Body(2200.0 * 4.0 / 3.0 * pi * RADIUS**3, 9.81, 60e-9)
+IMPACTS = 6
+
+
+def contact(sigma=SIGMA, ways=10):
+    layer = Interface(Hertz(BETA, E) + MENISCUS, Gaussian(sigma), N)
+    found = ElasticContact(layer, Sphere(RADIUS), E, 32)
+    return dataclasses.replace(found, resolved=found.resolved._replace(reversals=ways))
+
+
+prepared = eqx.filter_jit(lambda contact, body: prepare(contact, body, many=True))
+
+
+@eqx.filter_jit
+def flown(contact, body, table, datum):
+    progress, origin = start(contact, body, table)
+    limits = Limits.of(Tolerance(max_impacts=IMPACTS))
+    return fly(contact, body, table, datum, origin, progress, limits, IMPACTS)
+
+
+@pytest.fixture(scope="module")
+def both():
+    """The motion by the table of ways, and by ways that are solved as they come."""
+    here = contact()
+    table, datum = prepared(here, BODY)
+    solved = table._replace(reversals=())
+    return table, [flown(here, BODY, t, datum)[1] for t in (table, solved)]
+
+
+def test_a_motion_by_tabulated_ways_is_that_by_solved_ones(both):
+    table, (ours, judge) = both
+    assert bool(jnp.all(ours.made))
+    assert float(jnp.max(table.reversals.error)) < CLOSE
+    energy = float(judge.fastest[0])
+    assert float(jnp.max(jnp.abs(ours.lost - judge.lost))) < IMPACTS * CLOSE * energy
+    np.testing.assert_allclose(ours.apex, judge.apex, rtol=IMPACTS * CLOSE)
+    np.testing.assert_allclose(ours.apex_time, judge.apex_time, rtol=IMPACTS * CLOSE)
+    # Of as many rings as here the ledger has an error of its own.
+    np.testing.assert_allclose(ours.closure, judge.closure, atol=IMPACTS * CLOSE * energy)
+
+
+def work(low, high, values):
+    """Of the force over pieces [J], by quadrature of their polynomials."""
+    node, weight = np.polynomial.legendre.leggauss(20)
+    force = chebyshev_sum(values[:, :, FORCE].T[:, :, None], jnp.asarray(node))
+    return jnp.sum(force @ weight * 0.5 * (high - low))
+
+
+@eqx.filter_jit
+def works(contact, table, place, parting):
+    """Of the way back from a reversal [J]: from the table, and solved on the same mesh.
+
+    Up to the same place: what is left to where the other ends lies on the branch.
+    """
+    ours = table.reversals.pieces(place, parting)
+    flat = jnp.zeros(contact.rings + 1)
+    held = Held(jnp.asarray(True), ~parting, ours.values[0, 0, SIZE], flat)
+    way = contact.way_from(place, held, jnp.asarray(True), (table.ends[0], table.ends[-1]))
+    low, high = jnp.minimum(way.enter, way.leave), jnp.maximum(way.enter, way.leave)
+    values = fit(all_rows(way.states))
+    left = (ours.leave[-1] - way.leave[-1]) * jnp.where(parting, 1.0, -1.0)
+    left = left * jnp.sum(values[-1, :, FORCE])  # at its end all polynomials are 1
+    return work(ours.low, ours.high, ours.values), work(low, high, values) + left
+
+
+def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
+    impact = float(both[1][0].fastest[0])
+    stated, real = [], []
+    for count in (4, 10):
+        here = contact(ways=count)
+        table, _ = prepared(here, BODY)
+        known = table.reversals
+        for k, parting in enumerate((True, False)):
+            low, high = float(known.low[k]), float(known.high[k])
+            place = jnp.asarray(low + 0.37 * (high - low))
+            ours, judge = works(here, table, place, jnp.asarray(parting))
+            stated.append(float(known.error[k]))
+            real.append(abs(float(ours - judge)) / impact)
+    for k in range(2):
+        assert stated[k] > 100.0 * stated[2 + k]
+    assert all(error < limit for error, limit in zip(real, stated, strict=True))
+
+
+def test_reversals_far_apart_are_solved_as_they_come():
+    """Menisci as long as the heights: no few ways stand for all."""
+    here = contact(sigma=1e-9)
+    body = Body(BODY.mass, 9.81, 8e-9)
+    reversals = prepared(here, body)[0].reversals
+    low, high = float(reversals.low[0]), float(reversals.high[0])
+    assert not bool(reversals.cover(jnp.asarray(0.5 * (low + high)), jnp.asarray(True)))
+
+
+def test_derivatives_pass_through_tabulated_ways():
+    """Energy lost in three impacts by the rms height, against a central difference."""
+
+    @jax.jit
+    def lost(sigma):
+        here = contact()
+        here = eqx.tree_at(lambda c: c.interface.heights.rms_height, here, sigma)
+        table, datum = prepare(here, BODY, many=True)
+        progress, origin = start(here, BODY, table)
+        limits = Limits.of(Tolerance(max_impacts=3))
+        return jnp.sum(fly(here, BODY, table, datum, origin, progress, limits, 3)[0].lost)
+
+    sigma, step = jnp.asarray(SIGMA), 2e-3 * SIGMA
+    slope = jax.jit(lambda s: jax.jvp(lost, (s,), (jnp.ones(()),))[1])(sigma)
+    weights = {-2: 1.0, -1: -8.0, 1: 8.0, 2: -1.0}
+    judge = sum(w * float(lost(sigma + k * step)) for k, w in weights.items()) / (12.0 * step)
+    assert float(slope) == pytest.approx(judge, rel=1e-4)
+
+
+@pytest.mark.parametrize("depth", [4.5, 0.5], ids=["stiff", "soft"])
+def test_the_matrix_of_a_neighbour_leads_to_the_same_rings(depth):
+    """Where the bulk hardly gives way it serves as it is; elsewhere it is made anew."""
+    here = contact()
+    thresholds = here.extreme((False,)).thresholds
+    size, flat = jnp.asarray(7e-7), jnp.zeros(here.rings + 1)
+
+    @eqx.filter_jit
+    def near(here, place):
+        blank = Matrix.blank(here.rings)
+        _, matrix = settle_near(here, place + 0.1 * SIGMA, thresholds, size, flat, blank)
+        rest, _ = settle_near(here, place, thresholds, size, flat, matrix)
+        return rest, settle(here, place, thresholds, size, flat, here.rings), matrix.serves
+
+    rest, judge, served = near(here, jnp.asarray(depth * SIGMA))
+    assert bool(served) == (depth > 1.0)
+    np.testing.assert_allclose(rest.lift, judge.lift, atol=1e-11 * SIGMA)
