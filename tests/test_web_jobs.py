@@ -283,7 +283,7 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, threading
         progress(0.5, "after")
 
     module = exploring()
-    module.explore = explore  # type: ignore[attr-defined]
+    module.explore = module.solve = module.curve = explore  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "asperity.solver", module)
     return begun, ended
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ._jax import jax, jnp
+from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem, build
 from .contact import Contact, ElasticContact, RigidContact
@@ -315,9 +315,9 @@ def _check_release(problem: Problem, table: Table) -> None:
 def _at_rest(problem: Problem) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     body = problem.body
-    release = jnp.asarray(float(problem.contact.reach) + CLEARANCE)
+    release = float(problem.contact.reach) + CLEARANCE
     clear = Body(body.mass, body.gravity, release, body.speed)
-    place = float(_prepare(problem.contact, clear)[1].equilibrium)
+    place = float(_prepare(problem.contact, clear, True)[1].equilibrium)
     return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
 
 

@@ -76,7 +76,7 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
 
 
 _RIGID = (Resolution(7, 16, 2),)
-_DEFORMS = (Resolution(6, 8, 2), Resolution(9, 16, 3))
+_DEFORMS = (Resolution(9, 16, 3),)
 
 
 def in_steps(resolved: Resolution, *, deforms: bool) -> Resolution:
