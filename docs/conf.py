@@ -27,7 +27,6 @@ nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600
 nb_execution_show_tb = True
-nb_merge_streams = True  # a command's output comes in pieces, which need not end with a line
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"

@@ -28,7 +28,8 @@ kernelspec:
 
 def built(folder: Path, cell: str) -> subprocess.CompletedProcess[str]:
     """Sphinx, called as by `make docs`, on one page with one cell and the project's settings."""
-    shutil.copy(DOCS / "conf.py", folder)
+    for name in ("conf.py", "workplace.py"):
+        shutil.copy(DOCS / name, folder)
     (folder / "index.md").write_text(f"{RUN}```{{code-cell}} python\n{cell}\n```\n")
     command = [sys.executable, "-m", "sphinx", "-E", "-W", "--keep-going", "-q", "-b", "html"]
     return subprocess.run(
@@ -36,7 +37,14 @@ def built(folder: Path, cell: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("cell", ["1 / 0", "%%bash -e\nfalse\ntrue"])
+CONSOLE = """from workplace import enter
+enter()
+get_ipython().run_cell_magic("console", "", {!r})"""
+
+
+@pytest.mark.parametrize(
+    "cell", ["1 / 0", CONSOLE.format("false\ntrue"), CONSOLE.format("false | true")]
+)
 def test_a_broken_example_fails_the_build(cell: str, tmp_path: Path):
     ran = built(tmp_path, cell)
     assert ran.returncode != 0
@@ -44,9 +52,9 @@ def test_a_broken_example_fails_the_build(cell: str, tmp_path: Path):
 
 
 def test_a_sound_example_does_not(tmp_path: Path):
-    ran = built(tmp_path, "%%bash -e\necho sound")
+    ran = built(tmp_path, CONSOLE.format("asperity --version"))
     assert ran.returncode == 0, ran.stderr
-    assert "sound" in (tmp_path / "out" / "index.html").read_text()
+    assert f"asperity {asperity.__version__}" in (tmp_path / "out" / "index.html").read_text()
 
 
 def test_every_equation_of_the_theory_has_a_source_and_a_file():
@@ -72,9 +80,10 @@ def test_commands_of_pages_that_run_are_of_the_program():
 
     known = set(get_command(app).commands)  # type: ignore[attr-defined]
     for page in DOCS.glob("*.md"):
-        cells = re.findall(r"^%%bash -e.*?\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+        cells = re.findall(r"^%%console\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
         named = set(re.findall(r"^asperity (\S+)", "".join(cells), re.MULTILINE))
         assert named <= known, page.name
+        assert "%%bash" not in page.read_text(), page.name  # it tells a failure by its last command
 
 
 def test_every_page_that_uses_an_example_names_one_that_is_there():
