@@ -11,10 +11,10 @@ import numpy as np
 from asperity._jax import jax, jnp
 from asperity.case import Case, builtin
 from asperity.case.build import build
+from asperity.flying import first_impact
 from asperity.impact import Motion
 from asperity.laws import Jkr
 from asperity.program import Program
-from asperity.solver import first_impact
 from asperity.special import height_integrals
 
 LOSSLESS = {"capillary.contact_angle": "89.99999999 deg", "adhesion.work": "1e-9 J/m^2"}

@@ -1,0 +1,226 @@
+"""A built problem flown: curves that meet the tolerance, a release outside contact, the motion."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from collections.abc import Callable
+
+import numpy as np
+
+from ._jax import jax
+from .case import Case
+from .case.build import CLEARANCE, Problem
+from .contact import Contact, ElasticContact, RigidContact
+from .contact.resolution import in_steps
+from .conversion import Flight
+from .errors import InputError, Outcome, SimulationError
+from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
+from .impact.creeping import fly_creeping
+from .impact.datum import Datum
+from .impact.delayed import fly as fly_late
+from .impact.history import ENDS, FLYING
+from .impact.legs import Ended
+from .impact.sampling import compile_ahead
+from .impact.table import FORCE, read_row
+from .program import Program
+
+Report = Callable[[float, str], None]
+
+_CHUNK = 20  # impacts a compiled call: short enough for Ctrl-C
+_REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
+_RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
+
+
+def silently(fraction: float, text: str) -> None:
+    """Report nothing."""
+
+
+def cut_in_steps(problem: Problem) -> Problem:
+    """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
+    contact = problem.contact
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return problem
+    resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
+    return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
+
+
+def flown(case: Case, problem: Problem, tell: Report, stop: threading.Event | None) -> Flight:
+    """The motion of what was built from a case.
+
+    Parameters
+    ----------
+    case, problem
+        A case, and what was built from it.
+    tell
+        Called with a fraction done and a line of text, now and then.
+    stop
+        Set from another thread, it ends the motion early.
+
+    Raises
+    ------
+    InputError
+        If the release lies inside contact.
+    SimulationError
+        If the curves miss the tolerance, or the motion is stopped before its first impact.
+    """
+    limits = Limits.of(case.tolerance)
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=True)
+    _check_release(problem, table)
+    if problem.late is None and problem.creep is None:
+        return _fly(problem.body, contact, table, datum, limits, tell, stop)
+    return _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+
+
+def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
+    """The contact with its curves, and the motion as far as the first impact.
+
+    Parameters
+    ----------
+    case, problem
+        A case, and what was built from it.
+    tell
+        As ``progress`` of :func:`solve`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
+    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=False)
+    _check_release(problem, table)
+    body = problem.body
+    tell(0.3, "first impact")
+    first, origin = _start(contact, body, table)
+    progress, rows = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
+    impacts = jax.tree_util.tree_map(np.asarray, rows)
+    return contact, Motion(impacts, progress, table, datum, origin)
+
+
+def _prepared(
+    problem: Problem, tolerance: float, limits: Limits, tell: Report, *, drawn: bool
+) -> tuple[Contact, Table, Datum]:
+    """Tables whose interpolation error meets the tolerance, by more panels where needed.
+
+    Meanwhile the motion compiles, with its drawing where it is to be drawn.
+    """
+    for factor in _REFINEMENTS:
+        tell(0.02, "compilation")
+        contact = problem.contact.refined(factor)
+        if not drawn or (problem.late is None and problem.creep is None):
+            _compile(contact, problem.body, limits, drawn=drawn)
+        prepared = _prepare.ready(contact, problem.body, drawn)
+        tell(0.06, "force curves")
+        table, datum = prepared()
+        if float(table.error) <= max(tolerance, contact.blur):
+            break
+    else:
+        raise SimulationError(
+            f"force curves reach a relative error of {float(table.error):.1e}, "
+            f"not `numerics.tolerance` = {tolerance:.1e}"
+        )
+    if not float(table.residual) <= _RESIDUAL:
+        raise SimulationError(
+            "pressure and deformation do not agree: relative force error "
+            f"{float(table.residual):.1e}. The contact has no equilibrium that follows "
+            "from the one before (strong adhesion on soft bodies folds it)"
+        )
+    return contact, table, datum
+
+
+def _compile(contact: Contact, body: Body, limits: Limits, *, drawn: bool) -> None:
+    """Compile the curves, the motion and, where wanted, its drawing side by side."""
+    table, datum = _prepare.ahead(contact, body, drawn)
+    progress, origin = _start.ahead(contact, body, table)
+    _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
+    if drawn:
+        compile_ahead(body, table, impacts)
+
+
+_prepare = Program(prepare)
+_start = Program(start)
+_fly_some = Program(fly)
+
+
+def _check_release(problem: Problem, table: Table) -> None:
+    """A release within contact is refused: it would not be a fall."""
+    body = problem.body
+    release, weight = float(body.release), float(body.weight)
+    force = abs(float(read_row(table, 0, release)[FORCE]))
+    largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
+    limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest
+    if force <= limit:
+        return
+    share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
+    raise InputError(
+        f"`release_gap` must lie outside contact: the contact force there must be below {share} "
+        f"({limit:.3g} N), and is {force:.3g} N; {_at_rest(problem)}got {release * 1e9:.6g} nm",
+        key="impact.release_gap",
+    )
+
+
+def _at_rest(problem: Problem) -> str:
+    """Where the body would rest, seen from outside contact; empty where nothing holds it."""
+    body = problem.body
+    release = float(problem.contact.reach) + CLEARANCE
+    clear = Body(body.mass, body.gravity, release, body.speed)
+    place = float(_prepare(problem.contact, clear, True)[1].equilibrium)
+    return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
+
+
+def _fly(
+    body: Body,
+    contact: Contact,
+    table: Table,
+    datum: Datum,
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion in chunks of impacts, so that it can be watched and stopped."""
+    progress, origin = _start(contact, body, table)
+    chunks: list[Impacts] = []
+    while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
+        if not chunks:
+            tell(0.08, "compilation")
+        fly_on = _fly_some.ready(contact, body, table, datum, origin, progress, limits, _CHUNK)
+        if not chunks:
+            tell(0.1, "motion")
+        progress, rows = fly_on()
+        chunks.append(jax.tree_util.tree_map(np.asarray, rows))
+        count = int(progress.made)
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+    if not chunks:
+        raise SimulationError("stopped before the first impact")
+    impacts = jax.tree_util.tree_map(lambda *parts: np.concatenate(parts), *chunks)
+    code = int(progress.outcome)
+    outcome = Outcome.INTERRUPTED if code == FLYING else ENDS[code]
+    return Flight(Motion(impacts, progress, table, datum, origin), contact, outcome)
+
+
+def _fly_stepped(
+    problem: Problem,
+    contact: Contact,
+    prepared: tuple[Table, Datum],
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
+    body, creep, late = problem.body, problem.creep, problem.late
+    tell(0.1, "motion")
+
+    def made(count: int) -> None:
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+
+    try:
+        if creep is not None:
+            flown = fly_creeping(contact, creep, body, prepared, limits, made, stop)
+        else:
+            assert late is not None
+            flown = fly_late(contact, late, body, prepared, limits, made, stop)
+    except Ended as error:
+        raise SimulationError("stopped before the first impact") from error
+    motion, trajectory, outcome = flown
+    return Flight(motion, contact, outcome, trajectory)
