@@ -233,8 +233,13 @@ class ElasticContact(Contact):
         self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
     ) -> Way:
         size = jax.lax.stop_gradient(held.size)
-        old = self._swept(held)
-        rest = settle(*jax.lax.stop_gradient((self, start, old, size, held.field)), self.rings)
+        old, flat = self._swept(held), jnp.zeros(self.rings + 1)
+        frozen = jax.lax.stop_gradient((self, start, old, size, held.field))
+        rest = jax.lax.cond(
+            wanted,
+            lambda: settle(*frozen, self.rings),
+            lambda: Rest(flat, flat, flat[:-1], jnp.zeros(())),
+        )
         rest = self._rest(start, old, size, rest)
         before = RingMemory(old, size, rest.lift, held.outer)
         memory = self.turned(before, start, held._replace(field=rest.lift))

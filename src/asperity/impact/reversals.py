@@ -3,7 +3,9 @@
 What holds a body that turns on an outermost branch depends on where it turned and on nothing
 else. The turning points of a motion lie close together, and everything along the ways that lead
 back from them is a smooth function of their place: a polynomial, through a few ways that are
-solved before the motion begins. Other reversals, on a way itself, are solved as they come.
+solved before the motion begins. All but lengths are divided by the number of asperities that touch
+before they are fitted, since both fall off alike. Other reversals, on a way itself, are solved as
+they come.
 """
 
 from __future__ import annotations
@@ -99,8 +101,7 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     within = frozen.ends[0], frozen.ends[-1]
     deepest, energy = _first_fall(frozen, body)
     low, high = jnp.stack([deepest, rest]), jnp.stack([rest, within[1]])
-    wanted = jax.lax.stop_gradient(contact.alike(low, high))
-    wanted = wanted & (body.weight > 0.0) & (low < high)
+    wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
     nodes = chebyshev.chebpts1(ways)
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
     rows = jnp.stack([_rows(frozen, k, places[k]) for k in range(2)])
