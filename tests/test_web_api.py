@@ -493,14 +493,32 @@ def captured_at(impact: int) -> Result:
     return ending(Outcome.OSCILLATING, captured=True, capture_time=when)
 
 
+def pushed_alone() -> Result:
+    """A result of a body that came to rest in a gas, on a surface that never pulled."""
+    result = captured_at(5)
+    forces = {**result.forces, "contact": np.abs(result.forces["contact"])}
+    return dataclasses.replace(result, forces=forces)
+
+
+def stopped_at(rebounds: float) -> Result:
+    """A result that a time limit ended after so many rebounds."""
+    result = ending(Outcome.TIME_LIMIT)
+    times = np.concatenate([[0.0], result.events["apex_time"]])
+    limit = f"{times[int(rebounds)] + 1e-9} s"
+    return dataclasses.replace(result, case=result.case.replace({"numerics.time_limit": limit}))
+
+
 @pytest.mark.parametrize(
     ("result", "words"),
     [
         (captured_at(0), "sticks at the first touch"),
         (captured_at(1), "sticks after 1 rebound"),
         (captured_at(3), "sticks after 3 rebounds"),
-        (ending(Outcome.REST), "never sticks, and comes to rest after 6 rebounds"),
-        (ending(Outcome.OSCILLATING), "bounces for ever: nothing takes its energy"),
+        (ending(Outcome.REST), "comes to rest after 6 rebounds, none of which the surface held"),
+        (ending(Outcome.OSCILLATING), "goes on for ever: its last cycle loses nothing"),
+        (pushed_alone(), "comes to rest after 5 rebounds, held by its weight alone"),
+        (stopped_at(0.0), "had not come back once where the run was stopped"),
+        (stopped_at(2.0), "still bounces after 2 rebounds, where the run was stopped"),
         (
             ending(Outcome.ESCAPED, impacts=1),
             "bounces off with 80 % of its speed and does not come back",
@@ -532,6 +550,9 @@ def test_a_verdict_says_who_takes_the_energy():
     energy = result.ledger["initial"]
     assert taken(adhesion=0.3 * energy, capillary=0.1 * energy) == (
         "dry adhesion takes 75 % of the energy lost"
+    )
+    assert taken(adhesion=0.0004 * energy, capillary=0.1 * energy) == (
+        "menisci take 99 % of the energy lost"
     )
     assert taken(adhesion=0.0, plastic=energy) == "yielding takes all of the energy lost"
     assert taken(gas=0.2 * energy) == "the gas film takes all of the energy lost"

@@ -15,6 +15,7 @@ import asperity
 from asperity.case import Case, load
 from asperity.case.problems import tables_of
 from asperity.case.reading import builtin_text
+from asperity.colours import COLOURS
 from asperity.web.form import form
 from browser import needed, served
 
@@ -196,6 +197,34 @@ def test_a_release_within_contact_is_said_at_its_own_field(page):
     expect(page.locator("#field-impact-release_gap-wrong")).to_contain_text("outside contact")
 
 
+def test_a_body_that_leaves_after_one_impact_is_drawn(page):
+    """One point alone has an axis too, and a height that does not exist no place on it."""
+    page.locator("#more-impact").evaluate("(one) => { one.open = true; }")
+    write(page, "impact.speed", "0.1 m/s")
+    page.locator("#more-impact").evaluate("(one) => { one.open = true; }")
+    write(page, "impact.gravity", "0 m/s^2")
+    settled(page)
+    expect(page.locator("#verdicts .said")).to_contain_text("does not come back")
+    assert page.evaluate("() => asperity.designs()[0].answer.motion.impacts") == 1
+    assert drawn(page, "rebounds") > 100
+
+
+def test_a_link_opened_in_the_open_page_is_followed(page):
+    there = page.url
+    write(page, "body.radius", "42 um")
+    settled(page)
+    page.wait_for_timeout(500)  # until the address holds the state
+    page.evaluate("(to) => { location.href = to; }", there)
+    page.wait_for_function(
+        "() => document.querySelector('#field-body-radius')?.value === '50 um'"
+        " && document.querySelector('#verdicts .said')"
+    )
+
+
+def test_more_impacts_than_are_drawn_are_said(page):
+    expect(page.locator("#motion .drawn")).to_have_text("first 24 of 200 impacts")
+
+
 def test_two_designs_stand_side_by_side(page):
     page.locator("#compare").click()
     write(page, "capillary.humidity", "0.3")
@@ -367,6 +396,9 @@ def test_letters_stand_out_in_light_and_dark(page):
             for ground in ("paper", "panel"):
                 assert contrast(colours[letters], colours[ground]) >= 4.5, (letters, ground)
         assert contrast(colours["accent"], colours["paper"]) >= 3.0
+        for name, line in COLOURS.items():
+            shown = page.evaluate("(c) => import('/static/charts.js').then((m) => m.tint(c))", line)
+            assert contrast(shown, colours["paper"]) >= 3.0, (name, shown)
         before = picture(page, "motion")
         page.locator("#theme").click()
         assert picture(page, "motion") != before

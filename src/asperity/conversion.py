@@ -66,11 +66,11 @@ def _sampled(
     motion, contact, stepped = flight.motion, flight.contact, flight.trajectory
     limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
     impacts = motion.impacts
-    if most is not None and most < int(np.sum(impacts.made)):
-        limit = min(limit, float(impacts.apex_time[most - 1]))
+    cut = most is not None and most < int(np.sum(impacts.made))
+    if cut:
         impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
     if stepped is not None:
-        kept = stepped.until(limit)
+        kept = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
         return kept.series, _by_name(contact, body, kept.lost)
     series = until(sample(body, motion.table, impacts), limit)
     return series, _losses_along(contact, motion, body, series)

@@ -86,7 +86,7 @@ def explore(
     if flight.outcome is Outcome.FAILED:
         raise SimulationError(_failure(case), result)
     if flight.trajectory is not None:  # the curve is that of menisci that have the time to form
-        return result, curve(case, name=name)
+        return result, _curve_of(case, name, problem, lambda _, text: tell(0.95, text))
     drawn = trace(flight.contact, flight.motion.table, flight.motion.impacts)
     tell(1.0, "done")
     return result, Curve(case, name, **drawn)
@@ -98,7 +98,7 @@ def _told(
     """The result of a motion."""
     tell(0.9, "measures")
     stopped = flight.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
-    elastic = None if stopped else _kept_elastic(case)
+    elastic = None if stopped else _kept_elastic(case, lambda _, text: tell(0.9, text))
     return result_of(case, name, problem, flight, elastic, most)
 
 
@@ -128,8 +128,11 @@ def curve(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or silently
-    problem = build(case)
+    return _curve_of(case, name, build(case), progress or silently)
+
+
+def _curve_of(case: Case, name: str, problem: Problem, tell: Report) -> Curve:
+    """The curve of what was built from a case."""
     contact, motion = first_impact(case, problem, tell)
     check_surface(case, problem, AtDepth.of(contact, motion))
     tell(0.6, "parting")
@@ -164,7 +167,7 @@ def assess(
     return assessment_of(case, name, problem, contact, motion)
 
 
-def _kept_elastic(case: Case) -> float | None:
+def _kept_elastic(case: Case, tell: Report) -> float | None:
     """Restitution of the first impact of a case that yields, were nothing in it to yield.
 
     NaN where it cannot be computed, None where it has none or nothing yields.
@@ -172,9 +175,9 @@ def _kept_elastic(case: Case) -> float | None:
     if case.plasticity_model == "none":
         return None
     elastic = case.model_copy(update={"plasticity": None})
-    problem = build(elastic)
+    problem = cut_in_steps(build(elastic))
     try:
-        contact, motion = first_impact(elastic, problem)
+        contact, motion = first_impact(elastic, problem, tell)
     except (InputError, SimulationError):
         return math.nan  # it may be released within contact, or pull too hard to be solved
     return first_restitution(Flight(motion, contact, Outcome.MAX_IMPACTS), problem.body)

@@ -39,19 +39,39 @@ def _ending(result: Result) -> str:
     impacts = len(measures["rebound_height"])
     if not impacts:
         return "touched nothing before the run ended"
-    if measures["captured"]:
+    if outcome is Outcome.TIME_LIMIT:
+        impacts = _rebounds_made(result)
+    if measures["captured"] and _held(result):
         return f"sticks {_after(_rebounds_before(result))}"
+    if measures["captured"]:
+        return f"comes to rest {_after(_rebounds_before(result))}, held by its weight alone"
     if outcome is Outcome.REST:
-        return f"never sticks, and comes to rest {_after(impacts)}"
+        return f"comes to rest {_after(impacts)}, none of which the surface held"
     if outcome is Outcome.ESCAPED:
         kept = measures["restitution"][-1]
         share = "" if kept is None else f" with {100.0 * kept:.3g} % of its speed"
         return f"bounces off{share} and does not come back"
     if outcome is Outcome.OSCILLATING:
+        if _takes(result.ledger):
+            return "goes on for ever: its last cycle loses nothing"
         return "bounces for ever: nothing takes its energy"
     if outcome is Outcome.FAILED:
         return "the numerics failed before there was an answer"
+    if not impacts:
+        return "had not come back once where the run was stopped"
     return f"still bounces {_after(impacts)}, where the run was stopped"
+
+
+def _held(result: Result) -> bool:
+    """Whether anything pulls the body to the surface, be it captured or at rest in a gas."""
+    return bool(np.min(result.forces["contact"], initial=0.0) < 0.0)
+
+
+def _rebounds_made(result: Result) -> int:
+    """Rebounds that ended before the time limit."""
+    limit = result.case.numerics.time_limit
+    times = np.asarray(result.events["apex_time"])
+    return int(np.sum(times <= (np.inf if limit is None else limit)))
 
 
 def _rebounds_before(result: Result) -> int:
@@ -69,12 +89,18 @@ def _after(rebounds: int) -> str:
 def _taken(ledger: dict[str, Any]) -> str:
     """Who takes most of the energy that is lost."""
     lost = ledger.get("lost") or {}
-    total, initial = sum(lost.values()), ledger.get("initial") or 0.0
-    if not total > _LITTLE * abs(initial):
+    if not _takes(ledger):
         return "no energy is lost"
+    total = sum(lost.values())
     most = max(lost, key=lambda name: lost[name])
     share = 100.0 * lost[most] / total
     words = _TAKERS.get(most, f"{most} takes")
     if len(lost) == 1 or share > 99.95:
         return f"{words} all of the energy lost"
-    return f"{words} {share:.2g} % of the energy lost"
+    return f"{words} {min(round(share), 99)} % of the energy lost"
+
+
+def _takes(ledger: dict[str, Any]) -> bool:
+    """Whether energy is lost that is worth a word."""
+    total = sum((ledger.get("lost") or {}).values())
+    return total > _LITTLE * abs(ledger.get("initial") or 0.0)

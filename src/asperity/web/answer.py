@@ -45,7 +45,7 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
             "forces": {name: packed(values) for name, values in result.forces.items()},
             "energies": {name: packed(values) for name, values in result.energies.items()},
             "impacts": int(np.size(result.events["apex_time"])),
-            "drawn": int(np.sum(result.events["apex_time"] <= result.time[-1])),
+            "drawn": _drawn(result),
             "first_contact": _first_contact(result),
         },
         "curve": {
@@ -69,6 +69,12 @@ def packed(values: np.ndarray) -> str:
 
 def _names(result: Result) -> list[str]:
     return [*result.forces, *result.energies, *(f"lost_{name}" for name in result.ledger["lost"])]
+
+
+def _drawn(result: Result) -> int:
+    """Impacts up to whose last apex the motion is drawn."""
+    last = result.time[-1] * (1.0 + 1e-9)  # the time of a sample is summed up in another order
+    return int(np.sum(np.asarray(result.events["apex_time"]) <= last))
 
 
 def _first_contact(result: Result) -> list[float]:

@@ -33,7 +33,8 @@ def form() -> list[dict[str, Any]]:
     -------
     A list of tables ``{name, help, needed, keys}``; a key is ``{key, kind, unit, help, example,
     needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number", "whole",
-    "choice", "switch", "list" or "text"; ``slider`` is None where a slider cannot move it.
+    "choice", "switch", "list", "name or number" or "text"; ``slider`` is None where a slider
+    cannot move it.
     """
     found = []
     for name, field in ordered(Case).items():
@@ -99,6 +100,8 @@ def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[
         return "switch", []
     if any(get_origin(part) is list for part in _flat(annotation)):
         return "list", []
+    if any(part is int for part in parts):
+        return "name or number", []
     return "text", []
 
 

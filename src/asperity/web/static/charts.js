@@ -9,8 +9,15 @@ export const ink = () => getComputedStyle(document.documentElement).getPropertyV
 const quiet = () => getComputedStyle(document.documentElement).getPropertyValue("--quiet").trim();
 const line = () => getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
 
+// The house's colours where they are too pale, or too dark, for a screen's paper.
+const LIGHT = { "#F0E442": "#857A00", "#56B4E9": "#2A86BD", "#E69F00": "#A66F00", "#CC79A7": "#B8558D", "#F5D0B5": "#A0522D", "#009E73": "#008060" };
+const DARK = { "#7F3C8D": "#C58AD3", "#444444": "#BBBBBB", "#0072B2": "#4AA3DF", "#8C6D31": "#B8934B", "#A05195": "#C77BBB" };
+
 // The colour of a thing on this page's paper: black is the colour of the ink.
-export const tint = (colour) => (!colour || colour === "#000000" ? ink() : colour);
+export function tint(colour) {
+  if (!colour || colour === "#000000") return ink();
+  return (document.documentElement.dataset.theme === "dark" ? DARK : LIGHT)[colour] ?? colour;
+}
 
 export class Chart {
   constructor(id) {
@@ -87,4 +94,8 @@ function shrunk(values, by, logarithmic = false) {
   return Float64Array.from(values, (value) => (logarithmic && !(value > 0) ? NaN : value / by));
 }
 
-const ends = (values) => ({ min: values[0], max: values[values.length - 1] });
+// One point alone still has an axis.
+function ends(values) {
+  const [min, max] = [values[0], values[values.length - 1]];
+  return max > min ? { min, max } : { min: min - 1, max: min + 1 };
+}

@@ -116,7 +116,7 @@ export class Form {
   // The slider's span about what the field holds; no slider for what is no number above 0.
   fit(field, key) {
     const { slider, input } = field;
-    const given = parted(input.value);
+    const given = parted(input.value || key.default || key.example); // unset, it starts there
     field.span = given && span(key.slider, ...given);
     slider.hidden = !field.span;
     if (!field.span) return;
@@ -152,7 +152,7 @@ function valueOf(key, text) {
   if (key.kind === "switch") return text === "true";
   if (key.kind === "list") return text.split(",").map((one) => one.trim()).filter(Boolean);
   const number = Number(text);
-  if (["number", "whole"].includes(key.kind) && Number.isFinite(number)) return number;
+  if (["number", "whole", "name or number"].includes(key.kind) && Number.isFinite(number)) return number;
   return text;
 }
 

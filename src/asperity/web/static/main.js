@@ -14,7 +14,7 @@ const say = (words) => { by("notice").textContent = words; };
 
 let designs = [];
 let active = 0;
-let form, panels, map, linking;
+let form, panels, map, linking, ticking;
 const latencies = []; // ms from a change to its picture, for whoever measures
 
 const current = () => designs[active];
@@ -36,18 +36,23 @@ function show(what) {
 
 function work() {
   const busy = designs.find((one) => one.work);
-  by("work").hidden = !(busy && performance.now() - busy.running.begun > SLOW);
+  by("work").hidden = !(busy?.running && performance.now() - busy.running.begun > SLOW);
   document.body.dataset.busy = busy ? "yes" : "no";
   if (!busy) return;
   by("progress").value = busy.work.fraction;
   by("progress-text").textContent = busy.work.text;
-  setTimeout(work, SLOW);
+  clearTimeout(ticking);
+  ticking = setTimeout(work, SLOW);
 }
 
 function ask(design = current(), since = performance.now()) {
   design.ask(show, since);
+  link(300);
+}
+
+function link(after) {
   clearTimeout(linking);
-  linking = setTimeout(() => history.replaceState(null, "", `#${written(designs)}`), 300);
+  linking = setTimeout(() => history.replaceState(null, "", `#${written(designs)}`), after);
 }
 
 // Form
@@ -55,7 +60,9 @@ function ask(design = current(), since = performance.now()) {
 function changed(table, key, value, since) {
   const before = JSON.stringify(current().tables);
   current().set(table, key, value);
-  if (JSON.stringify(current().tables) !== before) ask(current(), since);
+  if (JSON.stringify(current().tables) === before) return;
+  by("case").selectedIndex = -1; // no longer the case of that name
+  ask(current(), since);
 }
 
 function tabled(table, used) {
@@ -76,6 +83,7 @@ function replace(name, tables, surfaces = {}) {
   fresh.asked = fresh.shown = current()?.asked ?? 0;
   fresh.answer = current()?.answer ?? null;
   designs[active] = fresh;
+  by("case").value = name; // none, where it is no built-in case
   form.show(fresh);
   ask(fresh);
 }
@@ -84,6 +92,7 @@ function compare() {
   if (designs.length > 1) {
     designs[1].cancel();
     designs = [designs[0]];
+    link(0);
   } else {
     designs.push(designs[0].copy("B"));
     ask(designs[1]);
@@ -123,14 +132,14 @@ async function openedCase(file) {
 
 async function openedSurface(file, among) {
   say(`${file.name} is being read.`);
-  const { name, token } = await posting(`/api/surfaces/${encodeURIComponent(file.name)}`, file, "application/octet-stream");
   const design = current();
+  const { name, token } = await posting(`/api/surfaces/${encodeURIComponent(file.name)}`, file, "application/octet-stream");
   const dropped = [...among].filter((one) => !one.name.toLowerCase().endsWith(".toml")).length > 1;
   const before = dropped ? (design.get("roughness", "files") ?? []).filter((one) => design.surfaces[one] && one !== name) : [];
   design.surfaces = { ...design.surfaces, [name]: token };
   const { asperity_density, asperity_radius, rms_height, ...rest } = design.tables.roughness ?? {};
   design.tables = { ...design.tables, roughness: { ...rest, files: [...before, name].slice(-2) } };
-  form.show(design);
+  form.show(current());
   by("table-roughness").open = true;
   say(`${name} is the surface now.`);
   ask(design);
@@ -221,6 +230,7 @@ function listen() {
   on("theme", "click", () => dress(document.documentElement.dataset.theme !== "dark"));
   on("cancel", "click", () => {
     designs.forEach((one) => one.cancel());
+    panels.show(designs);
     say("Cancelled; the last picture stays.");
   });
   document.querySelectorAll("input[name=design]").forEach((one) => one.addEventListener("change", () => choose(Number(one.value))));
@@ -243,6 +253,9 @@ function listen() {
     opened([...event.dataTransfer.files]);
   });
 }
+
+// A link of ours that is opened in the open page.
+addEventListener("hashchange", () => location.reload());
 
 window.asperity = { latencies, designs: () => designs };
 start().catch((error) => say(`The page cannot start: ${error.message}`));

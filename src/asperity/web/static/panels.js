@@ -6,7 +6,7 @@ import { amount, short } from "/static/units.js";
 const MEASURES = [
   ["impact speed", (a) => amount(a.measures.impact_speed, "m/s")],
   ["impacts", (a) => amount(a.motion.impacts)],
-  ["sticks", (a) => (a.measures.captured ? "yes" : "no")],
+  ["stays in contact", (a) => (a.measures.captured ? "yes" : "no")],
   ["time to capture", (a) => amount(a.measures.capture_time, "s")],
   ["time to rest", (a) => amount(a.measures.stiction_time, "s")],
   ["first restitution", (a) => amount(a.measures.restitution[0])],
@@ -45,6 +45,7 @@ export class Panels {
     const group = (design, x, series) => ({
       x, lines: series.map(([label, y, colour]) => ({ label: named(label, design), y, colour, dashed: design.letter === "B" })),
     });
+    captions(answered);
     this.motion(answered, group);
     this.forces(answered, group);
     this.energies(answered, group);
@@ -53,7 +54,7 @@ export class Panels {
     ledger(answered, two);
     measures(answered, two);
     warnings(answered, two);
-    document.querySelectorAll("#panels figure, #ledger").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal)));
+    document.querySelectorAll("#panels figure, #ledger").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal || (!d.running && d.shown < d.asked))));
   }
 
   verdicts(designs) {
@@ -79,7 +80,7 @@ export class Panels {
   forces(answered, group) {
     const windows = answered.map((d) => d.answer.motion.first_contact);
     const range = this.whole ? null : [Math.min(...windows.map((w) => w[0])), Math.max(...windows.map((w) => w[1]))];
-    document.querySelector("#forces figcaption").firstChild.textContent = this.whole ? "Forces" : "Forces, first contact";
+    document.querySelector("#forces .name").textContent = this.whole ? "Forces" : "Forces, first contact";
     this.charts.forces.show({
       groups: answered.map((d) => group(d, d.answer.motion.time, colours(d, d.answer.motion.forces, ["total"]))),
       axes: { x: ["time", "s"], y: ["force", "N"] }, range, spoken: "Positive forces push the body away.",
@@ -114,6 +115,14 @@ export class Panels {
   }
 }
 
+// Say where not all impacts are drawn.
+function captions(answered) {
+  const told = answered.filter(({ answer: { motion } }) => motion.drawn < motion.impacts)
+    .map(({ answer: { motion } }) => `${motion.drawn} of ${motion.impacts}`);
+  const words = told.length ? `first ${[...new Set(told)].join("; ")} impacts` : "";
+  document.querySelectorAll(".drawn").forEach((one) => { one.textContent = words; });
+}
+
 // Series of a part of the answer; a force that is nothing throughout is left out.
 function colours(design, part, without = []) {
   return Object.entries(part)
@@ -127,21 +136,25 @@ function ledger(answered, two) {
     const parts = Object.entries(lost).map(([name, energy]) => [`lost to ${name}`, energy, tint(answer.colours[`lost_${name}`])]);
     const gone = parts.reduce((sum, [, energy]) => sum + energy, 0);
     const whole = Math.max(initial, gone);
-    parts.push(["kept", whole - gone, "transparent"]);
+    if (gone <= initial) parts.push(["kept", initial - gone, "transparent"]);
     const bar = text("div", "", { className: "bar" });
     bar.setAttribute("aria-hidden", "true");
     const list = document.createElement("ul");
     for (const [name, energy, colour] of parts) {
       const share = text("span", "");
-      share.style.width = `${(100 * energy) / whole}%`;
+      const percent = whole > 0 ? (100 * energy) / whole : 0;
+      share.style.width = `${percent}%`;
       share.style.background = colour;
       bar.append(share);
       const mark = document.createElement("i");
       mark.style.background = colour;
       const item = document.createElement("li");
-      item.append(mark, `${name}: ${amount(energy, "J")} (${short((100 * energy) / whole, 3)} %)`);
+      item.append(mark, `${name}: ${amount(energy, "J")} (${short(percent, 3)} %)`);
       list.append(item);
     }
+    const source = `100 %: ${amount(initial, "J")} at the release`;
+    const bound = gone > initial ? ` and ${amount(gone - initial, "J")} that attraction gave in the end` : "";
+    list.append(text("li", source + bound));
     return [...(two ? [text("strong", letter)] : []), bar, list];
   }));
 }
@@ -153,7 +166,7 @@ function measures(answered, two) {
     return row;
   });
   const head = document.createElement("tr");
-  head.append(text("td", ""), ...answered.map(({ letter, name }) => text("th", `${letter}: ${name}`, { scope: "col" })));
+  head.append(text("td", ""), ...answered.map(({ letter, answer }) => text("th", `${letter}: ${answer.name}`, { scope: "col" })));
   const [top, body] = ["thead", "tbody"].map((tag) => document.createElement(tag));
   if (two) top.append(head);
   body.append(...rows);
