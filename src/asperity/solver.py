@@ -183,7 +183,7 @@ def _prepared(
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn)
-        table, datum = _prepare(contact, problem.body, drawn)
+        table, datum = _prepare(contact, problem.body)
         if float(table.error) <= max(tolerance, contact.blur):
             break
     else:
@@ -202,7 +202,7 @@ def _prepared(
 
 def _compile(contact: Contact, body: Body, limits: Limits, *, drawn: bool) -> None:
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
-    table, datum = _prepare.ahead(contact, body, drawn)
+    table, datum = _prepare.ahead(contact, body)
     progress, origin = _start.ahead(contact, body, table)
     _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
     if drawn:
