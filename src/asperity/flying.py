@@ -45,7 +45,14 @@ def cut_in_steps(problem: Problem) -> Problem:
     return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
 
 
-def flown(case: Case, problem: Problem, tell: Report, stop: threading.Event | None) -> Flight:
+def flown(
+    case: Case,
+    problem: Problem,
+    tell: Report,
+    stop: threading.Event | None,
+    *,
+    many: bool = False,
+) -> Flight:
     """The motion of what was built from a case.
 
     Parameters
@@ -56,6 +63,9 @@ def flown(case: Case, problem: Problem, tell: Report, stop: threading.Event | No
         Called with a fraction done and a line of text, now and then.
     stop
         Set from another thread, it ends the motion early.
+    many
+        Whether the ways back from reversals are tabulated first: that compiles longer, and pays
+        where many cases follow.
 
     Raises
     ------
@@ -65,8 +75,10 @@ def flown(case: Case, problem: Problem, tell: Report, stop: threading.Event | No
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
     limits = Limits.of(case.tolerance)
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=True)
-    _check_release(problem, table)
+    contact, table, datum = _prepared(
+        problem, case.numerics.tolerance, limits, tell, drawn=True, many=many
+    )
+    _check_release(problem, table, many=many)
     if problem.late is None and problem.creep is None:
         return _fly(problem.body, contact, table, datum, limits, tell, stop)
     return _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
@@ -99,7 +111,13 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
 
 
 def _prepared(
-    problem: Problem, tolerance: float, limits: Limits, tell: Report, *, drawn: bool
+    problem: Problem,
+    tolerance: float,
+    limits: Limits,
+    tell: Report,
+    *,
+    drawn: bool,
+    many: bool = False,
 ) -> tuple[Contact, Table, Datum]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
@@ -109,8 +127,8 @@ def _prepared(
         tell(0.02, "compilation")
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
-            _compile(contact, problem.body, limits, drawn=drawn)
-        prepared = _prepare.ready(contact, problem.body, drawn)
+            _compile(contact, problem.body, limits, drawn=drawn, many=many)
+        prepared = _prepare.ready(contact, problem.body, many)
         tell(0.06, "force curves")
         table, datum = prepared()
         if float(table.error) <= max(tolerance, contact.blur):
@@ -129,9 +147,11 @@ def _prepared(
     return contact, table, datum
 
 
-def _compile(contact: Contact, body: Body, limits: Limits, *, drawn: bool) -> None:
+def _compile(
+    contact: Contact, body: Body, limits: Limits, *, drawn: bool, many: bool = False
+) -> None:
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
-    table, datum = _prepare.ahead(contact, body, drawn)
+    table, datum = _prepare.ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
     _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
     if drawn:
@@ -143,7 +163,7 @@ _start = Program(start)
 _fly_some = Program(fly)
 
 
-def _check_release(problem: Problem, table: Table) -> None:
+def _check_release(problem: Problem, table: Table, *, many: bool = False) -> None:
     """A release within contact is refused: it would not be a fall."""
     body = problem.body
     release, weight = float(body.release), float(body.weight)
@@ -155,17 +175,17 @@ def _check_release(problem: Problem, table: Table) -> None:
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
     raise InputError(
         f"`release_gap` must lie outside contact: the contact force there must be below {share} "
-        f"({limit:.3g} N), and is {force:.3g} N; {_at_rest(problem)}got {release * 1e9:.6g} nm",
+        f"({limit:.3g} N), and is {force:.3g} N; {_at_rest(problem, many)}got {release * 1e9:.6g} nm",
         key="impact.release_gap",
     )
 
 
-def _at_rest(problem: Problem) -> str:
+def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     body = problem.body
     release = float(problem.contact.reach) + CLEARANCE
     clear = Body(body.mass, body.gravity, release, body.speed)
-    place = float(_prepare(problem.contact, clear, True)[1].equilibrium)
+    place = float(_prepare(problem.contact, clear, many)[1].equilibrium)
     return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
 
 

@@ -81,7 +81,7 @@ def explore(
         As :func:`solve`.
     """
     tell, problem = progress or silently, cut_in_steps(build(case))
-    flight = flown(case, problem, tell, stop)
+    flight = flown(case, problem, tell, stop, many=True)
     result = _told(case, name, problem, flight, tell, most)
     if flight.outcome is Outcome.FAILED:
         raise SimulationError(_failure(case), result)
