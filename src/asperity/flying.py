@@ -173,9 +173,10 @@ def _check_release(problem: Problem, table: Table, *, many: bool = False) -> Non
     if force <= limit:
         return
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
+    at_rest = _at_rest(problem, many)
     raise InputError(
         f"`release_gap` must lie outside contact: the contact force there must be below {share} "
-        f"({limit:.3g} N), and is {force:.3g} N; {_at_rest(problem, many)}got {release * 1e9:.6g} nm",
+        f"({limit:.3g} N), and is {force:.3g} N; {at_rest}got {release * 1e9:.6g} nm",
         key="impact.release_gap",
     )
 
