@@ -9,14 +9,13 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import solver
+from asperity import colours, solver
 from asperity.case import load
 from asperity.case.build import build
 from asperity.cli import app
 from asperity.colours import COLOURS
 from asperity.contact.creep import CreptContact
 from asperity.materials import contact_modulus
-from asperity.plots import style
 
 CREEPS = """
 [viscoelasticity]
@@ -205,4 +204,4 @@ def test_body_and_edge_that_turn_together_are_one_turn():
 
 
 def test_no_mechanism_of_a_users_own_takes_the_colour_of_another():
-    assert not set(style._SPARE) & set(COLOURS.values())
+    assert not set(colours._SPARE) & set(COLOURS.values())
