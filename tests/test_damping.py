@@ -145,6 +145,7 @@ def test_a_drag_that_cannot_be_followed_is_a_failure(flown):
     assert ENDS[int(motion.end.outcome)] is Outcome.FAILED
 
 
+@pytest.mark.long
 def test_a_batch_in_gas_equals_single_motions(flown):
     viscosity = jnp.asarray([1e-5, 2e-5, 2e-4])
     both, _ = jax.jit(jax.vmap(flown, in_axes=(0, None)))(viscosity, 75e-9)

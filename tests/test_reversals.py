@@ -115,6 +115,7 @@ def test_reversals_far_apart_are_solved_as_they_come():
     assert not bool(reversals.cover(jnp.asarray(0.5 * (low + high)), jnp.asarray(True)))
 
 
+@pytest.mark.long
 def test_derivatives_pass_through_tabulated_ways():
     """Energy lost in three impacts by the rms height, against a central difference."""
 

@@ -74,6 +74,7 @@ def balance(contact, deepest):
     return kinetic, kinetic - lost
 
 
+@pytest.mark.long
 def test_a_sphere_that_yields_and_adheres_leaves_as_its_energies_say():
     """The balance of energies has it stick below 1.458 m/s; that without yield is 0.567 m/s."""
     contact = SmoothPlasticContact(ADHESIVE, meniscus(0.0))
