@@ -21,7 +21,7 @@ from asperity.case.reading import builtin_text
 
 Row = tuple[str, str, str]
 
-MOVES = 60
+MOVES = 40
 """Moves of sliders for each figure."""
 
 _SLIDERS = ("roughness-rms_height", "capillary-humidity", "body-radius", "capillary-contact_angle")

@@ -222,7 +222,7 @@ def test_a_link_opened_in_the_open_page_is_followed(page):
 
 
 def test_more_impacts_than_are_drawn_are_said(page):
-    expect(page.locator("#motion .drawn")).to_have_text("first 24 of 200 impacts")
+    expect(page.locator("#motion .drawn")).to_have_text("first 12 of 200 impacts")
 
 
 def test_two_designs_stand_side_by_side(page):

@@ -13,7 +13,7 @@ from asperity.regimes import Frame, Place, region
 from asperity.result import Curve, Result
 from asperity.verdict import verdict
 
-DRAWN = 24
+DRAWN = 12
 """Impacts whose course the page draws."""
 
 _CONTACT = 1e-3
