@@ -10,7 +10,8 @@ import pytest
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.contact.base import Held
-from asperity.contact.settling import Matrix, settle, settle_near
+from asperity.contact.factors import Matrix
+from asperity.contact.settling import settle, settle_near
 from asperity.errors import Tolerance
 from asperity.impact import Body, Limits, fly, prepare, start
 from asperity.impact.reversals import CLOSE

@@ -224,9 +224,9 @@ class Contact(eqx.Module):
         """The way from a reversal on an outermost branch, that came there as ``held`` says.
 
         Size and field of ``held`` need not be those of the branch. Nothing is solved where it is
-        not ``wanted``.
+        not ``wanted``. Only of contacts whose :attr:`reversals` are more than 0.
         """
-        raise NotImplementedError
+        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
 
     def on_branch(self, memory: Memory) -> jax.Array:
         """Whether the last reversal was on an outermost branch, for :meth:`way_from`."""

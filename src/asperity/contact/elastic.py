@@ -16,10 +16,11 @@ from ..layers import Surfaces
 from ..program import kept
 from ..shapes import Sphere
 from .base import Contact, Held, State, Way
+from .factors import Matrix
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
-from .settling import Matrix, Rest, resting, rise_of, settle
+from .settling import Rest, resting, rise_of, settle
 
 _ALIKE = 3.0  # rms heights between reversals whose ways are interpolated
 

@@ -17,10 +17,10 @@ from ..halfspace import ring_mesh
 from ..interface import Memory as Thresholds
 from ..layers import Surfaces
 from ..shapes import Sphere
+from .factors import SOFT, Matrix, dense_solve
 
 _ENOUGH = 1e-12  # relative change left in the separation
 _STALE = 0.1  # a matrix that gains less than this factor a step is made anew
-_SOFT = 0.02  # rates of separation this near to 1: the matrix changes too little along a path
 _RESTART = 20  # steps after which a bad first guess is given up
 _STEPS = 120
 
@@ -169,7 +169,7 @@ class _Newton(NamedTuple):
     def nearby(self, first: _Step, matrix: Matrix) -> _Step:
         """First with the matrix of a known solution; two steps show how well it serves."""
         now = self.moved(first, self.pressure(first.h), matrix)
-        return self.more(now._replace(rate=jnp.maximum(now.rate, _SOFT)), matrix)
+        return self.more(now._replace(rate=jnp.maximum(now.rate, SOFT)), matrix)
 
     def anew(self, now: _Step) -> tuple[_Step, Matrix]:
         """One step with a new matrix, and more with the same."""
@@ -216,85 +216,10 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
     inner = jax.lax.custom_linear_solve(
         lambda x: matrix @ x,
         push[:-1],
-        lambda _, right: _dense_solve(matrix, right),
-        lambda _, right: _dense_solve(matrix.T, right),
+        lambda _, right: dense_solve(matrix, right),
+        lambda _, right: dense_solve(matrix.T, right),
     )
     return lift, jnp.append(inner, push[-1] + (rows[-1] * slope[:-1]) @ inner)
-
-
-class Matrix(NamedTuple):
-    """I - C diag(slope), factorized; the mesh's end carries no pressure itself.
-
-    Attributes
-    ----------
-    factors, order, last, slope
-        The factors, the order of their rows, the row of the end, and the slope.
-    rates
-        Rate of the separation of the rings and of the end per rigid separation.
-    """
-
-    factors: jax.Array
-    order: jax.Array
-    last: jax.Array
-    slope: jax.Array
-    rates: jax.Array
-
-    @classmethod
-    def of(cls, rows: jax.Array, slope: jax.Array) -> Matrix:
-        """The matrix of a displacement per pressure and the slope of the pressure."""
-        scaled = rows * slope
-        factors, order = _factors(jnp.eye(len(slope)) - scaled[:-1])
-        ones = jnp.ones(len(slope) + 1)
-        matrix = cls(factors, order, scaled[-1], slope, ones)
-        return matrix._replace(rates=matrix.back(ones))
-
-    @classmethod
-    def blank(cls, rings: int) -> Matrix:
-        """Of no known solution."""
-        count = len(ring_mesh(rings).radius)
-        none = jnp.zeros(count)
-        rates = jnp.full(count + 1, jnp.nan)
-        return cls(jnp.eye(count), jnp.arange(count, dtype=jnp.int32), none, none, rates)
-
-    @property
-    def serves(self) -> jax.Array:
-        """Whether it may serve for a solution near its own: where the bulk hardly gives way."""
-        return jnp.max(jnp.abs(self.rates - 1.0)) < _SOFT
-
-    def back(self, right: jax.Array) -> jax.Array:
-        """Its inverse times ``right``."""
-        inner = _substitute(self.factors, self.order, right[:-1])
-        return jnp.append(inner, right[-1] + self.last @ inner)
-
-
-# A batch of systems one after the other: XLA's batched calls are slower within a loop.
-
-
-@jax.custom_batching.sequential_vmap
-def _factors(matrix: jax.Array) -> tuple[jax.Array, jax.Array]:
-    factors, pivots, _ = jax.lax.linalg.lu(matrix)
-    rows = jnp.arange(len(pivots), dtype=pivots.dtype)
-    # Next to no matrix here needs an exchange of rows, and to find their order takes as long as
-    # half the factors.
-    order = jax.lax.cond(
-        jnp.all(pivots == rows),
-        lambda: rows,
-        lambda: jax.lax.linalg.lu_pivots_to_permutation(pivots, len(pivots)),
-    )
-    return factors, order
-
-
-@jax.custom_batching.sequential_vmap
-def _substitute(factors: jax.Array, order: jax.Array, right: jax.Array) -> jax.Array:
-    solve = jax.lax.linalg.triangular_solve
-    column = right[order][:, None]
-    below = solve(factors, column, left_side=True, lower=True, unit_diagonal=True)
-    return solve(factors, below, left_side=True, lower=False)[:, 0]
-
-
-@jax.custom_batching.sequential_vmap
-def _dense_solve(matrix: jax.Array, right: jax.Array) -> jax.Array:
-    return jnp.linalg.solve(matrix, right[:, None])[:, 0]
 
 
 def asked_size(rest: Rest, rings: int) -> jax.Array:
