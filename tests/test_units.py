@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from asperity import units
 from asperity.errors import InputError
 from asperity.units import example, quantity, shown
 
@@ -142,3 +143,18 @@ def test_a_value_is_shown_shortened(value):
 def test_pint_is_not_imported_before_the_first_conversion():
     code = "import sys, asperity.units; assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize(
+    ("unit", "spelling"), [(unit, name) for unit, row in units._COMMON.items() for name in row]
+)
+@pytest.mark.parametrize("number", ["1", "0", "-3", "73", "0.1", "1.69e16", "5e-7", "89.99999999"])
+def test_spellings_known_by_heart_are_read_as_pint_reads_them(number, unit, spelling):
+    text = f"{number} {spelling}"
+    assert quantity(text, unit) == units._by_pint(number, spelling, text, unit, "value")
+
+
+def test_the_built_in_case_is_read_without_pint():
+    program = "import sys, asperity; asperity.load('published-exact'); print('pint' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.stdout.strip() == "False"

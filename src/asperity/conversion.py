@@ -130,7 +130,7 @@ def result_of(
         warnings=[
             *warnings_of(case, problem, regime, at_depth, motion),
             *slow_menisci(problem, motion, flight.trajectory),
-            *kept_elastic(case, float(measures.restitution[0]), elastic),
+            *kept_elastic(case, float(np.asarray(measures.restitution)[0]), elastic),
         ],
         events={
             name: np.asarray(values)[:made]
@@ -245,7 +245,7 @@ def _histories(
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Forces and energies along the motion."""
     layout = quantities(contact)
-    weight = float(body.weight)
+    weight = float(body.mass) * float(body.gravity)
     rows: np.ndarray = series.rows
     parts = rows[:, layout.components]
     forces: dict[str, np.ndarray] = {name: parts[:, k] for k, name in enumerate(contact.components)}

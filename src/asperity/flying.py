@@ -166,7 +166,7 @@ _fly_some = Program(fly)
 def _check_release(problem: Problem, table: Table, *, many: bool = False) -> None:
     """A release within contact is refused: it would not be a fall."""
     body = problem.body
-    release, weight = float(body.release), float(body.weight)
+    release, weight = float(body.release), float(body.mass) * float(body.gravity)
     force = abs(float(read_row(table, 0, release)[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
     limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest

@@ -24,28 +24,31 @@ def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
     return jnp.where(width > 0.0, (2.0 * place - low - high) / safe, 0.0)
 
 
+@jax.jit  # traced once for each shape
 def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
     """Sum of Chebyshev polynomials; the coefficients' first axis is the degree.
 
     The other axes and those of ``x`` broadcast. By Clenshaw's recurrence: XLA makes one
     loop of that, and three times as many steps of a table of the polynomials. Even and odd
-    degrees apart, in steps of two degrees: half as many that wait for one another.
+    degrees side by side, in steps of two degrees: half as many that wait for one another, and
+    half as many to compile.
     """
+    count, shape = coefficients.shape[0], jnp.broadcast_shapes(coefficients.shape[1:], x.shape)
+    if count == 1:
+        return jnp.broadcast_to(coefficients[0], shape)
+    odd = count % 2  # then the first goes alone, and each odd degree with the even one above
+    alike = (1,) * (len(shape) + 1 - coefficients.ndim)
+    pairs = coefficients[odd:].reshape(count // 2, 2, *alike, *coefficients.shape[1:])
     twice = 4.0 * x * x - 2.0
-    zero = jnp.zeros(jnp.broadcast_shapes(coefficients.shape[1:], x.shape))
-
-    def run(first: int) -> tuple[jax.Array, jax.Array]:
-        upper = lower = zero
-        last = coefficients.shape[0] - 1
-        for degree in range(last - (last - first) % 2, first, -2):
-            upper, lower = (coefficients[degree] - lower) + twice * upper, upper
-        return upper, lower
-
-    (even, before), (odd, earlier) = run(0), run(1)
-    total = (coefficients[0] - before) + 0.5 * twice * even
-    if coefficients.shape[0] == 1:
-        return total
-    return total + x * ((coefficients[1] - earlier) + (twice - 1.0) * odd)
+    upper = lower = jnp.zeros((1, 2, *shape))
+    for k in range(count // 2 - 1, -odd, -1):
+        upper, lower = (pairs[k : k + 1] - lower) + twice * upper, upper
+    if odd:
+        even = (coefficients[0] - lower[0, 1]) + 0.5 * twice * upper[0, 1]
+        return even + x * (upper[0, 0] - lower[0, 0])
+    first = pairs[:1] - lower
+    even = first[0, 0] + 0.5 * twice * upper[0, 0]
+    return even + x * (first[0, 1] + (twice - 1.0) * upper[0, 1])
 
 
 def antiderivative(coefficients: jax.Array) -> jax.Array:

@@ -34,6 +34,31 @@ _KINDS = {
     "s": ("a time", "10 ms"),
 }
 
+# Value of one unit, and of its zero, in the spellings that most cases use. Whatever is written
+# otherwise is read by pint, which takes a second to start; tests hold these to what it says.
+_COMMON = {
+    "m": {
+        "m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "µm": "1e-6", "μm": "1e-6",
+        "nm": "1e-9", "pm": "1e-12",
+    },
+    "1/m^2": {"1/m^2": "1", "1/mm^2": "1e6", "1/um^2": "1e12", "1/nm^2": "1e18"},
+    "Pa": {
+        "Pa": "1", "hPa": "1e2", "kPa": "1e3", "MPa": "1e6", "GPa": "1e9", "bar": "1e5",
+        "mbar": "1e2",
+    },
+    "kg/m^3": {"kg/m^3": "1", "g/cm^3": "1e3"},
+    "J/m^2": {"J/m^2": "1", "mJ/m^2": "1e-3"},
+    "N/m": {"N/m": "1", "mN/m": "1e-3"},
+    "m^3/mol": {"m^3/mol": "1", "cm^3/mol": "1e-6"},
+    "K": {"K": "1", "degC": "1"},
+    "rad": {"rad": "1", "deg": "0.017453292519943295769236907684886127134428718885417"},
+    "m/s": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "um/s": "1e-6"},
+    "m/s^2": {"m/s^2": "1"},
+    "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "ns": "1e-9", "min": "60", "h": "3600"},
+    "Pa s": {"Pa s": "1", "mPa s": "1e-3", "uPa s": "1e-6"},
+}  # fmt: skip
+_ZERO = {"degC": "273.15"}
+
 _shown = reprlib.Repr()
 _shown.maxstring = _shown.maxother = _shown.maxlong = 60
 _shown.maxlevel = 2
@@ -78,17 +103,17 @@ def quantity(text: object, unit: str, name: str = "value") -> float:
         Where the text is no number with a unit, the unit is unknown or of another dimension, or
         the value is not finite in ``unit``.
     """
-    kind, sample = _KINDS.get(unit, (f"a value in {unit}", f"1 {unit}"))
+    sample = example(unit)
     if not isinstance(text, str):
         raise _refusal(name, f"must be text with a number and a unit, such as '{sample}'", text)
     number, unit_text = _split(text, name, sample)
-    value = _measure(number, unit_text, text, name, f"{kind}, such as '{sample}'")
-    wanted = _registry().Quantity(decimal.Decimal(1), unit)
-    with decimal.localcontext(_CONTEXT):
-        # Root units, not dimensions: a percentage is as dimensionless as an angle, and is none.
-        if value.to_root_units().units != wanted.to_root_units().units:
-            raise _refusal(name, f"must be {kind}, such as '{sample}'", text)
-        result = float(value.m_as(wanted.units))
+    factor = _COMMON.get(unit, {}).get(unit_text)
+    if factor is not None:
+        with decimal.localcontext(_CONTEXT):
+            zero = decimal.Decimal(_ZERO.get(unit_text, 0))
+            result = float(decimal.Decimal(number) * decimal.Decimal(factor) + zero)
+    else:
+        result = _by_pint(number, unit_text, text, unit, name)
     if not math.isfinite(result) or (result == 0.0 and decimal.Decimal(number) != 0):
         raise _refusal(name, "must be a number that a float can hold", text)
     return result
@@ -135,6 +160,18 @@ def _split(text: str, name: str, sample: str) -> tuple[str, str]:
     if not unit_text:
         raise _refusal(name, f"must have a unit, such as '{sample}'", text)
     return number, unit_text
+
+
+def _by_pint(number: str, unit_text: str, text: str, unit: str, name: str) -> float:
+    """Value in a unit of a number and any unit that pint reads."""
+    kind, sample = _KINDS.get(unit, (f"a value in {unit}", f"1 {unit}"))
+    value = _measure(number, unit_text, text, name, f"{kind}, such as '{sample}'")
+    wanted = _registry().Quantity(decimal.Decimal(1), unit)
+    with decimal.localcontext(_CONTEXT):
+        # Root units, not dimensions: a percentage is as dimensionless as an angle, and is none.
+        if value.to_root_units().units != wanted.to_root_units().units:
+            raise _refusal(name, f"must be {kind}, such as '{sample}'", text)
+        return float(value.m_as(wanted.units))
 
 
 def _measure(number: str, unit_text: str, text: str, name: str, kind: str) -> Any:

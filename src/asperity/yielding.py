@@ -65,7 +65,7 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
     law = _law(case, rough.asperity_radius, modulus)
     heights = Gaussian(rough.rms_height, rough.mean_height)
     overlap, touching, beyond, whole = (
-        float(x) for x in _tails(law, heights, jnp.asarray(central))
+        float(x) for x in _tails(law, heights, np.asarray(central, np.float64))
     )
     share = beyond / touching if touching > 0.0 else 0.0
     if share < SHARE:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import equinox as eqx
+import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.base import Memory
 from ..errors import Outcome, Tolerance
 from ..film import SqueezeFilm
-from ..laws.base import Real, quantity
+from ..laws.base import Real, as_float64, quantity
 from ..program import kept
 from ..radiation import WaveRadiation
 from .datum import Datum
@@ -101,9 +102,9 @@ class Limits(NamedTuple):
     def of(cls, tolerance: Tolerance) -> Limits:
         """The limits of a tolerance."""
         return cls(
-            jnp.asarray(tolerance.rest, dtype=jnp.float64),
-            jnp.asarray(tolerance.time_limit, dtype=jnp.float64),
-            jnp.asarray(tolerance.max_impacts),
+            as_float64(tolerance.rest),
+            as_float64(tolerance.time_limit),
+            jnp.asarray(np.asarray(tolerance.max_impacts)),
         )
 
 

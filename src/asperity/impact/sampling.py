@@ -53,7 +53,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         chosen = np.minimum(np.arange(first, first + _BATCH), made - 1)
         rows = jax.tree_util.tree_map(partial(_rows, chosen), impacts)
         drawn = [
-            _draw(body, table, phase, jnp.asarray(parting), places)
+            _draw(body, table, phase, np.asarray(parting), places)
             for phase, parting in ((rows.fall, False), (rows.rise, True))
         ]
         count = min(_BATCH, made - first)
@@ -67,7 +67,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     still, acting = np.zeros((2, len(body.mechanisms)))
     if body.film is not None:
         acting[0] = body.film.drag(row[CENTRAL])  # waves need contact
-    release = (0.0, body.release, -body.speed, row, still, acting, 0)
+    release = (0.0, body.release, -np.asarray(body.speed), row, still, acting, 0)
     rest = (time, separation, speed, values, heat, drag, phase.ravel())
     return Series(
         *(
@@ -82,7 +82,7 @@ def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
     phase = jax.tree_util.tree_map(
         lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype), impacts.fall
     )
-    _draw.ahead(body, table, phase, jnp.asarray(False), _places(table))
+    _draw.ahead(body, table, phase, np.asarray(False), _places(table))
 
 
 def _places(table: Table) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -171,14 +170,14 @@ def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
 
     def climbed(piece: jax.Array) -> jax.Array:
         here = _piece(ahead, piece)
-        place = jnp.clip(places[best], here.low, here.high)
-        for _ in range(_CLIMBS):
-            place = here.towards_top(place)
+        still = jax.lax.stop_gradient(here)
+        begin = jnp.clip(jax.lax.stop_gradient(places[best]), still.low, still.high)
+        place = jax.lax.fori_loop(0, _CLIMBS, lambda _, place: still.towards_top(place), begin)
         # At the top the energy does not change with the place.
-        return here.energy(jax.lax.stop_gradient(place))
+        return here.energy(place)
 
-    inward = jnp.maximum(piece - 1, 0)
-    return reduce(jnp.maximum, (energies[best], climbed(piece), climbed(inward)))
+    both = jax.vmap(climbed)(jnp.stack([piece, jnp.maximum(piece - 1, 0)]))
+    return jnp.maximum(energies[best], jnp.max(both))
 
 
 def _polish(piece: _Piece, bracket: _Bracket) -> jax.Array:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
+import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import InputError
@@ -18,11 +19,14 @@ Real = Any
 def quantity(default: float | None = None) -> Any:
     """A physical value of a module, kept as a float64 array: traced, never static."""
     if default is None:
-        return eqx.field(converter=_float64)
-    return eqx.field(converter=_float64, default=default)
+        return eqx.field(converter=as_float64)
+    return eqx.field(converter=as_float64, default=default)
 
 
-def _float64(value: Any) -> jax.Array:
+def as_float64(value: Any) -> jax.Array:
+    """A float64 array of a number or an array."""
+    if isinstance(value, int | float | np.ndarray):
+        value = np.asarray(value, np.float64)  # JAX would compile the conversion
     return jnp.asarray(value, dtype=jnp.float64)
 
 
