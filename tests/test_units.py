@@ -156,5 +156,7 @@ def test_spellings_known_by_heart_are_read_as_pint_reads_them(number, unit, spel
 
 def test_the_built_in_case_is_read_without_pint():
     program = "import sys, asperity; asperity.load('published-exact'); print('pint' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], check=True, capture_output=True, text=True
+    )
     assert done.stdout.strip() == "False"

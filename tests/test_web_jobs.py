@@ -21,6 +21,7 @@ import pytest
 
 from asperity.errors import InputError, SimulationError
 from asperity.web import app as pages
+from asperity.web import jobs as desks
 from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
 
 with warnings.catch_warnings():
@@ -253,6 +254,28 @@ def told(client: TestClient, tables: dict[str, Any], asker: str = "A") -> list[d
     assert answer.status_code == 200, answer.text
     assert answer.headers["content-type"].startswith("application/x-ndjson")
     return [json.loads(line) for line in answer.text.splitlines()]
+
+
+@pytest.fixture(autouse=True)
+def every_word(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Progress is told whenever there is any."""
+    monkeypatch.setattr(desks, "OFTEN", 0.0)
+
+
+def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(desks, "OFTEN", 0.05)
+
+    def task(tell: Report, stop: threading.Event) -> None:
+        for number in range(100):
+            tell(number / 100.0, "on")
+            time.sleep(2e-3)
+
+    async def ask() -> list[str]:
+        return [event.kind async for event in Desk(threads=1).ask("A", task).events(LONG)]
+
+    *progress, end = asyncio.run(ask())
+    assert end == "answer"
+    assert 1 <= len(progress) <= 50
 
 
 def test_progress_comes_before_the_answer(client: TestClient, tables: dict[str, Any]):

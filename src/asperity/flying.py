@@ -27,7 +27,7 @@ from .program import Program
 
 Report = Callable[[float, str], None]
 
-_CHUNK = 20  # impacts a compiled call: short enough for Ctrl-C
+_CHUNK, _QUICK = 20, 100  # impacts a compiled call: short enough for Ctrl-C, where all is quick
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
@@ -105,7 +105,9 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
     body = problem.body
     tell(0.3, "first impact")
     first, origin = _start(contact, body, table)
-    progress, rows = _fly_some(contact, body, table, datum, origin, first, limits, _CHUNK)
+    progress, rows = _fly_some(
+        contact, body, table, datum, origin, first, limits, _at_once(contact, body)
+    )
     impacts = jax.tree_util.tree_map(np.asarray, rows)
     return contact, Motion(impacts, progress, table, datum, origin)
 
@@ -153,9 +155,16 @@ def _compile(
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
     table, datum = _prepare.ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
-    _, impacts = _fly_some.ahead(contact, body, table, datum, origin, progress, limits, _CHUNK)
+    _, impacts = _fly_some.ahead(
+        contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
+    )
     if drawn:
         compile_ahead(body, table, impacts)
+
+
+def _at_once(contact: Contact, body: Body) -> int:
+    """Impacts in one compiled call."""
+    return _QUICK if isinstance(contact, RigidContact) and not body.damped else _CHUNK
 
 
 _prepare = Program(prepare)
@@ -205,7 +214,9 @@ def _fly(
     while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
         if not chunks:
             tell(0.08, "compilation")
-        fly_on = _fly_some.ready(contact, body, table, datum, origin, progress, limits, _CHUNK)
+        fly_on = _fly_some.ready(
+            contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
+        )
         if not chunks:
             tell(0.1, "motion")
         progress, rows = fly_on()

@@ -20,7 +20,7 @@ from numpy.polynomial import chebyshev
 
 from ._jax import jax, jnp
 
-__all__ = ["height_integral", "height_integrals", "normal_density"]
+__all__ = ["height_integral", "height_integrals", "integrals_at", "normal_density"]
 
 _SPLIT = -1.0  # left of it the integral grows like |l|^n, right of it it decays like exp(-l^2/2)
 _STRETCH = 4.0
@@ -54,18 +54,38 @@ def height_integral(order: float, separation: jax.Array | float) -> jax.Array:
     return height_integrals((float(order),), x[None])[0]
 
 
-@partial(jax.custom_jvp, nondiff_argnums=(0,))
 def height_integrals(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
     """Height integrals of several orders at once: row k of ``separations`` has ``orders[k]``.
 
     One evaluation for all rows costs XLA a fraction of one call each, to compile and to run.
     """
-    return _evaluate(orders, separations)
+    return integrals_at(tuple((order,) for order in orders), separations)
+
+
+@partial(jax.custom_jvp, nondiff_argnums=(0,))
+def integrals_at(groups: tuple[tuple[float, ...], ...], separations: jax.Array) -> jax.Array:
+    """The same for several different orders at each row of ``separations``.
+
+    Row k has the orders ``groups[k]``; the answer has one row for each, group after group.
+    """
+    rows = [k for k, orders in enumerate(groups) for _ in orders]
+    orders = tuple(order for group in groups for order in group)
+    if rows != list(range(separations.shape[0])):
+        separations = separations[np.asarray(rows)]
+    return _batched_first(_evaluate(orders, separations))
+
+
+def _batched_first(rows: jax.Array) -> jax.Array:
+    """The same, whose batch axis under ``vmap`` comes first.
+
+    In a loop JAX takes it to be where it is in the value when it asks for the derivative.
+    """
+    return jax.lax.squeeze(jax.lax.broadcast(rows, (1,)), (0,))
 
 
 @partial(jax.jit, static_argnums=0)
 def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
-    """:func:`height_integrals`, traced once for all its callers."""
+    """One order a row, traced once for all its callers."""
     known = [row for row, order in enumerate(orders) if order == 0.0]
     if known:
         # The tail of the Gaussian, for which XLA has a function: a fifth of the time.
@@ -92,22 +112,29 @@ def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
     return smooth * jnp.exp(power * jnp.log(size) - 0.5 * bounded * bounded)
 
 
-@height_integrals.defjvp
-def _height_integrals_jvp(orders, primals, tangents):  # type: ignore[no-untyped-def]
+@integrals_at.defjvp
+def _integrals_jvp(groups, primals, tangents):  # type: ignore[no-untyped-def]
     (x,), (change,) = primals, tangents
     # F_n' = -n F_(n-1); F_0' = -density; below order 0 from F_(n+1) = n F_(n-1) - l F_n.
-    lowered = tuple(n - 1.0 if n > 0.0 else n + 1.0 if n < 0.0 else 0.0 for n in orders)
-    both = height_integrals((*orders, *lowered), jnp.concatenate([x, x]))
-    here, neighbour = both[: len(orders)], both[len(orders) :]
-    rows = [
-        -n * neighbour[k]
-        if n > 0.0
-        else -(neighbour[k] + x[k] * here[k])
-        if n < 0.0
-        else -normal_density(x[k])
-        for k, n in enumerate(orders)
-    ]
-    return here, jnp.stack(rows) * change
+    beside = tuple(
+        tuple(dict.fromkeys((*group, *(n - 1.0 if n > 0.0 else n + 1.0 for n in group if n))))
+        for group in groups
+    )
+    flat = [(k, order) for k, group in enumerate(beside) for order in group]
+    known = dict(zip(flat, integrals_at(beside, x), strict=True))
+    here, slopes = [], []
+    for k, group in enumerate(groups):
+        for n in group:
+            value = known[k, n]
+            if n > 0.0:
+                slope = -n * known[k, n - 1.0]
+            elif n < 0.0:
+                slope = -(known[k, n + 1.0] + x[k] * value)
+            else:
+                slope = -normal_density(x[k])
+            here.append(value)
+            slopes.append(slope * change[k])
+    return _batched_first(jnp.stack(here)), _batched_first(jnp.stack(slopes))
 
 
 def _clenshaw(table: np.ndarray, panel: jax.Array, x: jax.Array) -> jax.Array:

@@ -9,6 +9,7 @@ from .case import Case
 from .case.plasticity import Plasticity
 from .case.yielding import plastic_contact
 from .errors import InputError
+from .laws.base import as_float64
 from .laws.plastic import KogutEtsion, PlasticContact
 from .program import Program
 from .roughness import Gaussian
@@ -64,9 +65,7 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
         return []
     law = _law(case, rough.asperity_radius, modulus)
     heights = Gaussian(rough.rms_height, rough.mean_height)
-    overlap, touching, beyond, whole = (
-        float(x) for x in _tails(law, heights, np.asarray(central, np.float64))
-    )
+    overlap, touching, beyond, whole = (float(x) for x in _tails(law, heights, as_float64(central)))
     share = beyond / touching if touching > 0.0 else 0.0
     if share < SHARE:
         return []

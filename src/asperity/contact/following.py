@@ -15,6 +15,7 @@ from .settling import Rest, Rough, asked_size, settle_near
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
+_TRAIL = 4
 _MORE = 1.02  # than the way at the first rate
 
 
@@ -42,7 +43,7 @@ class Bound(Protocol):
 
 
 class Trail(NamedTuple):
-    """The last three places and displacements of the rings there, newest first."""
+    """The last few places and displacements of the rings there, newest first."""
 
     places: jax.Array
     lifts: jax.Array
@@ -52,22 +53,17 @@ class Trail(NamedTuple):
         cls, place: jax.Array, lift: jax.Array, rate: jax.Array, step: jax.Array | float
     ) -> Trail:
         """Rings that came by ``rate`` in steps of ``step`` [m]."""
-        back = -step * np.arange(3.0)
+        back = -step * np.arange(float(_TRAIL))
         return cls(place + back, lift + back[:, None] * rate)
 
     def guess(self, place: jax.Array) -> jax.Array:
-        """The parabola through them, at a place further on."""
-        (a, b, c), x = self.places, place
-        apart = (a - b) * (b - c) * (c - a)
-        safe = jnp.where(apart == 0.0, 1.0, apart)
-        weights = jnp.stack(
-            [
-                (x - b) * (x - c) * (c - b) / safe,
-                (x - a) * (x - c) * (a - c) / safe,
-                (x - a) * (x - b) * (b - a) / safe,
-            ]
-        )
-        return jnp.where(apart == 0.0, self.lifts[0], weights @ self.lifts)
+        """The polynomial through them, at a place further on."""
+        one = np.eye(_TRAIL)
+        apart = self.places[:, None] - self.places + one
+        known = jnp.all(apart != 0.0)
+        ratios = (place - self.places) * (1.0 - one) + one
+        weights = jnp.prod(ratios / jnp.where(known, apart, 1.0), axis=1)
+        return jnp.where(known, weights @ self.lifts, self.lifts[0])
 
     def append(self, place: jax.Array, lift: jax.Array) -> Trail:
         """With one more, the oldest dropped."""

@@ -61,6 +61,7 @@ class _Step(NamedTuple):
     rate: jax.Array
     off: jax.Array
     steps: jax.Array
+    serves: jax.Array
 
     @property
     def enough(self) -> jax.Array:
@@ -123,14 +124,16 @@ def settle_near(
     safe = separation + rise_of(contact, size, rings)
     newton = _Newton(contact, thresholds, safe, _rows(contact, size, rings))
     one = jnp.ones(())
-    first = _Step(safe + lift, jnp.zeros(rings), one, one, jnp.zeros(()), jnp.asarray(0))
-    now = jax.lax.cond(matrix.serves, lambda: newton.nearby(first, matrix), lambda: first)
+    # With the matrix of a known solution where it serves; two steps then show how well.
+    guess = _Step(
+        safe + lift, jnp.zeros(rings), one, one, jnp.zeros(()), jnp.asarray(0), matrix.serves
+    )
 
     def go_on(carry: tuple[_Step, Matrix]) -> jax.Array:
         now, _ = carry
         return jnp.logical_not(now.enough) & (now.steps < _STEPS)
 
-    end, matrix = jax.lax.while_loop(go_on, lambda carry: newton.anew(carry[0]), (now, matrix))
+    end, matrix = jax.lax.while_loop(go_on, lambda carry: newton.step(*carry), (guess, matrix))
     return Rest(end.h - safe, matrix.rates, end.pressure, end.off), matrix
 
 
@@ -145,41 +148,29 @@ class _Newton(NamedTuple):
     def pressure(self, h: jax.Array) -> jax.Array:
         return self.contact.interface.pressure(h, self.thresholds)
 
-    def moved(self, now: _Step, pressure: jax.Array, matrix: Matrix) -> _Step:
-        """One step on, from where the pressure is known."""
+    def step(self, now: _Step, matrix: Matrix) -> tuple[_Step, Matrix]:
+        """One step, with the matrix at hand while it serves, else with a new one."""
+        matrix = jax.lax.cond(now.serves, lambda: matrix, lambda: self.matrix(now.h))
         area = ring_mesh(len(matrix.slope)).area
+        pressure = self.pressure(now.h)
         move = matrix.back(now.h - self.safe - self.rows @ pressure[:-1])
         change = jnp.max(jnp.abs(move) / (self.contact.interface.heights.rms + jnp.abs(now.h)))
         rate = change / now.change
+        rate = jnp.where(now.serves & (now.steps == 0), jnp.maximum(rate, SOFT), rate)
         load = jnp.sum(area * jnp.abs(pressure[:-1]))
         off = jnp.sum(area * jnp.abs(matrix.slope * move[:-1]))
         off = jnp.minimum(rate, 1.0) * off / jnp.where(load > 0.0, load, 1.0)
-        return _Step(now.h - move, pressure[:-1], change, rate, off, now.steps + 1)
-
-    def more(self, now: _Step, matrix: Matrix) -> _Step:
-        """Further steps with the same matrix while it serves."""
-
-        def serves(now: _Step) -> jax.Array:
-            return jnp.logical_not(now.enough) & (now.rate < _STALE)
-
-        return jax.lax.while_loop(
-            serves, lambda now: self.moved(now, self.pressure(now.h), matrix), now
-        )
-
-    def nearby(self, first: _Step, matrix: Matrix) -> _Step:
-        """First with the matrix of a known solution; two steps show how well it serves."""
-        now = self.moved(first, self.pressure(first.h), matrix)
-        return self.more(now._replace(rate=jnp.maximum(now.rate, SOFT)), matrix)
-
-    def anew(self, now: _Step) -> tuple[_Step, Matrix]:
-        """One step with a new matrix, and more with the same."""
-        pressure, slope = _pressed(self.contact, self.thresholds, now.h)
-        matrix = Matrix.of(self.rows, slope[:-1])
-        now = self.more(self.moved(now, pressure, matrix), matrix)
-        restart = (now.steps > _RESTART) & (now.steps < 2 * _RESTART) & ~now.enough
+        steps = now.steps + 1
+        after = _Step(now.h - move, pressure[:-1], change, rate, off, steps, rate < _STALE)
+        lost = (steps > _RESTART) & (steps < 2 * _RESTART) & ~after.enough & ~after.serves
         one = jnp.ones(())
-        begun = _Step(self.safe, now.pressure, one, one, now.off, jnp.asarray(2 * _RESTART))
-        return jax.tree_util.tree_map(lambda a, b: jnp.where(restart, a, b), begun, now), matrix
+        begun = _Step(self.safe, pressure[:-1], one, one, off, jnp.asarray(2 * _RESTART), ~lost)
+        after = jax.tree_util.tree_map(lambda a, b: jnp.where(lost, a, b), begun, after)
+        return after, matrix
+
+    def matrix(self, h: jax.Array) -> Matrix:
+        """The matrix at separations h."""
+        return Matrix.of(self.rows, _pressed(self.contact, self.thresholds, h)[1][:-1])
 
 
 @eqx.filter_custom_jvp

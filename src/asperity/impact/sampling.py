@@ -53,7 +53,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         chosen = np.minimum(np.arange(first, first + _BATCH), made - 1)
         rows = jax.tree_util.tree_map(partial(_rows, chosen), impacts)
         drawn = [
-            _draw(body, table, phase, np.asarray(parting), places)
+            _draw(body, table, phase, jax.device_put(np.asarray(parting)), places)
             for phase, parting in ((rows.fall, False), (rows.rise, True))
         ]
         count = min(_BATCH, made - first)

@@ -10,7 +10,7 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..laws.base import Powers, Real, quantity
-from ..special import height_integral, height_integrals, normal_density, order_ratio
+from ..special import height_integral, integrals_at, normal_density, order_ratio
 
 
 class Heights(eqx.Module):
@@ -69,6 +69,11 @@ class Heights(eqx.Module):
         """
 
 
+def _name(edge: jax.Array | float) -> float | int:
+    """The same for edges that are the same number or array."""
+    return edge if isinstance(edge, float) else id(edge)
+
+
 _WINDOW = 8.6  # heights beyond this many rms weigh less than 1e-16
 
 
@@ -119,8 +124,14 @@ class Gaussian(Heights):
         sizes: tuple[float, ...] | None = None,
     ) -> jax.Array:
         sigma, above = self.rms_height, separation - self.mean_height
-        reduced = jnp.stack([jnp.broadcast_to(above - t.edge, separation.shape) for t in terms])
-        values = height_integrals(tuple(t.exponent + order for t in terms), reduced / sigma)
+        # Terms share edges and orders: each order at each edge once.
+        edges = {_name(t.edge): t.edge for t in terms}
+        pairs = [(_name(t.edge), t.exponent + order) for t in terms]
+        orders = {edge: tuple(dict.fromkeys(n for e, n in pairs if e == edge)) for edge in edges}
+        reduced = jnp.stack([jnp.broadcast_to(above - e, separation.shape) for e in edges.values()])
+        found = integrals_at(tuple(orders.values()), reduced / sigma)
+        row = {pair: k for k, pair in enumerate((e, n) for e in orders for n in orders[e])}
+        values = [found[row[pair]] for pair in pairs]
         scale = [
             t.coefficient * sigma ** (t.exponent + order) * order_ratio(t.exponent, order)
             for t in terms

@@ -16,6 +16,9 @@ from asperity.verdict import verdict
 DRAWN = 12
 """Impacts whose course the page draws."""
 
+_SWING = 40
+"""Points drawn while something goes once through its whole range; all of the first contact's."""
+
 _CONTACT = 1e-3
 """Share of the largest force from which the first impact is shown."""
 
@@ -32,21 +35,25 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
     -------
     Plain values; arrays are packed by :func:`packed`, all of one length within a part.
     """
+    contact, parts = _first_contact(result), {"forces": result.forces, "energies": result.energies}
+    seen = _seen(result, contact)
     return {
         **json_object(result),
         "name": result.name,
         "message": result.outcome.message,
         "verdict": verdict(result),
         "motion": {
-            "time": packed(result.time),
-            "separation": packed(result.separation),
-            "central_separation": packed(result.central_separation),
-            "speed": packed(result.speed),
-            "forces": {name: packed(values) for name, values in result.forces.items()},
-            "energies": {name: packed(values) for name, values in result.energies.items()},
+            **{
+                name: packed(getattr(result, name)[seen])
+                for name in ("time", "separation", "central_separation", "speed")
+            },
+            **{
+                part: {name: packed(values[seen]) for name, values in series.items()}
+                for part, series in parts.items()
+            },
             "impacts": int(np.size(result.events["apex_time"])),
             "drawn": _drawn(result),
-            "first_contact": _first_contact(result),
+            "first_contact": contact,
         },
         "curve": {
             "separation": packed(curve.rigid_separation),
@@ -87,6 +94,24 @@ def _first_contact(result: Result) -> list[float]:
     begin, end = result.time[during][0], result.time[during][-1]
     margin = 0.1 * (end - begin) or 0.1 * (apex - deepest)
     return [max(float(begin - margin), 0.0), float(end + margin)]
+
+
+def _seen(result: Result, contact: list[float]) -> np.ndarray:
+    """Indices of the samples that a picture of the whole needs, and of all in the first contact.
+
+    Ends, what turns, and in between a sample for each share of a range that anything goes through.
+    """
+    series = np.array([result.separation, result.speed, *result.forces.values()])
+    span = np.ptp(series, axis=1, keepdims=True)
+    steps = np.diff(series, axis=1) / np.where(span > 0.0, span, 1.0)
+    gone = np.concatenate([[0.0], np.cumsum(np.max(np.abs(steps), axis=0))])
+    begins = np.diff(np.floor(gone * _SWING), prepend=-1.0) > 0.0
+    turns = np.zeros(result.time.size, bool)
+    turns[1:-1] = np.any(steps[:, 1:] * steps[:, :-1] < 0.0, axis=0)
+    near = (contact[0] <= result.time) & (result.time <= contact[1])
+    ends = np.isin(np.arange(result.time.size), (0, result.time.size - 1))
+    kept: np.ndarray = np.flatnonzero(begins | turns | near | ends)
+    return kept
 
 
 def _place(result: Result) -> dict[str, Any] | None:

@@ -16,6 +16,9 @@ from asperity.errors import InputError, SimulationError
 Report = Callable[[float, str], None]
 Task = Callable[[Report, threading.Event], Any]
 
+OFTEN = 0.1
+"""Time between two tellings of progress [s]: a page that hears more often only redraws itself."""
+
 _LOG = logging.getLogger(__name__)
 
 
@@ -52,6 +55,7 @@ class Job:
         self._task = task
         self._loop = asyncio.get_running_loop()
         self._events: asyncio.Queue[Event] = asyncio.Queue()
+        self._told = time.monotonic()
         self.stop = threading.Event()
 
     def run(self) -> None:
@@ -71,6 +75,9 @@ class Job:
     def _progress(self, fraction: float, text: str) -> None:
         if self.stop.is_set():
             raise Stopped
+        if time.monotonic() - self._told < OFTEN:
+            return
+        self._told = time.monotonic()
         self.tell(Event("progress", (fraction, text)))
 
     def tell(self, event: Event) -> None:

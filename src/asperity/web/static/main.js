@@ -37,7 +37,7 @@ function show(what) {
 function work() {
   const busy = designs.find((one) => one.work);
   by("work").hidden = !(busy?.running && performance.now() - busy.running.begun > SLOW);
-  document.body.dataset.busy = busy ? "yes" : "no";
+  if (document.body.dataset.busy !== (busy ? "yes" : "no")) document.body.dataset.busy = busy ? "yes" : "no";
   if (!busy) return;
   by("progress").value = busy.work.fraction;
   by("progress-text").textContent = busy.work.text;
