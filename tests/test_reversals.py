@@ -56,13 +56,19 @@ def both():
 def test_a_motion_by_tabulated_ways_is_that_by_solved_ones(both):
     table, (ours, judge) = both
     assert bool(jnp.all(ours.made))
-    assert float(jnp.max(table.reversals.error)) < CLOSE
+    assert all(error < CLOSE for error in errors(table.reversals).values())
     energy = float(judge.fastest[0])
     assert float(jnp.max(jnp.abs(ours.lost - judge.lost))) < IMPACTS * CLOSE * energy
     np.testing.assert_allclose(ours.apex, judge.apex, rtol=IMPACTS * CLOSE)
     np.testing.assert_allclose(ours.apex_time, judge.apex_time, rtol=IMPACTS * CLOSE)
     # Of as many rings as here the ledger has an error of its own.
     np.testing.assert_allclose(ours.closure, judge.closure, atol=IMPACTS * CLOSE * energy)
+
+
+def errors(reversals):
+    """The stated error of each range that is not empty, by its number."""
+    used = np.flatnonzero(np.asarray(reversals.high > reversals.low))
+    return {int(k): float(reversals.error[k]) for k in used}
 
 
 def work(low, high, values):
@@ -96,6 +102,7 @@ def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
         here = contact(ways=count)
         table, _ = prepared(here, BODY)
         known = table.reversals
+        assert list(errors(known)) == [0, 1]
         for k, parting in enumerate((True, False)):
             low, high = float(known.low[k]), float(known.high[k])
             place = jnp.asarray(low + 0.37 * (high - low))
@@ -105,6 +112,32 @@ def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
     for k in range(2):
         assert stated[k] > 100.0 * stated[2 + k]
     assert all(error < limit for error, limit in zip(real, stated, strict=True))
+
+
+@pytest.mark.parametrize("shrunk", [8.0, 6.0, 4.5])
+def test_wide_falls_have_ranges_side_by_side_each_as_good_as_it_says(shrunk):
+    """Smoother bodies rest nearer to the plane, and so fall through more rms heights."""
+    here = contact(sigma=shrunk * 1e-9)
+    table, datum = prepared(here, BODY)
+    known = table.reversals
+    stated = errors(known)
+    assert len(stated) > 2
+    outside = sorted(set(stated) - {0})
+    np.testing.assert_allclose(known.low[outside[0]], datum.equilibrium, rtol=1e-12)
+    np.testing.assert_array_equal(
+        known.high[outside[0] : outside[-1]], known.low[outside[1] : outside[-1] + 1]
+    )
+    top = min(float(table.ends[-1]), float(here.reach))
+    np.testing.assert_allclose(known.high[outside[-1]], top, rtol=1e-12)
+    impact = 9.81 * BODY.mass * BODY.release
+    for k in outside:
+        low, high = float(known.low[k]), float(known.high[k])
+        place = jnp.asarray(low + 0.37 * (high - low))
+        assert bool(known.cover(place, jnp.asarray(False)))
+        ours, judge = works(here, table, place, jnp.asarray(False))
+        assert abs(float(ours - judge)) < max(stated[k], 1e-13) * impact
+    beyond = jnp.asarray(np.nextafter(top, 1.0))
+    assert not bool(known.cover(beyond, jnp.asarray(False)))
 
 
 def test_reversals_far_apart_are_solved_as_they_come():

@@ -214,6 +214,11 @@ class Contact(eqx.Module):
         """Number of ways in each direction that stand for all; 0 where none is worth keeping."""
         return 0
 
+    @property
+    def scale(self) -> jax.Array:
+        """Length [m] over which forces fall off; that of :attr:`reversals`."""
+        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
+
     def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """Whether few ways stand for those from all reversals between two separations [m]."""
         return jnp.zeros(jnp.shape(low), bool)

@@ -22,7 +22,7 @@ from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
 from .settling import Rest, resting, rise_of, settle
 
-_ALIKE = 3.0  # rms heights between reversals whose ways are interpolated
+_ALIKE = 3.0  # rms heights between reversals whose ways are interpolated, at most
 
 
 @kept
@@ -222,13 +222,17 @@ class ElasticContact(Contact):
     def reversals(self) -> int:
         return self.resolved.reversals if self.mechanisms else 0
 
+    @property
+    def scale(self) -> jax.Array:
+        return jnp.asarray(self.interface.heights.rms)
+
     def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """Where forces fall off along a way by about as much from all of them, and it is short."""
         widths = [law.breaking_gap - law.forming_gap for law in self.interface.hysteretic]
         rms = self.interface.heights.rms
         apart = high - low
         short = apart * jnp.max(jnp.stack(widths)) < rms**2
-        return short & (apart < _ALIKE * rms) & (high < self.reach)
+        return short & (apart < _ALIKE * rms) & (high <= self.reach)
 
     def way_from(
         self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]

@@ -37,6 +37,8 @@ from .table import (
 CLOSE = 1e-8
 """Error of the work along a way, over the impact energy, up to which the polynomial serves."""
 
+_FAR = 3  # ranges of the reversals outside, at most
+_WIDE = 1.7  # rms heights that one of them spans, where that is enough
 _NONE = 1e-120  # touching asperities: their logarithm and its derivatives are finite
 _FALL = 0.1  # of the coefficients over the place of the reversal, from one to the next, at least
 _BEND = 2  # degree of the size of the mesh over that place
@@ -44,23 +46,23 @@ _BEND = 2  # degree of the size of the mesh over that place
 
 @kept
 class Reversals(NamedTuple):
-    """Ways back from reversals within a range, for a body that parts and for one that comes.
+    """Ways back from reversals within ranges: the first where a body parts, the others outside.
 
     Attributes
     ----------
     low, high
-        The range [m], shape (2,).
+        The ranges [m], shape (ranges,).
     length
-        Chebyshev coefficients over it of the ends of the pieces, from the reversal in the
-        direction of motion [m], shape (2, ways, pieces).
+        Chebyshev coefficients over each of the ends of the pieces, from the reversal in the
+        direction of motion [m], shape (ranges, ways, pieces).
     touching
         Likewise those of the logarithm of the number of asperities that touch at the places of
-        each piece, shape (2, ways, pieces, places).
+        each piece, shape (ranges, ways, pieces, places).
     rows
-        Likewise those of all quantities there, over that number but for lengths, shape (2, ways,
-        pieces, places, rows).
+        Likewise those of all quantities there, over that number but for lengths, shape (ranges,
+        ways, pieces, places, rows).
     error
-        Estimated error of the work along the way over the impact energy, shape (2,).
+        Estimated error of the work along the way over the impact energy, shape (ranges,).
     """
 
     low: jax.Array
@@ -70,15 +72,19 @@ class Reversals(NamedTuple):
     rows: jax.Array
     error: jax.Array
 
+    def _range(self, start: jax.Array, parting: jax.Array) -> jax.Array:
+        """Index of the range of a reversal at ``start`` [m]."""
+        return jnp.where(parting, 0, 1 + jnp.sum(self.high[1:-1] < start))
+
     def cover(self, start: jax.Array, parting: jax.Array) -> jax.Array:
         """Whether they hold for a reversal at ``start`` [m]."""
-        k = jnp.where(parting, 0, 1)
+        k = self._range(start, parting)
         inside = jnp.logical_and(self.low[k] <= start, start <= self.high[k])
         return jnp.logical_and(inside, self.error[k] <= CLOSE)
 
     def pieces(self, start: jax.Array, parting: jax.Array) -> Pieces:
         """The way back from ``start`` [m]."""
-        k = jnp.where(parting, 0, 1)
+        k = self._range(start, parting)
         x = local(self.low[k], self.high[k], start)
         leave = start + jnp.where(parting, 1.0, -1.0) * chebyshev_sum(self.length[k], x[None])
         enter = jnp.concatenate([start[None], leave[:-1]])
@@ -100,19 +106,21 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     frozen, body, rest = jax.lax.stop_gradient((table, body, datum.equilibrium))
     within = frozen.ends[0], frozen.ends[-1]
     deepest, energy = _first_fall(frozen, body)
-    low, high = jnp.stack([deepest, rest]), jnp.stack([rest, within[1]])
+    reach = jax.lax.stop_gradient(contact.reach)
+    ends = _ends(rest, jnp.minimum(within[1], reach), jax.lax.stop_gradient(contact.scale))
+    low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
     wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
-    nodes = chebyshev.chebpts1(ways)
+    nodes, parted = chebyshev.chebpts1(ways), np.arange(1 + _FAR) > 0
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
-    rows = jnp.stack([_rows(frozen, k, places[k]) for k in range(2)])
+    rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
     held = Held(
-        outer=jnp.ones((2, ways), bool),
-        parting=jnp.broadcast_to(np.array([[False], [True]]), (2, ways)),
+        outer=jnp.ones((1 + _FAR, ways), bool),
+        parting=jnp.broadcast_to(parted[:, None], (1 + _FAR, ways)),
         size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
         field=rows[..., quantities(contact).field],
     )
-    jobs = places, held, jnp.broadcast_to(wanted[:, None], (2, ways))
-    jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(2 * ways, *leaf.shape[2:]), jobs)
+    jobs = places, held, jnp.broadcast_to(wanted[:, None], (1 + _FAR, ways))
+    jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), jobs)
     solved = jax.lax.map(lambda job: contact.way_from(job[0], job[1], job[2], within), jobs)
     rows = jax.vmap(all_rows)(solved.states)
     touching = jnp.where(rows[..., TOUCHING] > _NONE, rows[..., TOUCHING], _NONE)
@@ -120,10 +128,18 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     length = jnp.abs(solved.leave - jobs[0][:, None])
     each = length, jnp.log(touching), rows
     length, numbers, rows = (_over_places(x, nodes) for x in each)
-    most = jnp.max(touching.reshape(2, -1), axis=1)
+    most = jnp.max(touching.reshape(1 + _FAR, -1), axis=1)
     error = most * _error(length, numbers, rows) / jnp.where(energy > 0.0, energy, 1.0)
     error = jnp.where(wanted, error, jnp.inf)
     return table._replace(reversals=Reversals(low, high, length, numbers, rows, error))
+
+
+def _ends(low: jax.Array, high: jax.Array, rms: jax.Array) -> jax.Array:
+    """Ends of as many even ranges as are needed, the others empty at the upper end."""
+    width = jnp.maximum((high - low) / _FAR, jnp.minimum(_WIDE * rms, high - low))
+    count = jnp.ceil((high - low) / jnp.where(width > 0.0, width, 1.0) - 1e-9)
+    width = (high - low) / jnp.maximum(count, 1.0)
+    return jnp.minimum(low + width * np.arange(1.0 + _FAR), high)
 
 
 def _scales(touching: jax.Array, count: int) -> jax.Array:
@@ -162,13 +178,13 @@ def _inverse(nodes: np.ndarray) -> np.ndarray:
 
 
 def _over_places(values: jax.Array, nodes: np.ndarray) -> jax.Array:
-    """Values at the places of both directions as Chebyshev coefficients over these."""
-    each = values.reshape(2, len(nodes), *values.shape[1:])
+    """Values at the places of all ranges as Chebyshev coefficients over these."""
+    each = values.reshape(-1, len(nodes), *values.shape[1:])
     return jnp.einsum("kn,bn...->bk...", _inverse(nodes), each)
 
 
 def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array:
-    """Estimated error of the work along the ways [J] over the touching, shape (2,)."""
+    """Estimated error of the work along the ways [J] over the touching, shape (ranges,)."""
     force = jnp.abs(rows[..., FORCE])
     last = force[:, 2:] + force[:, :1] * jnp.abs(touching[:, 2:])
     off = jnp.maximum(last[:, -1], _FALL * last[:, -2])

@@ -16,7 +16,7 @@ from asperity.verdict import verdict
 DRAWN = 12
 """Impacts whose course the page draws."""
 
-_SWING = 40
+_SWING = 30
 """Points drawn while something goes once through its whole range; all of the first contact's."""
 
 _CONTACT = 1e-3
