@@ -41,6 +41,15 @@ class Flight(NamedTuple):
     trajectory: Trajectory | None = None
 
 
+def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
+    """Compile what measures such a motion, in a thread; shapes serve in place of arrays."""
+    rows = jax.tree_util.tree_map(
+        lambda leaf: jax.ShapeDtypeStruct((_ROWS, *leaf.shape[1:]), leaf.dtype), motion.impacts
+    )
+    _measure.ahead(motion._replace(impacts=rows), body, None)
+    losses.ahead(contact)
+
+
 def _padded(flight: Flight, body: Body) -> Measures:
     """Measures over a power of two of rows, seldom more than the first: one compilation."""
     motion = flight.motion

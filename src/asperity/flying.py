@@ -13,7 +13,7 @@ from .case import Case
 from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
 from .contact.resolution import in_steps
-from .conversion import Flight
+from .conversion import Flight, measure_ahead
 from .errors import InputError, Outcome, SimulationError
 from .impact import Body, Impacts, Limits, Motion, Table, fly, prepare, start
 from .impact.creeping import fly_creeping
@@ -155,11 +155,12 @@ def _compile(
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
     table, datum = _prepare.ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
-    _, impacts = _fly_some.ahead(
+    end, impacts = _fly_some.ahead(
         contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
     )
     if drawn:
         compile_ahead(body, table, impacts)
+        measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
 
 
 def _at_once(contact: Contact, body: Body) -> int:
