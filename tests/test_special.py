@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from asperity._jax import jax, jnp
-from asperity.special import height_integral, normal_density
+from asperity.special import height_integral, integrals_at, normal_density
 
 ORDERS = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
 PLACES = np.concatenate([np.linspace(-8.0, 12.0, 41), [-1.0 - 1e-9, -0.9999, 0.123, 11.987]])
@@ -131,3 +131,38 @@ def test_second_derivative_follows_too():
 def test_order_of_minus_one_or_less_is_refused():
     with pytest.raises(ValueError, match="order"):
         height_integral(-1.0, 0.0)
+
+
+GROUPS = ((0.0, 1.0, 2.5), (-0.5,), (1.5, 0.0))
+
+
+def alone(x):
+    """Each order of each group by itself."""
+    return jnp.stack([height_integral(n, x[k]) for k, group in enumerate(GROUPS) for n in group])
+
+
+def test_orders_at_shared_places_are_those_alone_with_two_derivatives():
+    x = jnp.asarray([[0.3, -2.0], [1.7, -0.4], [-0.9, 6.0]])
+    change = jnp.asarray([[1.0, -0.5], [0.3, 2.0], [-1.0, 0.7]])
+
+    def derivatives(function):
+        def first(x):
+            return jax.jvp(function, (x,), (change,))[1]
+
+        return function(x), first(x), jax.jvp(first, (x,), (change,))[1]
+
+    pairs = zip(derivatives(lambda x: integrals_at(GROUPS, x)), derivatives(alone), strict=True)
+    for together, one_by_one in pairs:
+        np.testing.assert_allclose(together, one_by_one, rtol=1e-12)
+
+
+def test_derivatives_pass_a_loop_over_batches_of_shared_places():
+    """JAX takes the batch axis of the derivative to be where the value has its own."""
+    places = jnp.linspace(-2.0, 3.0, 12).reshape(4, 3)
+
+    def total(shift, function):
+        rows = jax.lax.map(jax.vmap(lambda p: function(shift + p * jnp.ones(3))), places)
+        return jnp.sum(rows**2)
+
+    together = jax.grad(total)(0.1, lambda x: integrals_at(GROUPS, x))
+    assert float(together) == pytest.approx(float(jax.grad(total)(0.1, alone)), rel=1e-12)
