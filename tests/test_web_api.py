@@ -10,7 +10,9 @@ import json
 import sys
 import warnings
 from collections.abc import Iterator
+from math import pi
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
@@ -33,6 +35,7 @@ from asperity.records.layout import json_object
 from asperity.result import Result
 from asperity.solver import explore
 from asperity.verdict import verdict
+from asperity.web.answer import _seen
 from asperity.web.app import LOCAL, application
 from asperity.web.exploring import FILES
 from asperity.web.form import form
@@ -241,23 +244,46 @@ def test_a_motion_and_a_curve_unpack_to_their_numbers(client: TestClient, tables
     result, curve = explore(case)
     motion = found["motion"]
     assert motion["drawn"] == 12
-    times = result.time.astype("<f4")
-    seen = np.searchsorted(times, unpacked(motion["time"]))
+    seen = _seen(result, motion["first_contact"])
+    assert np.array_equal(unpacked(motion["time"]), result.time[seen].astype("<f4"))
+    begin, end = motion["first_contact"]
+    assert {0, len(result.time) - 1} <= set(seen)
+    assert set(np.flatnonzero((begin <= result.time) & (result.time <= end))) <= set(seen)
     series = {name: getattr(result, name) for name in ("separation", "central_separation", "speed")}
     for values, drawn in ((series, motion), (result.forces, motion["forces"])):
         for name, whole in values.items():
             assert np.array_equal(unpacked(drawn[name]), whole[seen].astype("<f4")), name
-            between = np.interp(times, times[seen], whole[seen])
-            assert np.max(np.abs(between - whole)) <= 0.05 * np.ptp(whole), name
+            between = np.interp(result.time, result.time[seen], whole[seen])
+            assert np.max(np.abs(between - whole)) <= 0.01 * np.ptp(whole), name
     for name, whole in result.energies.items():
         assert np.array_equal(unpacked(motion["energies"][name]), whole[seen].astype("<f4")), name
-    assert len(seen) < 0.6 * len(times)
+        between = np.interp(result.time, result.time[seen], whole[seen])
+        assert np.max(np.abs(between - whole)) <= 0.01 * np.ptp(whole), name
+    assert len(seen) < 0.6 * len(result.time)
     approach = unpacked(found["curve"]["approach"])
     assert approach.shape == unpacked(found["curve"]["separation"]).shape
     assert np.allclose(approach, curve.force_approach, rtol=1e-6)
     assert found["curve"]["pull_off"] == curve.pull_off
     begin, end = motion["first_contact"]
     assert begin < result.events["deepest_time"][0] < end < result.events["apex_time"][0] * 1.2
+
+
+def test_what_is_drawn_keeps_small_late_bounces_jumps_and_what_is_no_number():
+    time = np.linspace(0.0, 1.0, 1201)
+    height = np.abs(np.cos(12.0 * pi * time)) * 10.0 ** (-3.0 * np.floor(12.0 * time + 0.5) / 12.0)
+    pull = np.where(time > 0.303, -1.0, 0.0)
+    pull[7] = np.nan
+    result: Any = SimpleNamespace(
+        time=time, separation=height, speed=0.0 * time, forces={"a": pull}
+    )
+    seen = _seen(result, [0.1, 0.11])
+    between = np.interp(time, time[seen], height[seen])
+    for number in range(12):
+        during = np.floor(12.0 * time + 0.5) == number
+        assert np.max(np.abs(between - height)[during]) < 0.02 * np.max(height[during])
+    jump = int(np.argmax(time > 0.303))
+    assert {jump - 1, jump} <= set(seen)
+    assert len(seen) < 800
 
 
 def test_the_map_has_its_lines_and_the_case_its_place(client: TestClient, tables: dict[str, Any]):

@@ -266,16 +266,21 @@ def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(desks, "OFTEN", 0.05)
 
     def task(tell: Report, stop: threading.Event) -> None:
+        tell(0.0, "loading")
+        tell(0.0, "compilation")
         for number in range(100):
-            tell(number / 100.0, "on")
+            tell(number / 100.0, f"impact {number}")
             time.sleep(2e-3)
+        tell(1.0, "measures")
 
-    async def ask() -> list[str]:
-        return [event.kind async for event in Desk(threads=1).ask("A", task).events(LONG)]
+    async def ask() -> list[Any]:
+        job = Desk(threads=1).ask("A", task)
+        return [event.value async for event in job.events(LONG) if event.kind == "progress"]
 
-    *progress, end = asyncio.run(ask())
-    assert end == "answer"
-    assert 1 <= len(progress) <= 50
+    told = [text for _, text in asyncio.run(ask())]
+    impacts = [text for text in told if text.startswith("impact")]
+    assert [*told[:3], told[-1]] == ["loading", "compilation", "impact 0", "measures"]
+    assert 2 <= len(impacts) <= 50
 
 
 def test_progress_comes_before_the_answer(client: TestClient, tables: dict[str, Any]):

@@ -155,17 +155,18 @@ def _compile(
     """Compile the curves, the motion and, where wanted, its drawing side by side."""
     table, datum = _prepare.ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
-    end, impacts = _fly_some.ahead(
+    _, impacts = _fly_some.ahead(
         contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
     )
     if drawn:
         compile_ahead(body, table, impacts)
-        measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
 
 
 def _at_once(contact: Contact, body: Body) -> int:
     """Impacts in one compiled call."""
-    return _QUICK if isinstance(contact, RigidContact) and not body.damped else _CHUNK
+    if isinstance(contact, RigidContact) and not body.damped:
+        return _QUICK if getattr(contact.interface, "closed", False) else _CHUNK
+    return _CHUNK
 
 
 _prepare = Program(prepare)
@@ -213,11 +214,12 @@ def _fly(
     progress, origin = _start(contact, body, table)
     chunks: list[Impacts] = []
     while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
+        given = (contact, body, table, datum, origin, progress, limits, _at_once(contact, body))
         if not chunks:
             tell(0.08, "compilation")
-        fly_on = _fly_some.ready(
-            contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
-        )
+            end, flown = _fly_some.ahead(*given)
+            measure_ahead(contact, body, Motion(flown, end, table, datum, origin))
+        fly_on = _fly_some.ready(*given)
         if not chunks:
             tell(0.1, "motion")
         progress, rows = fly_on()

@@ -117,6 +117,11 @@ class Interface(eqx.Module):
         )
 
     @property
+    def closed(self) -> bool:
+        """Whether all its means are closed forms, of truncated powers. Without values."""
+        return all(type(law).powers is not Law.powers for law in terms(self.law))
+
+    @property
     def yields(self) -> bool:
         """Whether what was pressed once stays changed. Without values."""
         return False

@@ -68,6 +68,8 @@ def integrals_at(groups: tuple[tuple[float, ...], ...], separations: jax.Array) 
 
     Row k has the orders ``groups[k]``; the answer has one row for each, group after group.
     """
+    if len(groups) != separations.shape[0]:
+        raise ValueError(f"{len(groups)} groups of orders for {separations.shape[0]} rows")
     rows = [k for k, orders in enumerate(groups) for _ in orders]
     orders = tuple(order for group in groups for order in group)
     if rows != list(range(separations.shape[0])):

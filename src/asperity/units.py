@@ -196,7 +196,7 @@ def _refusal(name: str, rule: str, value: object) -> InputError:
 
 @functools.cache
 def _registry() -> Any:
-    """The registry of units, read at the first conversion: it takes 0.5 s."""
+    """The registry of units, read at the first uncommon spelling."""
     import pint
 
     return pint.UnitRegistry(non_int_type=decimal.Decimal)

@@ -216,7 +216,7 @@ class Contact(eqx.Module):
 
     @property
     def scale(self) -> jax.Array:
-        """Length [m] over which forces fall off; that of :attr:`reversals`."""
+        """Length [m] over which forces fall off, by which ranges of reversals are cut."""
         raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
 
     def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:

@@ -232,7 +232,7 @@ class ElasticContact(Contact):
         rms = self.interface.heights.rms
         apart = high - low
         short = apart * jnp.max(jnp.stack(widths)) < rms**2
-        return short & (apart < _ALIKE * rms) & (high <= self.reach)
+        return short & (apart < _ALIKE * rms) & (high <= self.reach * (1.0 + 1e-12))
 
     def way_from(
         self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]

@@ -15,7 +15,7 @@ from .settling import Rest, Rough, asked_size, settle_near
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
-_TRAIL = 4
+_TRAIL = 4  # places behind from which the next is guessed
 _MORE = 1.02  # than the way at the first rate
 
 

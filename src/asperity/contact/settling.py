@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Protocol
 
 import equinox as eqx
 import numpy as np
+from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
@@ -150,16 +151,22 @@ class _Newton(NamedTuple):
 
     def step(self, now: _Step, matrix: Matrix) -> tuple[_Step, Matrix]:
         """One step, with the matrix at hand while it serves, else with a new one."""
-        matrix = jax.lax.cond(now.serves, lambda: matrix, lambda: self.matrix(now.h))
+
+        def renewed() -> Matrix:
+            pairs = zip(matrix, self.matrix(now.h), strict=True)
+            return Matrix(*(jnp.where(now.serves, old, new) for old, new in pairs))
+
+        # In a batch none is made where all serve.
+        matrix = jax.lax.cond(unvmap_any(~now.serves), renewed, lambda: matrix)
         area = ring_mesh(len(matrix.slope)).area
         pressure = self.pressure(now.h)
         move = matrix.back(now.h - self.safe - self.rows @ pressure[:-1])
         change = jnp.max(jnp.abs(move) / (self.contact.interface.heights.rms + jnp.abs(now.h)))
         rate = change / now.change
-        rate = jnp.where(now.serves & (now.steps == 0), jnp.maximum(rate, SOFT), rate)
         load = jnp.sum(area * jnp.abs(pressure[:-1]))
         off = jnp.sum(area * jnp.abs(matrix.slope * move[:-1]))
         off = jnp.minimum(rate, 1.0) * off / jnp.where(load > 0.0, load, 1.0)
+        rate = jnp.where(now.serves & (now.steps == 0), jnp.maximum(rate, SOFT), rate)
         steps = now.steps + 1
         after = _Step(now.h - move, pressure[:-1], change, rate, off, steps, rate < _STALE)
         lost = (steps > _RESTART) & (steps < 2 * _RESTART) & ~after.enough & ~after.serves

@@ -98,7 +98,7 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     """A table with the ways back from where a body can turn on its outermost branches.
 
     It turns between its deepest point and the static equilibrium on the way in, and between that
-    and its highest point on the way out. Without weight it does not return.
+    and its highest point, or where forces end, on the way out. Without weight it does not return.
     """
     ways = contact.reversals
     if not ways:
@@ -139,7 +139,8 @@ def _ends(low: jax.Array, high: jax.Array, rms: jax.Array) -> jax.Array:
     width = jnp.maximum((high - low) / _FAR, jnp.minimum(_WIDE * rms, high - low))
     count = jnp.ceil((high - low) / jnp.where(width > 0.0, width, 1.0) - 1e-9)
     width = (high - low) / jnp.maximum(count, 1.0)
-    return jnp.minimum(low + width * np.arange(1.0 + _FAR), high)
+    number = np.arange(1.0 + _FAR)
+    return jnp.where((number > 0.0) & (number >= count), high, low + width * number)
 
 
 def _scales(touching: jax.Array, count: int) -> jax.Array:

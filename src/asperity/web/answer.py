@@ -99,19 +99,27 @@ def _first_contact(result: Result) -> list[float]:
 def _seen(result: Result, contact: list[float]) -> np.ndarray:
     """Indices of the samples that a picture of the whole needs, and of all in the first contact.
 
-    Ends, what turns, and in between a sample for each share of a range that anything goes through.
+    Ends, what turns, both sides of jumps, and in between a sample for each share of a range that
+    anything goes through; of the separation, of that between two turns.
     """
-    series = np.array([result.separation, result.speed, *result.forces.values()])
-    span = np.ptp(series, axis=1, keepdims=True)
-    steps = np.diff(series, axis=1) / np.where(span > 0.0, span, 1.0)
-    gone = np.concatenate([[0.0], np.cumsum(np.max(np.abs(steps), axis=0))])
-    begins = np.diff(np.floor(gone * _SWING), prepend=-1.0) > 0.0
-    turns = np.zeros(result.time.size, bool)
-    turns[1:-1] = np.any(steps[:, 1:] * steps[:, :-1] < 0.0, axis=0)
-    near = (contact[0] <= result.time) & (result.time <= contact[1])
-    ends = np.isin(np.arange(result.time.size), (0, result.time.size - 1))
-    kept: np.ndarray = np.flatnonzero(begins | turns | near | ends)
-    return kept
+    series = np.nan_to_num([result.separation, result.speed, *result.forces.values()])
+    steps, count = np.diff(series, axis=1), result.time.size
+    if count < 3:
+        return np.arange(count)
+    turns = np.zeros(series.shape, bool)
+    turns[:, 1:-1] = steps[:, 1:] * steps[:, :-1] < 0.0
+    span = np.repeat(np.ptp(series, axis=1, keepdims=True), count - 1, axis=1)
+    swings = np.append(0, np.flatnonzero(turns[0]))
+    span[0] = np.repeat(np.abs(np.add.reduceat(steps[0], swings)), np.diff([*swings, count - 1]))
+    moved = np.max(np.abs(steps) / np.where(span > 0.0, span, np.inf), axis=0)
+    gone = np.concatenate([[0.0], np.cumsum(moved)])
+    kept = np.diff(np.floor(gone * _SWING), prepend=-1.0) > 0.0
+    kept[:-1] |= moved * _SWING > 1.0
+    kept |= np.any(turns, axis=0)
+    kept |= (contact[0] <= result.time) & (result.time <= contact[1])
+    kept[[0, -1]] = True
+    found: np.ndarray = np.flatnonzero(kept)
+    return found
 
 
 def _place(result: Result) -> dict[str, Any] | None:

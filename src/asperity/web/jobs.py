@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import math
 import threading
 import time
 from collections import deque
@@ -17,7 +18,7 @@ Report = Callable[[float, str], None]
 Task = Callable[[Report, threading.Event], Any]
 
 OFTEN = 0.1
-"""Time between two tellings of progress [s]: a page that hears more often only redraws itself."""
+"""Time between two tellings of the same kind of progress, such as of impacts [s]."""
 
 _LOG = logging.getLogger(__name__)
 
@@ -55,7 +56,7 @@ class Job:
         self._task = task
         self._loop = asyncio.get_running_loop()
         self._events: asyncio.Queue[Event] = asyncio.Queue()
-        self._told = time.monotonic()
+        self._told = "", -math.inf
         self.stop = threading.Event()
 
     def run(self) -> None:
@@ -75,9 +76,11 @@ class Job:
     def _progress(self, fraction: float, text: str) -> None:
         if self.stop.is_set():
             raise Stopped
-        if time.monotonic() - self._told < OFTEN:
+        kind, last = self._told
+        words, now = text.partition(" ")[0], time.monotonic()
+        if words == kind and now - last < OFTEN:
             return
-        self._told = time.monotonic()
+        self._told = words, now
         self.tell(Event("progress", (fraction, text)))
 
     def tell(self, event: Event) -> None:
