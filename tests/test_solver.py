@@ -108,7 +108,7 @@ def test_a_stop_set_before_the_first_impact_leaves_nothing(case):
 
 def test_a_stop_set_on_the_way_keeps_what_was_computed(case):
     stop = threading.Event()
-    longer = case.replace({"numerics.max_impacts": 60, "numerics.rest": 1e-12})
+    longer = case.replace({"numerics.max_impacts": 250, "numerics.rest": 1e-12})
 
     def report(fraction, text):
         if text.startswith("impact"):
@@ -116,7 +116,7 @@ def test_a_stop_set_on_the_way_keeps_what_was_computed(case):
 
     found = solver.solve(longer, progress=report, stop=stop)
     assert found.outcome is Outcome.INTERRUPTED
-    assert 0 < len(found.measures["rebound_height"]) < 60
+    assert 0 < len(found.measures["rebound_height"]) < 250
     assert found.ledger["closure"] < 1e-6
 
 
