@@ -249,6 +249,8 @@ def test_a_motion_and_a_curve_unpack_to_their_numbers(client: TestClient, tables
     begin, end = motion["first_contact"]
     assert {0, len(result.time) - 1} <= set(seen)
     assert set(np.flatnonzero((begin <= result.time) & (result.time <= end))) <= set(seen)
+    for part, wanted in (("forces", result.forces), ("energies", result.energies)):
+        assert list(motion[part]) == list(wanted)
     series = {name: getattr(result, name) for name in ("separation", "central_separation", "speed")}
     for values, drawn in ((series, motion), (result.forces, motion["forces"])):
         for name, whole in values.items():

@@ -217,8 +217,8 @@ def _fly(
         given = (contact, body, table, datum, origin, progress, limits, _at_once(contact, body))
         if not chunks:
             tell(0.08, "compilation")
-            end, flown = _fly_some.ahead(*given)
-            measure_ahead(contact, body, Motion(flown, end, table, datum, origin))
+            end, shapes = _fly_some.ahead(*given)
+            measure_ahead(contact, body, Motion(shapes, end, table, datum, origin))
         fly_on = _fly_some.ready(*given)
         if not chunks:
             tell(0.1, "motion")
