@@ -18,7 +18,7 @@ from .impact.sampling import Series, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, quantities
 from .impact.trajectory import Trajectory
 from .measures import Measures, measure
-from .program import Program
+from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
 from .validity import AtDepth, check_surface, slow_menisci, warnings_of
@@ -28,8 +28,8 @@ from .yielding import kept_elastic
 _ROWS = 256
 """Rows of impacts that are measured at least: more than most motions have."""
 
-_measure = Program(measure)
-_end_of_contact = Program(end_of_contact)
+_measure = Program(measure, AT_ONCE)
+_end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
 class Flight(NamedTuple):

@@ -46,8 +46,12 @@ them dies. What is dropped is read from disk again.
 QUICKLY: dict[str, bool | int] = {
     "xla_cpu_use_fusion_emitters": False,
     "xla_backend_optimization_level": 1,
+    "xla_cpu_parallel_codegen_split_count": 4,
 }
 """Options of XLA for half the time to compile; a single motion runs as fast."""
+
+AT_ONCE: dict[str, bool | int] = {**QUICKLY, "xla_backend_optimization_level": 0}
+"""Options for a third less still, for what takes longer to compile than to run many times."""
 
 
 def kept(record: type[Record]) -> type[Record]:

@@ -12,7 +12,7 @@ from ._jax import jax
 from .contact.base import Contact
 from .impact.history import Impacts
 from .impact.table import CENTRAL, FORCE, Table, quantities
-from .program import Program
+from .program import AT_ONCE, Program
 
 _POINTS = 240
 
@@ -121,7 +121,7 @@ def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:
     return contact.losses()
 
 
-losses = Program(_losses)
+losses = Program(_losses, AT_ONCE)
 """What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
 
 

@@ -11,7 +11,7 @@ from .case.yielding import plastic_contact
 from .errors import InputError
 from .laws.base import as_float64
 from .laws.plastic import KogutEtsion, PlasticContact
-from .program import Program
+from .program import AT_ONCE, Program
 from .roughness import Gaussian
 
 FITTED = 110.0
@@ -84,14 +84,16 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
     return out
 
 
-@Program
-def _tails(
+def _counted(
     law: PlasticContact, heights: Gaussian, central: jax.Array
 ) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
     """Overlap at yield [m], asperities that touch and that yield, and the former's overlaps."""
     overlap = jnp.asarray(law.yield_overlap)
     touching, beyond = heights.tail(2, central), heights.tail(2, central + overlap)
     return overlap, touching, beyond, heights.tail(3, central)
+
+
+_tails = Program(_counted, AT_ONCE)
 
 
 def _taken(case: Case) -> list[str]:

@@ -219,6 +219,16 @@ class Contact(eqx.Module):
         """Length [m] over which forces fall off, by which ranges of reversals are cut."""
         raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
 
+    @property
+    def lagging(self) -> int:
+        """How many numbers :attr:`State.field` holds."""
+        return 0
+
+    @property
+    def passed(self) -> tuple[int, int]:
+        """Pieces of a :class:`Way`, and places on each."""
+        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
+
     def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """Whether few ways stand for those from all reversals between two separations [m]."""
         return jnp.zeros(jnp.shape(low), bool)

@@ -223,6 +223,14 @@ class ElasticContact(Contact):
         return self.resolved.reversals if self.mechanisms else 0
 
     @property
+    def lagging(self) -> int:
+        return self.rings + 1
+
+    @property
+    def passed(self) -> tuple[int, int]:
+        return len(self.mechanisms) * self.resolved.pieces, self.resolved.nodes
+
+    @property
     def scale(self) -> jax.Array:
         return jnp.asarray(self.interface.heights.rms)
 

@@ -25,6 +25,10 @@ class Deforming(Rough, Protocol):
     rings: int
     resolved: Resolution
 
+    @property
+    def passed(self) -> tuple[int, int]:
+        """Pieces of a way back, and places on each."""
+
 
 class Bound(Protocol):
     """Rings that hold bonds on a mesh of their own."""
@@ -178,10 +182,9 @@ def retrace(
     within: tuple[Any, Any],
 ) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
     """Pieces of the way back, places on them and the rings there; first of all at the start."""
-    nodes = contact.resolved.nodes
+    pieces, nodes = contact.passed
     steps = way_points(nodes)
     sigma = contact.interface.heights.rms
-    pieces = len(contact.interface.mechanisms) * contact.resolved.pieces
     whole = jnp.broadcast_to(start, (pieces,))
     flat = jnp.zeros_like(memory.lift)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..layers import Surfaces
-from ..program import Program
+from ..program import AT_ONCE, Program
 from ..quadrature import EVEN
 
 LINEAR = 8.0
@@ -118,4 +118,4 @@ def lengths_in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array
     return widest / rms, kinked, reach, most
 
 
-_lengths = Program(lengths_in_rms)
+_lengths = Program(lengths_in_rms, AT_ONCE)

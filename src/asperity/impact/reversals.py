@@ -38,6 +38,9 @@ CLOSE = 1e-8
 """Error of the work along a way, over the impact energy, up to which the polynomial serves."""
 
 _FAR = 3  # ranges of the reversals outside, at most
+RANGES = 1 + _FAR
+"""Ranges of reversals: one where a body parts, the others outside."""
+
 _WIDE = 1.7  # rms heights that one of them spans, where that is enough
 _NONE = 1e-120  # touching asperities: their logarithm and its derivatives are finite
 _FALL = 0.1  # of the coefficients over the place of the reversal, from one to the next, at least
@@ -110,16 +113,16 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     ends = _ends(rest, jnp.minimum(within[1], reach), jax.lax.stop_gradient(contact.scale))
     low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
     wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
-    nodes, parted = chebyshev.chebpts1(ways), np.arange(1 + _FAR) > 0
+    nodes, parted = chebyshev.chebpts1(ways), np.arange(RANGES) > 0
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
     rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
     held = Held(
-        outer=jnp.ones((1 + _FAR, ways), bool),
-        parting=jnp.broadcast_to(parted[:, None], (1 + _FAR, ways)),
+        outer=jnp.ones((RANGES, ways), bool),
+        parting=jnp.broadcast_to(parted[:, None], (RANGES, ways)),
         size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
         field=rows[..., quantities(contact).field],
     )
-    jobs = places, held, jnp.broadcast_to(wanted[:, None], (1 + _FAR, ways))
+    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, ways))
     jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), jobs)
     solved = jax.lax.map(lambda job: contact.way_from(job[0], job[1], job[2], within), jobs)
     rows = jax.vmap(all_rows)(solved.states)
@@ -128,7 +131,7 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     length = jnp.abs(solved.leave - jobs[0][:, None])
     each = length, jnp.log(touching), rows
     length, numbers, rows = (_over_places(x, nodes) for x in each)
-    most = jnp.max(touching.reshape(1 + _FAR, -1), axis=1)
+    most = jnp.max(touching.reshape(RANGES, -1), axis=1)
     error = most * _error(length, numbers, rows) / jnp.where(energy > 0.0, energy, 1.0)
     error = jnp.where(wanted, error, jnp.inf)
     return table._replace(reversals=Reversals(low, high, length, numbers, rows, error))

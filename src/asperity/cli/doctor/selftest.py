@@ -14,7 +14,7 @@ from asperity.case.build import build
 from asperity.flying import first_impact
 from asperity.impact import Motion
 from asperity.laws import Jkr
-from asperity.program import Program
+from asperity.program import AT_ONCE, Program
 from asperity.special import height_integrals
 
 LOSSLESS = {"capillary.contact_angle": "89.99999999 deg", "adhesion.work": "1e-9 J/m^2"}
@@ -92,7 +92,7 @@ def _known() -> tuple[jax.Array, ...]:
     )
 
 
-_values = Program(_known)
+_values = Program(_known, AT_ONCE)
 
 
 def _height_integrals() -> float:

@@ -1,0 +1,67 @@
+"""Shapes of curves that are foretold, beside those of curves that are traced."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity._jax import jax
+from asperity.case import builtin, load_file
+from asperity.case.build import build
+from asperity.flying import cut_in_steps
+from asperity.impact import prepare
+from asperity.impact.foreseen import foreseen
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+RIGID = {"counterface.deformation": "rigid"}
+KINDS = {
+    "half-space": {},
+    "half-space without menisci": {"capillary.model": "none"},
+    "half-space with bonds twice": {"adhesion.model": "jkr"},
+    "half-space with gas": {
+        "gas.name": "air",
+        "gas.pressure": "101325 Pa",
+        "gas.temperature": "20 degC",
+    },
+    "rigid": RIGID,
+    "rigid without losses": {**RIGID, "capillary.formation": "kelvin"},
+    "rigid with bonds twice": {**RIGID, "adhesion.model": "jkr"},
+}
+
+
+def shapes(tree):
+    leaves, structure = jax.tree_util.tree_flatten(tree)
+    return structure, [(leaf.shape, np.dtype(leaf.dtype)) for leaf in leaves]
+
+
+def traced(contact, body, many):
+    return jax.eval_shape(lambda *given: prepare(*given, many), contact, body)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("many", [False, True])
+def test_the_shapes_of_curves_are_those_that_are_foreseen(kind, many):
+    problem = build(builtin("published-exact").replace(KINDS[kind]))
+    if many:
+        problem = cut_in_steps(problem)
+    found = foreseen(problem.contact, many)
+    assert shapes(found) == shapes(traced(problem.contact, problem.body, many))
+    assert bool(found[0].reversals) == (
+        many and "half-space" in kind and bool(problem.contact.mechanisms)
+    )
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
+def test_so_are_those_of_every_example_unless_its_asperities_yield(file):
+    problem = build(load_file(file))
+    found = foreseen(problem.contact)
+    if problem.contact.yields:
+        assert found is None
+    else:
+        assert shapes(found) == shapes(traced(problem.contact, problem.body, many=False))
+
+
+def test_so_are_those_of_the_published_sums():
+    problem = build(builtin("published"))
+    given = problem.contact, problem.body
+    assert shapes(foreseen(problem.contact)) == shapes(traced(*given, many=False))
