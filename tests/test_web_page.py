@@ -84,6 +84,13 @@ def slide(page: Page, key: str, share: float) -> None:
     )
 
 
+def add(page: Page, table: str, name: str) -> None:
+    """One more table of a name of the user's own."""
+    page.locator(f"#table-{table}").evaluate("(one) => { one.open = true; }")
+    page.locator(f"#new-{table}").fill(name)
+    page.locator(f"#new-{table} + button").click()
+
+
 def drawn(page: Page, panel: str) -> int:
     """Pixels of a panel's picture that are not blank."""
     return page.locator(f"#{panel} canvas").evaluate(
@@ -121,6 +128,9 @@ def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(page, 
 
 def test_the_form_has_every_key_of_the_schema(page):
     for table in form():
+        if table["named"]:
+            add(page, table["name"], "x")
+            continue
         box = page.locator(f"#use-{table['name']}")
         if not table["needed"] and not box.is_checked():
             page.locator(f"#table-{table['name']}").evaluate("(one) => { one.open = true; }")
@@ -128,8 +138,9 @@ def test_the_form_has_every_key_of_the_schema(page):
     found = set(page.locator("[id^=field-]").evaluate_all("(all) => all.map((one) => one.id)"))
     for name, field in Case.model_fields.items():
         for table in tables_of(field.annotation):
-            for key in table.model_fields if name not in ("output", "materials") else ():
-                assert f"field-{name}-{key}" in found
+            here = "materials.x" if name == "materials" else name
+            for key in table.model_fields if name != "output" else ():
+                assert f"field-{here}-{key}" in found
 
 
 def test_a_slider_gives_new_curves_and_the_same_numbers_as_the_program(page):
@@ -144,6 +155,36 @@ def test_a_slider_gives_new_curves_and_the_same_numbers_as_the_program(page):
     shown = page.evaluate("() => asperity.designs()[0].answer.measures.restitution[0]")
     assert shown == pytest.approx(asperity.solve(case).measures["restitution"][0], rel=1e-9)
     assert page.evaluate("() => asperity.latencies.length") >= 2
+
+
+def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
+    add(page, "materials", "my glass")
+    field = '[id="field-materials.my%20glass-{}"]'.format
+    page.locator(field("density")).fill("2700 kg/m^3")
+    page.locator(field("density")).press("Enter")
+    write(page, "body.material", "my glass")
+    settled(page)
+    glass = {"youngs_modulus": "70 GPa", "poisson": 0.22, "density": "2700 kg/m^3"}
+    tables = state(page)[0]["tables"]
+    assert (tables["materials"], tables["body"]["material"]) == ({"my glass": glass}, "my glass")
+    own = "".join(f"{key} = {json.dumps(value)}\n" for key, value in glass.items())
+    case = CASE.replace('"silica"', '"my glass"')
+    wanted = asperity.solve(load(f"{case}\n[materials.'my glass']\n{own}"))
+    shown = page.evaluate("() => asperity.designs()[0].answer.measures.restitution[0]")
+    assert shown == pytest.approx(wanted.measures["restitution"][0], rel=1e-9)
+    before = picture(page, "curve")
+    page.get_by_role("slider", name="materials.my glass youngs modulus").press("PageDown")
+    settled(page)
+    assert picture(page, "curve") != before
+    page.locator(field("poisson")).fill("0.7")
+    page.locator(field("poisson")).press("Enter")
+    settled(page)
+    wrong = page.locator('[id="field-materials.my%20glass-poisson-wrong"]')
+    expect(wrong).to_contain_text("must lie in (-1, 0.5]")
+    page.locator('[id="use-materials.my%20glass"]').click()
+    settled(page)
+    assert "materials" not in state(page)[0]["tables"]
+    expect(page.locator("#field-body-material-wrong")).to_contain_text("my glass")
 
 
 def test_a_slider_moves_by_keyboard_and_says_its_value(page):

@@ -13,8 +13,8 @@ from asperity.case.fields import Number, Quantity
 from asperity.case.problems import tables_of
 from asperity.case.writing import ordered, unit_of
 
-_LEFT_OUT = ("schema", "output", "materials")
-"""What a page has no use for, and tables of any name: a case's own materials stay as they came."""
+_LEFT_OUT = ("schema", "output")
+"""What a page has no use for."""
 
 _SPANS = {
     "rad": {"scale": "linear", "low": 0.0, "high": 89.0, "unit": "deg"},
@@ -31,7 +31,8 @@ def form() -> list[dict[str, Any]]:
 
     Returns
     -------
-    A list of tables ``{name, help, needed, keys}``; a key is ``{key, kind, unit, help, example,
+    A list of tables ``{name, help, needed, named, keys}``, of which any number of ``named`` ones
+    may stand under their table's name, as [materials.NAME]; a key is ``{key, kind, unit, help, example,
     needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number", "whole",
     "choice", "switch", "list", "name or number" or "text"; ``slider`` is None where a slider
     cannot move it.
@@ -46,6 +47,7 @@ def form() -> list[dict[str, Any]]:
                 "name": name,
                 "help": inspect.getdoc(tables[0]) or "",
                 "needed": field.is_required(),
+                "named": get_origin(field.annotation) is dict,
                 "keys": [_key(key, inner) for key, inner in ordered(tables[0]).items()],
             }
         )

@@ -24,15 +24,26 @@ export class Design {
     return { case: this.tables, name: this.name, asker: `${page}-${this.letter}`, surfaces: this.surfaces };
   }
 
-  get(table, key) {
-    return this.tables[table]?.[key];
+  // A table by its path: a name, or that of a table within it, "materials.my.steel".
+  table(path) {
+    const [outer, inner] = split(path);
+    return inner === undefined ? this.tables[outer] : this.tables[outer]?.[inner];
   }
 
-  set(table, key, value) {
-    const inner = { ...(this.tables[table] ?? {}) };
-    if (value === undefined) delete inner[key];
-    else inner[key] = value;
-    this.tables = { ...this.tables, [table]: inner };
+  get(path, key) {
+    return this.table(path)?.[key];
+  }
+
+  set(path, key, value) {
+    this.put(path, withKey(this.table(path), key, value));
+  }
+
+  // Have a table, or none: undefined.
+  put(path, table) {
+    const [outer, inner] = split(path);
+    const whole = inner === undefined ? table : withKey(this.tables[outer], inner, table);
+    const empty = inner !== undefined && !Object.keys(whole).length;
+    this.tables = withKey(this.tables, outer, empty ? undefined : whole);
   }
 
   // Ask for the case as it is now; `show()` is called when anything changes.
@@ -105,6 +116,16 @@ export class Design {
   toJSON() {
     return { name: this.name, tables: this.tables, surfaces: this.surfaces };
   }
+}
+
+function split(path) {
+  const dot = path.indexOf(".");
+  return dot < 0 ? [path] : [path.slice(0, dot), path.slice(dot + 1)];
+}
+
+function withKey(table, key, value) {
+  const { [key]: gone, ...rest } = table ?? {};
+  return value === undefined ? rest : { ...(table ?? {}), [key]: value };
 }
 
 // The page's state as the part of a link behind "#", and back.

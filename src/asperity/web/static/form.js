@@ -3,6 +3,7 @@
 import { parted, short } from "/static/units.js";
 
 const STEPS = 1000;
+const LONGEST = 60; // of a name
 const FACTOR = 10; // a slider without ends goes from a tenth of the value to ten times it
 
 const element = (tag, properties = {}, ...children) => {
@@ -11,10 +12,13 @@ const element = (tag, properties = {}, ...children) => {
   return made;
 };
 
+// A path as part of an id, which must hold no blanks.
+export const idOf = (kind, path) => `${kind}-${encodeURIComponent(path)}`;
+
 const words = (name) => name.replaceAll("_", " ");
 
 export class Form {
-  // `changed(table, key, value)`: value undefined takes the key away; `tabled(table, used)`.
+  // `changed(path, key, value)`: value undefined takes the key away; `tabled(table, used)`.
   constructor(place, tables, { changed, tabled }) {
     this.place = place;
     this.tables = tables;
@@ -27,19 +31,41 @@ export class Form {
   show(design) {
     const open = new Set([...this.place.querySelectorAll("details[open]")].map((one) => one.id));
     this.fields.clear();
-    this.place.replaceChildren(...this.tables.map((table) => this.table(table, design, open)));
+    this.own = Object.keys(design.tables.materials ?? {}); // which can be named as those of the catalogue
+    this.place.replaceChildren(...this.tables.map((table) => (table.named ? this.named : this.table).call(this, table, design, open)));
+  }
+
+  // Tables under names of the user's own, each with its fields, and a place for one more.
+  named(table, design, open) {
+    const own = Object.keys(design.tables[table.name] ?? {});
+    const box = element("details", { id: `table-${table.name}` }, element("summary", { textContent: words(table.name) }));
+    box.open = open.has(box.id) || own.length > 0;
+    if (table.help) box.append(element("p", { className: "about", textContent: table.help }));
+    for (const name of own) box.append(this.table({ ...table, name: `${table.name}.${name}` }, design, open));
+    const id = `new-${table.name}`;
+    const input = element("input", { id, type: "text", maxLength: LONGEST, placeholder: "e.g. my glass" });
+    const add = element("button", { type: "button", textContent: "add" });
+    const begin = () => {
+      const name = input.value.trim();
+      if (name && !own.includes(name)) this.tabled({ ...table, name: `${table.name}.${name}` }, true);
+      else input.focus();
+    };
+    add.addEventListener("click", begin);
+    input.addEventListener("keydown", (event) => { if (event.key === "Enter") begin(); });
+    box.append(element("div", { className: "field" }, element("label", { htmlFor: id, textContent: "one more, by name" }), input, add));
+    return box;
   }
 
   table(table, design, open) {
-    const given = design.tables[table.name];
+    const given = design.table(table.name);
     const used = given !== undefined || table.needed;
-    const box = element("details", { id: `table-${table.name}` });
+    const box = element("details", { id: idOf("table", table.name) });
     const roomy = matchMedia("(min-width: 60rem)").matches; // on a telephone the tables begin closed
     box.open = open.size ? open.has(box.id) : roomy && used && !["numerics", "publication"].includes(table.name);
-    box.append(element("summary", { textContent: words(table.name) }));
-    if (table.help) box.append(element("p", { className: "about", textContent: table.help }));
+    box.append(element("summary", { textContent: table.named ? table.name.slice(table.name.indexOf(".") + 1) : words(table.name) }));
+    if (table.help && !table.named) box.append(element("p", { className: "about", textContent: table.help }));
     if (!table.needed) {
-      const use = element("input", { type: "checkbox", checked: given !== undefined, id: `use-${table.name}` });
+      const use = element("input", { type: "checkbox", checked: given !== undefined, id: idOf("use", table.name) });
       use.addEventListener("change", () => this.tabled(table, use.checked));
       box.append(element("label", { className: "use" }, use, ` use [${table.name}]`));
     }
@@ -51,7 +77,7 @@ export class Form {
     }
     box.append(...shown);
     if (more.length) {
-      const rest = element("details", { id: `more-${table.name}` }, element("summary", { textContent: "more keys" }), ...more);
+      const rest = element("details", { id: idOf("more", table.name) }, element("summary", { textContent: "more keys" }), ...more);
       rest.open = open.has(rest.id);
       box.append(rest);
     }
@@ -60,7 +86,7 @@ export class Form {
 
   field(table, key, value) {
     const path = `${table.name}.${key.key}`;
-    const id = `field-${table.name}-${key.key}`;
+    const id = `${idOf("field", table.name)}-${key.key}`;
     const input = this.input(key, id, value);
     const label = element("label", { htmlFor: id, textContent: words(key.key), title: key.help });
     const wrong = element("p", { className: "wrong", id: `${id}-wrong`, hidden: true });
@@ -90,7 +116,7 @@ export class Form {
     const example = Array.isArray(key.example) ? key.example.join(", ") : String(key.example ?? "");
     const input = element("input", { ...described, type: "text", value: shown, placeholder: String(key.default ?? `e.g. ${example}`) });
     if (key.among.length) {
-      const list = element("datalist", { id: `${id}-list` }, ...key.among.map((one) => element("option", { value: one })));
+      const list = element("datalist", { id: `${id}-list` }, ...[...(key.key === "material" ? this.own : []), ...key.among].map((one) => element("option", { value: one })));
       document.getElementById(list.id)?.remove();
       document.body.append(list);
       input.setAttribute("list", list.id);

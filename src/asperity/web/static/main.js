@@ -1,7 +1,7 @@
 // The page: what its buttons do, and how designs, form and panels hang together.
 
 import { Design, read, written } from "/static/design.js";
-import { Form } from "/static/form.js";
+import { Form, idOf } from "/static/form.js";
 import { AdhesionMap } from "/static/map.js";
 import { Panels } from "/static/panels.js";
 import { fileOf, getting, posting } from "/static/server.js";
@@ -57,21 +57,23 @@ function link(after) {
 
 // Form
 
-function changed(table, key, value, since) {
+function changed(path, key, value, since) {
   const before = JSON.stringify(current().tables);
-  current().set(table, key, value);
+  current().set(path, key, value);
   if (JSON.stringify(current().tables) === before) return;
   by("case").selectedIndex = -1; // no longer the case of that name
   ask(current(), since);
 }
 
 function tabled(table, used) {
-  const { [table.name]: gone, ...rest } = current().tables;
   const given = Object.fromEntries(table.keys.filter((key) => key.shown && key.example !== null).map((key) => [key.key, key.example]));
-  current().tables = used ? { ...rest, [table.name]: given } : rest;
+  current().put(table.name, used ? given : undefined);
   form.show(current());
-  by(`table-${table.name}`).open = true;
-  by(`use-${table.name}`).focus();
+  const box = by(idOf("table", table.name));
+  if (box) {
+    for (let around = box; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
+    by(idOf("use", table.name)).focus();
+  }
   ask();
 }
 
