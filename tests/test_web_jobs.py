@@ -467,9 +467,14 @@ def test_few_uploads_arrive_at_a_time(client: TestClient):
     assert client.post("/api/surfaces/a.csv", content=b"1").status_code == 200
 
 
+@pytest.mark.parametrize("path", ["/api/explore", "/api/files/motion.csv", "/api/files/curve.nc"])
 @pytest.mark.parametrize("soon", [False, True])
 def test_who_closes_the_page_stops_its_computation(
-    client: TestClient, tables: dict[str, Any], monkeypatch: pytest.MonkeyPatch, soon: bool
+    client: TestClient,
+    tables: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    soon: bool,
+    path: str,
 ):
     """In the middle of it, or before the first line of the answer went out."""
     begun, ended = patient(monkeypatch)
@@ -480,10 +485,10 @@ def test_who_closes_the_page_stops_its_computation(
 
     desk, begin = page_of(client).desk, time.monotonic()
     body = json.dumps({"case": tables, "asker": "leaver"}).encode()
-    asyncio.run(asked(client.app, "/api/explore", body, when))
+    asyncio.run(asked(client.app, path, body, when))
     assert not begun.is_set() or ended.wait(LONG)
     assert time.monotonic() - begin < 5.0
-    assert "leaver" not in desk._newest
+    assert not [asker for asker in desk._newest if asker.startswith("leaver")]
     assert all(job.stop.is_set() for job in desk._waiting)
 
 

@@ -168,21 +168,23 @@ class _Page:
         what = asked(await _body(request, SIZE_LIMIT))
         what.case()
         asker = f"{what.asker or _from(request)} {name}"
-        event = await self._last(asker, file(what, self.surfaces, name))
+        event = await self._last(request, asker, file(what, self.surfaces, name))
         if event.kind != "answer":
             refusal = _told(event)
             return JSONResponse(refusal, 422 if event.kind == "error" else 409)
         headers = {"content-disposition": f'attachment; filename="{name}"'}
         return Response(event.value, media_type=FILES[name], headers=headers)
 
-    async def _last(self, asker: str, task: Task) -> Event:
+    async def _last(self, request: Request, asker: str, task: Task) -> Event:
         job = self.desk.ask(asker, task)
+        watch = asyncio.create_task(_dropped_by(request, job))
         events = job.events(PATIENCE)
         try:
             async for event in events:
                 if event.last:
                     return event
         finally:
+            watch.cancel()
             await events.aclose()  # type: ignore[attr-defined]
             self.desk.forget(asker, job)
         raise AssertionError("a computation ends with an event")
@@ -223,6 +225,13 @@ async def _lines(job: Job) -> AsyncIterator[str]:
             yield json.dumps(_told(event), allow_nan=False) + "\n"
     finally:
         await events.aclose()  # type: ignore[attr-defined]
+
+
+async def _dropped_by(request: Request, job: Job) -> None:
+    """Drop a job when its asker, whose request was read, leaves."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+    job.drop()
 
 
 async def _body(request: Request, most: int) -> bytes:

@@ -32,10 +32,10 @@ def form() -> list[dict[str, Any]]:
     Returns
     -------
     A list of tables ``{name, help, needed, named, keys}``, of which any number of ``named`` ones
-    may stand under their table's name, as [materials.NAME]; a key is ``{key, kind, unit, help, example,
-    needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number", "whole",
-    "choice", "switch", "list", "name or number" or "text"; ``slider`` is None where a slider
-    cannot move it.
+    may stand under their table's name, as [materials.NAME]; a key is ``{key, kind, unit, help,
+    example, needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number",
+    "whole", "choice", "switch", "list", "name or number" or "text"; ``slider`` is None where a
+    slider cannot move it.
     """
     found = []
     for name, field in ordered(Case).items():

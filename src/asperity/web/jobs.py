@@ -83,6 +83,11 @@ class Job:
         self._told = words, now
         self.tell(Event("progress", (fraction, text)))
 
+    def drop(self) -> None:
+        """Stop it, and tell its asker that its answer is no longer wanted."""
+        self.stop.set()
+        self.tell(Event("replaced", None))
+
     def tell(self, event: Event) -> None:
         """Tell the asker, from any thread."""
         with contextlib.suppress(RuntimeError):  # the server has ended
@@ -143,8 +148,7 @@ class Desk:
         with self._changed:
             older = self._newest.get(asker)
             if older is not None:
-                older.stop.set()
-                older.tell(Event("replaced", None))
+                older.drop()
                 with contextlib.suppress(ValueError):
                     self._waiting.remove(older)
             self._waiting = deque(one for one in self._waiting if not one.stop.is_set())
