@@ -6,9 +6,10 @@ from scipy.integrate import quad
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case import load
+from asperity.case import builtin, load
 from asperity.case.build import build
-from asperity.errors import InputError
+from asperity.errors import InputError, SimulationError
+from asperity.flying import _REFINEMENTS
 from asperity.records import read as read_record
 
 CASE = """
@@ -129,3 +130,30 @@ def test_what_cannot_yield_is_refused(case, changes, words):
     with pytest.raises(InputError) as caught:
         case.replace(changes)
     assert words in str(caught.value)
+
+
+SOFT = {"plasticity.hardness": "50 MPa", "numerics.max_impacts": 3}
+"""A thousand times softer than stiff, as lead is."""
+
+
+def test_asperities_far_softer_than_stiff_meet_the_usual_tolerance(case):
+    result = asperity.solve(case.replace({**SOFT, "numerics.tolerance": 1e-8}))
+    assert result.ledger["closure"] < 1e-6
+    assert result.ledger["lost"]["plastic"] > 0.9 * result.ledger["initial"]
+
+
+def test_curves_that_more_panels_do_not_mend_are_given_up_at_once():
+    """The panels on which asperities spring back, too few here, do not grow with the others."""
+    told = []
+    case = builtin("published-exact").replace(
+        {
+            "counterface.deformation": "rigid",
+            "plasticity.model": "kogut-etsion",
+            "plasticity.hardness": "10 MPa",
+            "numerics.max_impacts": 1,
+            "numerics.tolerance": 1e-10,
+        }
+    )
+    with pytest.raises(SimulationError, match=r"relative error of .*e-09, not"):
+        asperity.solve(case, progress=lambda _, text: told.append(text))
+    assert told.count("force curves") < len(_REFINEMENTS)

@@ -29,7 +29,7 @@ _NODES = 14  # coefficients of the contacts' force on a panel
 _ROW = _NODES + HIGHEST + 1  # and of what is integrated from them
 _POINTS = 14  # of a quadrature over the part of a panel above a place
 _FAR_POINTS = 14  # and over the panels above
-_RUNGS = 3  # panels in geometric progression beyond the last kink of the contact
+_RUNGS = 5  # panels in geometric progression beyond the last kink of the contact
 _EVEN = 7  # even panels over the heights
 _BELOW = 6  # and over those below the closest approach that laws reach
 

@@ -12,6 +12,7 @@ from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
+from .contact.creep import CreptContact
 from .contact.resolution import in_steps
 from .conversion import Flight, measure_ahead
 from .errors import InputError, Outcome, SimulationError
@@ -30,6 +31,7 @@ Report = Callable[[float, str], None]
 
 _CHUNK, _QUICK = 20, 100  # impacts a compiled call: short enough for Ctrl-C, where all is quick
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
+_GAIN = 0.9  # of the error is left by twice the panels: where more is, still more would not help
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
 
@@ -39,11 +41,19 @@ def silently(fraction: float, text: str) -> None:
 
 def cut_in_steps(problem: Problem) -> Problem:
     """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
-    contact = problem.contact
+    creep = problem.creep
+    if creep is not None:
+        creep = dataclasses.replace(creep, contact=_in_steps(creep.contact))
+    return problem._replace(contact=_in_steps(problem.contact), creep=creep)
+
+
+def _in_steps(contact: Contact) -> Contact:
+    if isinstance(contact, CreptContact):
+        return CreptContact(_in_steps(contact.told))
     if not isinstance(contact, RigidContact | ElasticContact):
-        return problem
+        return contact
     resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
-    return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
+    return dataclasses.replace(contact, resolved=resolved)
 
 
 def flown(
@@ -126,6 +136,7 @@ def _prepared(
 
     Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
+    allowed, before = tolerance, np.inf
     for factor in _REFINEMENTS:
         tell(0.02, "compilation")
         contact = problem.contact.refined(factor)
@@ -134,11 +145,13 @@ def _prepared(
         prepared = _preparing(contact, many).ready(contact, problem.body, many)
         tell(0.06, "force curves")
         table, datum = prepared()
-        if float(table.error) <= max(tolerance, contact.blur):
+        error, allowed = float(table.error), max(tolerance, contact.blur)
+        if error <= allowed or error > _GAIN * before:
             break
-    else:
+        before = error
+    if not error <= allowed:
         raise SimulationError(
-            f"force curves reach a relative error of {float(table.error):.1e}, "
+            f"force curves reach a relative error of {error:.1e}, "
             f"not `numerics.tolerance` = {tolerance:.1e}"
         )
     if not float(table.residual) <= _RESIDUAL:

@@ -80,6 +80,10 @@ class CreptContact(Contact):
         return self.told.datum
 
     @property
+    def lagging(self) -> int:
+        return self.told.lagging
+
+    @property
     def blur(self) -> float:
         return self.told.blur
 

@@ -15,6 +15,7 @@ from ..interface import Interface
 from ..laws.base import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
 from ..layers import Layer, Layers, Surfaces
 from .base import Contact, Memory, State
+from .resolution import Resolution
 from .rigid import RigidContact
 from .smooth import SmoothContact
 
@@ -173,13 +174,18 @@ class LateContact(eqx.Module):
         return -self.law.bonded_energy(gap)
 
 
+_UNUSED = Resolution(panels=1, nodes=8, pieces=1)
+"""No curves are made of a contact that is told: one program serves, however its forces reach."""
+
+
 def _told_smooth(contact: Any) -> SmoothContact:
     law = _replaced(contact.law, lambda law: law.hysteretic, holds=True)
     return dataclasses.replace(contact, law=law)
 
 
 def _told_rough(contact: Any) -> RigidContact:
-    return dataclasses.replace(contact, interface=_told_surfaces(contact.interface))
+    told = _told_surfaces(contact.interface)
+    return dataclasses.replace(contact, interface=told, resolved=_UNUSED)
 
 
 def _told_surfaces(surfaces: Surfaces) -> Surfaces:

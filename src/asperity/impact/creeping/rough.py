@@ -60,7 +60,7 @@ class RoughBounce:
         self._contact: ElasticContact = told
         self.creep, self.body, self.size, self.ends, self._asked = creep, body, size, ends, asked
         self._rms, self._reach = float(told.interface.heights.rms), float(told.reach)
-        self._rise = np.asarray(_rise(told, size))
+        self._rise = np.asarray(_rise(told, np.asarray(size, float)))
         self._rate = float(creep.ratio / creep.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
         rings = told.rings
