@@ -29,6 +29,9 @@ from .program import AT_ONCE, Program
 
 Report = Callable[[float, str], None]
 
+COMPILATION = "compilation"
+"""What is told while nothing is left to do but to wait for the compiler."""
+
 _CHUNK, _QUICK = 20, 100  # impacts a compiled call: short enough for Ctrl-C, where all is quick
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
 _GAIN = 0.9  # of the error is left by twice the panels: where more is, still more would not help
@@ -138,10 +141,11 @@ def _prepared(
     """
     allowed, before = tolerance, np.inf
     for factor in _REFINEMENTS:
-        tell(0.02, "compilation")
+        tell(0.02, "tracing")
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn, many=many)
+        tell(0.04, COMPILATION)
         prepared = _preparing(contact, many).ready(contact, problem.body, many)
         tell(0.06, "force curves")
         table, datum = prepared()
@@ -244,7 +248,7 @@ def _fly(
     while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
         given = (contact, body, table, datum, origin, progress, limits, _at_once(contact, body))
         if not chunks:
-            tell(0.08, "compilation")
+            tell(0.08, COMPILATION)
         fly_on = _fly_some.ready(*given)
         if not chunks:
             tell(0.1, "motion")

@@ -79,15 +79,33 @@ def compute(what: str, case: str, *, output: str | None, force: bool, **manner: 
 def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Result | Curve:
     """Load what computes, and compute; in a thread of its own."""
     function = getattr(importlib.import_module("asperity.solver"), request.what)
+    given, tell = request.source, progress
     if request.folder is not None:
-        threading.Thread(target=_import_ahead, daemon=True).start()
-    given = request.source
-    answer: Result | Curve = function(given.case, name=given.name, progress=progress, stop=stop)
+        tell = _importing(progress)
+    answer: Result | Curve = function(given.case, name=given.name, progress=tell, stop=stop)
     return answer
 
 
+def _importing(progress: Progress | None) -> Progress:
+    """The same progress, which imports what writes and draws once there is nothing to do but wait.
+
+    Sooner it would keep Python from tracing, later it would be waited for.
+    """
+    from asperity.flying import COMPILATION
+
+    imports = threading.Thread(target=_import_ahead, daemon=True)
+
+    def tell(fraction: float, text: str) -> None:
+        if text == COMPILATION and imports.ident is None:
+            imports.start()
+        if progress is not None:
+            progress(fraction, text)
+
+    return tell
+
+
 def _import_ahead() -> None:
-    """Import what writes and draws while the solver compiles: a second less to wait for."""
+    """Import what writes and draws: a second less to wait for in the end."""
     for name in ("asperity.plots", "asperity.records", "matplotlib.backends.backend_agg"):
         importlib.import_module(name)
 
