@@ -636,3 +636,32 @@ def test_a_slider_never_compiles(client: TestClient, kind: str, real: None):
     assert ("materials.glass.hardness" in moved) == ("materials.glass" in changes)
     assert ("capillary.formation_time" in moved) == ("capillary.formation_time" in changes)
     assert not compiled, "\n".join(compiled)
+
+
+def ahead_of(client: TestClient) -> list[Job]:
+    return [*page_of(client)._ahead.values()]
+
+
+AUTO = {"counterface.deformation": "rigid", "adhesion.model": "auto", **FEW}
+
+
+def test_a_slider_across_a_border_of_laws_compiles_nothing_once_all_are(
+    client: TestClient, real: None
+):
+    """After the first answer the laws that "auto" may choose are compiled unasked."""
+    tables = client.get("/api/cases/published-exact").json()["tables"]
+    for path, value in AUTO.items():
+        tables = having(tables, tuple(path.split(".")), value)
+    told(client, tables)
+    (job,) = ahead_of(client)
+    assert job.over.wait(300.0)
+    laws, compiled = [], []
+    for work in ("0.3 mJ/m^2", "30 mJ/m^2", "1 J/m^2", "300 J/m^2"):
+        with compilations() as found:
+            end = told(client, having(tables, ("adhesion", "work"), work))[-1]
+        if "answer" in end:
+            laws.append(end["answer"]["regime"]["adhesion_law"])
+        compiled += [f"work = {work} compiles {each}" for each in found]
+    assert len(set(laws)) >= 2, laws
+    assert ahead_of(client) == [job]
+    assert not compiled, "\n".join(compiled)

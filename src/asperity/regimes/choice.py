@@ -67,6 +67,10 @@ _BORDERS = (
 )  # fmt: skip
 
 
+CHOSEN = (*(border.below for border in _BORDERS), _BORDERS[-1].above)
+"""The laws among which :func:`choose_adhesion` chooses, by growing Tabor number."""
+
+
 def choose_adhesion(tabor: float) -> AdhesionChoice:
     """The law that holds at a Tabor number.
 

@@ -25,8 +25,8 @@ from asperity.case.reading import SIZE_LIMIT, builtin_text, tables
 from asperity.case.writing import text_of
 from asperity.errors import InputError, OutputError, SimulationError, one_line
 from asperity.web.answer import adhesion_map
-from asperity.web.asking import asked, refuse_depth
-from asperity.web.exploring import FILES, file, glance
+from asperity.web.asking import Asked, asked, refuse_depth
+from asperity.web.exploring import FILES, ahead, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
 from asperity.web.jobs import Busy, Desk, Event, Job, Task
@@ -44,6 +44,9 @@ ARRIVAL = 60.0
 
 MOST_UPLOADS = 2
 """Surface files that may arrive at a time: each is held in memory as a whole."""
+
+MOST_KINDS = 64
+"""Kinds of cases of which is known that all their laws are compiled."""
 
 _BUSY = "too much is being asked already; try again in a few seconds"
 
@@ -93,6 +96,7 @@ class _Page:
         self.desk = Desk()
         self.surfaces = Surfaces()
         self._arriving = 0
+        self._ahead: dict[int, Job] = {}
         self._first = first
         self._form = json.dumps(
             {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else BUILTINS[-1]}
@@ -150,15 +154,27 @@ class _Page:
     async def explore(self, request: Request) -> Response:
         """Lines of JSON: progress, and in the end the answer or what is wrong."""
         what = asked(await _body(request, SIZE_LIMIT))
-        what.case()  # refused at once, by its status
+        case = what.case()  # refused at once, by its status
         asker = what.asker or _from(request)
         job = self.desk.ask(asker, glance(what, self.surfaces))
 
         def left() -> None:
             job.stop.set()
             self.desk.forget(asker, job)
+            if case.adhesion.model == "auto":
+                self._compile_ahead(what, kind_of(case))
 
         return _Lines(_lines(job), left)
+
+    def _compile_ahead(self, what: Asked, kind: int) -> None:
+        """Have what other laws need compiled, once for each kind of case, one kind at a time."""
+        job = self._ahead.get(kind)
+        if job is not None and not job.stop.is_set():
+            return
+        if len(self._ahead) >= MOST_KINDS:
+            self._ahead.clear()
+        with contextlib.suppress(Busy):  # then after another question
+            self._ahead[kind] = self.desk.ask("ahead of questions", ahead(what, self.surfaces))
 
     async def file(self, request: Request) -> Response:
         """A file of the case's results."""

@@ -50,6 +50,11 @@ class Job:
     ----------
     task
         Takes a report of progress and an event that asks it to stop.
+
+    Attributes
+    ----------
+    stop, over
+        Whether it is to stop, and whether it has ended once it was begun.
     """
 
     def __init__(self, task: Task) -> None:
@@ -58,6 +63,7 @@ class Job:
         self._events: asyncio.Queue[Event] = asyncio.Queue()
         self._told = "", -math.inf
         self.stop = threading.Event()
+        self.over = threading.Event()
 
     def run(self) -> None:
         """Compute, in the thread that calls; whatever happens is told to the asker."""
@@ -72,6 +78,8 @@ class Job:
         except Exception as error:  # noqa: BLE001 - told to the asker, and to the log
             _LOG.exception("a computation failed")
             self.tell(Event("error", error))
+        finally:
+            self.over.set()
 
     def _progress(self, fraction: float, text: str) -> None:
         if self.stop.is_set():
