@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import asperity
+from asperity import flying
 from asperity._jax import jax
 from asperity.case import builtin, load_file
 from asperity.case.build import build
@@ -72,3 +74,11 @@ def test_so_are_those_of_the_published_sums():
     problem = build(builtin("published"))
     given = problem.contact, problem.body
     assert shapes(foreseen(problem.contact)) == shapes(traced(*given, many=False))
+
+
+def test_a_motion_is_compiled_once_for_the_shapes_that_were_foreseen():
+    case = builtin("published-exact").replace({**RIGID, "numerics.max_impacts": 1})
+    before = len(flying._fly_some._held)
+    asperity.solve(case)
+    asperity.solve(case.replace({"roughness.rms_height": "10.6 nm"}))
+    assert len(flying._fly_some._held) == before + 1

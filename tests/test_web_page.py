@@ -181,7 +181,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
     settled(page)
     wrong = page.locator('[id="field-materials.my%20glass-poisson-wrong"]')
     expect(wrong).to_contain_text("must lie in (-1, 0.5]")
-    page.locator('[id="use-materials.my%20glass"]').click()
+    page.locator('[id="remove-materials.my%20glass"]').click()
     settled(page)
     assert "materials" not in state(page)[0]["tables"]
     expect(page.locator("#field-body-material-wrong")).to_contain_text("my glass")
@@ -330,6 +330,13 @@ def test_a_link_keeps_both_designs(page):
     page.goto("about:blank")
     page.goto(link.split("#")[0] + "#nonsense")
     expect(page.locator("#notice")).to_contain_text("does not hold a whole state")
+
+
+def test_a_link_with_half_a_character_is_no_whole_state(page, address):
+    state = json.dumps([{"name": "x", "tables": {"materials": {"\ud800": {}}}, "surfaces": {}}])
+    page.goto(f"{address}#{base64.urlsafe_b64encode(state.encode()).decode().rstrip('=')}")
+    expect(page.locator("#notice")).to_contain_text("does not hold a whole state")
+    page.wait_for_selector("#verdicts .said")
 
 
 def test_files_are_downloaded(page, tmp_path):

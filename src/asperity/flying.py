@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -25,16 +26,16 @@ from .impact.history import ENDS, FLYING
 from .impact.legs import Ended
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row
-from .program import AT_ONCE, Program
+from .program import AT_ONCE, Program, signature
 
 Report = Callable[[float, str], None]
 
 COMPILATION = "compilation"
-"""What is told while nothing is left to do but to wait for the compiler."""
+"""What is told once all is traced, and the compiler is waited for where it is not through."""
 
 _CHUNK, _QUICK = 20, 100  # impacts a compiled call: short enough for Ctrl-C, where all is quick
 _REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
-_GAIN = 0.9  # of the error is left by twice the panels: where more is, still more would not help
+_GAIN = 0.9  # of the error is left by four times the panels: where more is, no more would help
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
 
@@ -139,20 +140,22 @@ def _prepared(
 
     Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
-    allowed, before = tolerance, np.inf
+    allowed, errors = tolerance, [np.inf, np.inf]
     for factor in _REFINEMENTS:
         tell(0.02, "tracing")
         contact = problem.contact.refined(factor)
         if not drawn or (problem.late is None and problem.creep is None):
             _compile(contact, problem.body, limits, drawn=drawn, many=many)
+        else:
+            _preparing(contact, many).ahead(contact, problem.body, many)
         tell(0.04, COMPILATION)
         prepared = _preparing(contact, many).ready(contact, problem.body, many)
         tell(0.06, "force curves")
         table, datum = prepared()
         error, allowed = float(table.error), max(tolerance, contact.blur)
-        if error <= allowed or error > _GAIN * before:
+        if error <= allowed or error > _GAIN * errors[-2]:
             break
-        before = error
+        errors.append(error)
     if not error <= allowed:
         raise SimulationError(
             f"force curves reach a relative error of {error:.1e}, "
@@ -174,7 +177,7 @@ def _compile(
 
     The motion, which takes longest, first: where the shapes of the curves are known without.
     """
-    curves = foreseen(contact, many)
+    curves = _foreseen(contact, many)
     table, datum = curves or _preparing(contact, many).ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
     end, impacts = _fly_some.ahead(
@@ -185,6 +188,20 @@ def _compile(
     if drawn:
         compile_ahead(body, table, impacts)
         measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
+
+
+_FORESEEN: dict[Any, tuple[Table, Datum] | None] = {}
+_MOST = 64  # kinds of contacts whose shapes are kept
+
+
+def _foreseen(contact: Contact, many: bool) -> tuple[Table, Datum] | None:
+    """Shapes of the curves, which take 5 ms to foresee, once for each kind of contact."""
+    key = signature(contact, many)
+    if key not in _FORESEEN:
+        if len(_FORESEEN) >= _MOST:
+            _FORESEEN.clear()
+        _FORESEEN[key] = foreseen(contact, many)
+    return _FORESEEN[key]
 
 
 def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Datum]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import threading
 from collections.abc import AsyncIterator, Callable, Iterable
 from importlib import resources
 from typing import Any
@@ -29,7 +30,7 @@ from asperity.web.asking import Asked, asked, refuse_depth
 from asperity.web.exploring import FILES, ahead, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
-from asperity.web.jobs import Busy, Desk, Event, Job, Task
+from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
 from asperity.web.openapi import DESCRIPTION
 from asperity.web.surfaces import Surfaces
 
@@ -46,7 +47,7 @@ MOST_UPLOADS = 2
 """Surface files that may arrive at a time: each is held in memory as a whole."""
 
 MOST_KINDS = 64
-"""Kinds of cases of which is known that all their laws are compiled."""
+"""Kinds of cases of which it is remembered that all their laws are compiled."""
 
 _BUSY = "too much is being asked already; try again in a few seconds"
 
@@ -66,6 +67,7 @@ def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOC
     @contextlib.asynccontextmanager
     async def alive(app: Starlette) -> AsyncIterator[None]:
         yield
+        page.desk.close()
         page.surfaces.close()
 
     static = resources.files("asperity.web") / "static"
@@ -96,7 +98,7 @@ class _Page:
         self.desk = Desk()
         self.surfaces = Surfaces()
         self._arriving = 0
-        self._ahead: dict[int, Job] = {}
+        self._ready: set[int] = set()
         self._first = first
         self._form = json.dumps(
             {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else BUILTINS[-1]}
@@ -161,20 +163,23 @@ class _Page:
         def left() -> None:
             job.stop.set()
             self.desk.forget(asker, job)
-            if case.adhesion.model == "auto":
-                self._compile_ahead(what, kind_of(case))
 
-        return _Lines(_lines(job), left)
+        return _Lines(_lines(job, lambda: self._compile_ahead(what, case)), left)
 
-    def _compile_ahead(self, what: Asked, kind: int) -> None:
-        """Have what other laws need compiled, once for each kind of case, one kind at a time."""
-        job = self._ahead.get(kind)
-        if job is not None and not job.stop.is_set():
+    def _compile_ahead(self, what: Asked, case: Case) -> None:
+        """Have what other laws need compiled while nobody asks, once for each kind of case."""
+        kind = kind_of(case)
+        if case.adhesion.model != "auto" or kind in self._ready:
             return
-        if len(self._ahead) >= MOST_KINDS:
-            self._ahead.clear()
-        with contextlib.suppress(Busy):  # then after another question
-            self._ahead[kind] = self.desk.ask("ahead of questions", ahead(what, self.surfaces))
+        compiling = ahead(what, self.surfaces)
+
+        def task(tell: Report, stop: threading.Event) -> None:
+            compiling(tell, stop)
+            if len(self._ready) >= MOST_KINDS:
+                self._ready.clear()
+            self._ready.add(kind)
+
+        self.desk.spare(task)
 
     async def file(self, request: Request) -> Response:
         """A file of the case's results."""
@@ -234,11 +239,13 @@ class _Lines(StreamingResponse):
             self._left()
 
 
-async def _lines(job: Job) -> AsyncIterator[str]:
+async def _lines(job: Job, answered: Callable[[], None]) -> AsyncIterator[str]:
     events = job.events(PATIENCE)
     try:
         async for event in events:
             yield json.dumps(_told(event), allow_nan=False) + "\n"
+            if event.kind == "answer":
+                answered()
     finally:
         await events.aclose()  # type: ignore[attr-defined]
 

@@ -7,7 +7,6 @@ import csv
 import importlib
 import io
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -20,8 +19,6 @@ from asperity.web.answer import DRAWN, answer
 from asperity.web.asking import Asked
 from asperity.web.jobs import Report
 from asperity.web.surfaces import Surfaces, Upload, renamed, retold
-
-_LONG = 60.0  # s that compiling ahead may take
 
 FILES = {
     "record.nc": "application/x-netcdf",
@@ -54,17 +51,15 @@ def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Even
 def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], None]:
     """A computation that compiles what a case needs under each law that "auto" may choose.
 
-    Then no slider that crosses a border between two of them has to. Given up after a minute.
+    Then no slider that crosses a border between two of them has to. It returns once all are, and
+    raises where it is stopped before.
     """
 
     def compute(tell: Report, stop: threading.Event) -> None:
-        until = time.monotonic() + _LONG
         with _resolved(asked, surfaces, tell) as (case, _):
             solver = importlib.import_module("asperity.solver")
             numerics = case.numerics.model_copy(update={"max_impacts": 1})
             for law in CHOSEN:
-                if time.monotonic() > until:
-                    return
                 adhesion = case.adhesion.model_copy(update={"model": law})
                 one = case.model_copy(update={"adhesion": adhesion, "numerics": numerics})
                 # What a law cannot do here is said once it is chosen.
@@ -75,7 +70,7 @@ def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event
 
 
 def kind_of(case: Case) -> int:
-    """A number for all of a case that its programs depend on: everything but its real numbers."""
+    """A number for what a case is beside its real numbers: on these few programs depend."""
 
     def without(value: Any) -> Any:
         if isinstance(value, dict):
@@ -84,7 +79,8 @@ def kind_of(case: Case) -> int:
             return [without(inner) for inner in value]
         return None if isinstance(value, float) else str(value)
 
-    return hash(repr(without(case.model_dump())))
+    numerics = case.numerics.model_copy(update={"max_impacts": 1})
+    return hash(repr(without(case.model_copy(update={"numerics": numerics}).model_dump())))
 
 
 def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threading.Event], bytes]:

@@ -53,8 +53,8 @@ class Job:
 
     Attributes
     ----------
-    stop, over
-        Whether it is to stop, and whether it has ended once it was begun.
+    begun, stop, over
+        Whether it was begun, whether it is to stop, and whether it has ended.
     """
 
     def __init__(self, task: Task) -> None:
@@ -62,12 +62,13 @@ class Job:
         self._loop = asyncio.get_running_loop()
         self._events: asyncio.Queue[Event] = asyncio.Queue()
         self._told = "", -math.inf
-        self.stop = threading.Event()
-        self.over = threading.Event()
+        self.begun, self.stop, self.over = (threading.Event() for _ in range(3))
 
     def run(self) -> None:
         """Compute, in the thread that calls; whatever happens is told to the asker."""
+        self.begun.set()
         if self.stop.is_set():
+            self.over.set()
             return
         try:
             self.tell(Event("answer", self._task(self._progress, self.stop)))
@@ -90,6 +91,11 @@ class Job:
             return
         self._told = words, now
         self.tell(Event("progress", (fraction, text)))
+
+    @property
+    def busy(self) -> bool:
+        """Whether it is being computed, or still will be."""
+        return not (self.over.is_set() or (self.stop.is_set() and not self.begun.is_set()))
 
     def drop(self) -> None:
         """Stop it, and tell its asker that its answer is no longer wanted."""
@@ -140,6 +146,7 @@ class Desk:
         self._room = room
         self._waiting: deque[Job] = deque()
         self._newest: dict[str, Job] = {}
+        self._spare: Job | None = None
         self._changed = threading.Condition()
         for number in range(threads):
             threading.Thread(target=self._work, name=f"page-{number}", daemon=True).start()
@@ -154,6 +161,8 @@ class Desk:
         """
         job = Job(task)
         with self._changed:
+            if self._spare is not None:
+                self._spare.stop.set()
             older = self._newest.get(asker)
             if older is not None:
                 older.drop()
@@ -166,6 +175,25 @@ class Desk:
             self._waiting.append(job)
             self._changed.notify()
         return job
+
+    def spare(self, task: Task) -> Job | None:
+        """Have something done that nobody waits for, one at a time; the next question stops it.
+
+        None where something waits, or where an earlier one has not ended yet.
+        """
+        with self._changed:
+            if self._waiting or (self._spare is not None and self._spare.busy):
+                return None
+            self._spare = job = Job(task)
+            self._waiting.append(job)
+            self._changed.notify()
+        return job
+
+    def close(self) -> None:
+        """Stop what nobody waits for."""
+        with self._changed:
+            if self._spare is not None:
+                self._spare.stop.set()
 
     def forget(self, asker: str, job: Job) -> None:
         """Nobody waits for this job any more."""

@@ -142,6 +142,7 @@ export function read(hash) {
   if (!Array.isArray(given) || !given.length || given.length > 2) throw new Error("no designs");
   return given.map(({ name, tables, surfaces }, number) => {
     if (typeof name !== "string" || typeof tables !== "object" || tables === null) throw new Error("no design");
+    Object.keys(tables.materials ?? {}).forEach(encodeURIComponent); // throws at half a character
     return new Design("AB"[number], name, tables, surfaces ?? {});
   });
 }

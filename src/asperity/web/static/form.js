@@ -47,7 +47,9 @@ export class Form {
     const add = element("button", { type: "button", textContent: "add" });
     const begin = () => {
       const name = input.value.trim();
-      if (name && !own.includes(name)) this.tabled({ ...table, name: `${table.name}.${name}` }, true);
+      const path = `${table.name}.${name}`;
+      if (own.includes(name)) document.getElementById(idOf("table", path)).scrollIntoView(); // it is there
+      else if (name) this.tabled({ ...table, name: path }, true);
       else input.focus();
     };
     add.addEventListener("click", begin);
@@ -64,7 +66,11 @@ export class Form {
     box.open = open.size ? open.has(box.id) : roomy && used && !["numerics", "publication"].includes(table.name);
     box.append(element("summary", { textContent: table.named ? table.name.slice(table.name.indexOf(".") + 1) : words(table.name) }));
     if (table.help && !table.named) box.append(element("p", { className: "about", textContent: table.help }));
-    if (!table.needed) {
+    if (table.named) {
+      const remove = element("button", { type: "button", textContent: "remove", id: idOf("remove", table.name) });
+      remove.addEventListener("click", () => this.tabled(table, false));
+      box.append(element("p", { className: "about" }, remove));
+    } else if (!table.needed) {
       const use = element("input", { type: "checkbox", checked: given !== undefined, id: idOf("use", table.name) });
       use.addEventListener("change", () => this.tabled(table, use.checked));
       box.append(element("label", { className: "use" }, use, ` use [${table.name}]`));

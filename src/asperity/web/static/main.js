@@ -72,7 +72,9 @@ function tabled(table, used) {
   const box = by(idOf("table", table.name));
   if (box) {
     for (let around = box; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
-    by(idOf("use", table.name)).focus();
+    (by(idOf("use", table.name)) ?? box.querySelector("input")).focus();
+  } else {
+    by(idOf("new", table.name.split(".")[0])).focus();
   }
   ask();
 }
