@@ -68,6 +68,17 @@ def test_conservative_contact_returns_all_energy(name):
         assert float(rows.apex[0]) == pytest.approx(top, rel=1e-7)
 
 
+def test_menisci_lose_what_they_do_beside_a_law_that_loses_nothing():
+    """A faint pull by quadrature leaves the loss as it is; both ways back are finite."""
+    faint = Bradley(BETA, 1e-7, 0.2e-9)
+    (alone, _), (beside, found) = (
+        fly(rough(law), DROP) for law in (HERTZ + BY_CONTACT, HERTZ + faint + BY_CONTACT)
+    )
+    np.testing.assert_allclose(beside.impacts.lost, alone.impacts.lost, rtol=1e-4)
+    assert float(jnp.max(beside.impacts.closure)) < 1e-6 * float(beside.impacts.fastest[0])
+    assert float(found.restitution[0]) < 1.0 - 1e-6
+
+
 def test_a_motion_that_loses_nothing_oscillates():
     motion, _ = fly(rough(HERTZ), DROP)
     assert outcome(motion) is Outcome.OSCILLATING

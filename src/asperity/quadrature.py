@@ -102,7 +102,7 @@ def means_near(
     values = weight * _values(law, gap, gap < edge, asked.names)
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
     found = jnp.stack([jnp.einsum("ij,pij->p", row, shares) for row in values])
-    if not near.level:
+    if law.hysteretic and not near.level:
         found = found + _between(law, heights, edge, edges, separations, asked)
     if asked.lift == 0 or law.only_bonded:
         return found
