@@ -190,18 +190,19 @@ def _compile(
         measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
 
 
-_FORESEEN: dict[Any, tuple[Table, Datum] | None] = {}
+_FORESEEN: dict[Any, tuple[tuple[Table, Datum] | None]] = {}
 _MOST = 64  # kinds of contacts whose shapes are kept
 
 
 def _foreseen(contact: Contact, many: bool) -> tuple[Table, Datum] | None:
     """Shapes of the curves, which take 5 ms to foresee, once for each kind of contact."""
     key = signature(contact, many)
-    if key not in _FORESEEN:
+    known = _FORESEEN.get(key)
+    if known is None:
         if len(_FORESEEN) >= _MOST:
             _FORESEEN.clear()
-        _FORESEEN[key] = foreseen(contact, many)
-    return _FORESEEN[key]
+        known = _FORESEEN[key] = (foreseen(contact, many),)
+    return known[0]
 
 
 def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Datum]]:

@@ -168,13 +168,14 @@ class _Page:
 
     def _compile_ahead(self, what: Asked, case: Case) -> None:
         """Have what other laws need compiled while nobody asks, once for each kind of case."""
-        kind = kind_of(case)
-        if case.adhesion.model != "auto" or kind in self._ready:
+        if case.adhesion.model != "auto" or (kind := kind_of(case)) in self._ready:
             return
         compiling = ahead(what, self.surfaces)
 
         def task(tell: Report, stop: threading.Event) -> None:
             compiling(tell, stop)
+            if stop.is_set():
+                return
             if len(self._ready) >= MOST_KINDS:
                 self._ready.clear()
             self._ready.add(kind)

@@ -51,8 +51,8 @@ def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Even
 def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], None]:
     """A computation that compiles what a case needs under each law that "auto" may choose.
 
-    Then no slider that crosses a border between two of them has to. It returns once all are, and
-    raises where it is stopped before.
+    Then no slider that crosses a border between two of them has to. All are once it returns, unless
+    it was stopped.
     """
 
     def compute(tell: Report, stop: threading.Event) -> None:
