@@ -149,7 +149,7 @@ def test_curves_that_more_panels_do_not_mend_are_given_up_at_once():
         {
             "counterface.deformation": "rigid",
             "plasticity.model": "kogut-etsion",
-            "plasticity.hardness": "10 MPa",
+            "plasticity.hardness": "30 MPa",
             "numerics.max_impacts": 1,
             "numerics.tolerance": 1e-10,
         }
