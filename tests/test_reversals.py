@@ -10,8 +10,6 @@ import pytest
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.contact.base import Held
-from asperity.contact.factors import Matrix
-from asperity.contact.settling import settle, settle_near
 from asperity.errors import Tolerance
 from asperity.impact import Body, Limits, fly, prepare, start
 from asperity.impact.reversals import CLOSE
@@ -167,22 +165,3 @@ def test_derivatives_pass_through_tabulated_ways():
     weights = {-2: 1.0, -1: -8.0, 1: 8.0, 2: -1.0}
     judge = sum(w * float(lost(sigma + k * step)) for k, w in weights.items()) / (12.0 * step)
     assert float(slope) == pytest.approx(judge, rel=1e-4)
-
-
-@pytest.mark.parametrize("depth", [4.5, 0.5], ids=["stiff", "soft"])
-def test_the_matrix_of_a_neighbour_leads_to_the_same_rings(depth):
-    """Where the bulk hardly gives way it serves as it is; elsewhere it is made anew."""
-    here = contact()
-    thresholds = here.extreme((False,)).thresholds
-    size, flat = jnp.asarray(7e-7), jnp.zeros(here.rings + 1)
-
-    @eqx.filter_jit
-    def near(here, place):
-        blank = Matrix.blank(here.rings)
-        _, matrix = settle_near(here, place + 0.1 * SIGMA, thresholds, size, flat, blank)
-        rest, _ = settle_near(here, place, thresholds, size, flat, matrix)
-        return rest, settle(here, place, thresholds, size, flat, here.rings), matrix.serves
-
-    rest, judge, served = near(here, jnp.asarray(depth * SIGMA))
-    assert bool(served) == (depth > 1.0)
-    np.testing.assert_allclose(rest.lift, judge.lift, atol=1e-11 * SIGMA)

@@ -16,7 +16,6 @@ from ..layers import Surfaces
 from ..program import kept
 from ..shapes import Sphere
 from .base import Contact, Held, State, Way
-from .factors import Matrix
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
 from .rigid import FAR, RigidContact, rough_panels
@@ -251,7 +250,7 @@ class ElasticContact(Contact):
         rest = jax.lax.cond(
             wanted,
             lambda: settle(*frozen, self.rings),
-            lambda: Rest(flat, flat, flat[:-1], jnp.zeros(())),
+            lambda: Rest(flat, flat[:-1], jnp.zeros(())),
         )
         rest = self._rest(start, old, size, rest)
         before = RingMemory(old, size, rest.lift, held.outer)
@@ -274,8 +273,7 @@ class ElasticContact(Contact):
         frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
         bound = old.size > 0.0
         first = jnp.where(bound, old.size, first_size(frozen, place))
-        free, blank = jnp.logical_not(bound), Matrix.blank(self.rings)
-        size, rest, _ = fitted(frozen, place, old.thresholds, first, old.lift, free, blank)
+        size, rest = fitted(frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound))
         return size, self._rest(separation, memory.thresholds, size, rest)
 
     def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:

@@ -9,9 +9,8 @@ import numpy as np
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
 from .base import pieces_to, way_points
-from .factors import Matrix
 from .resolution import Resolution
-from .settling import Rest, Rough, asked_size, settle_near
+from .settling import Rest, Rough, asked_size, rates, settle
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
@@ -89,15 +88,15 @@ def _marks(
     memory: Bound,
     start: jax.Array,
     parting: jax.Array,
-    rest: Rest,
+    rates: jax.Array,
 ) -> jax.Array:
     """Ends of the pieces of the way back, for each law.
 
     Even ones until the fastest ring has passed from one branch to the other, and one more
     until the slowest has.
     """
-    slowest = jnp.clip(jnp.min(rest.rates), 1e-3, 1.0)
-    fastest = jnp.maximum(jnp.max(rest.rates), slowest)
+    slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
+    fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces = contact.resolved.pieces
     even = np.arange(1.0, pieces) / max(pieces - 1, 1)
     shares = jnp.append(even / fastest, _MORE / slowest)
@@ -116,26 +115,24 @@ def fitted(
     size: jax.Array,
     lift: jax.Array,
     free: jax.Array,
-    matrix: Matrix,
-) -> tuple[jax.Array, Rest, Matrix]:
+) -> tuple[jax.Array, Rest]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
     rings = contact.rings
-    flat = jnp.zeros_like(lift)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
-        size, ratio, rest, matrix, passes = now
+        size, ratio, rest, passes = now
         size = size * ratio
-        rest, matrix = settle_near(contact, place, thresholds, size, rest.lift, matrix)
-        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, matrix, passes + 1
+        rest = settle(contact, place, thresholds, size, rest.lift, rings)
+        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
 
     def unfit(now: tuple[Any, ...]) -> jax.Array:
         off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[-1] < _PASSES)
         return jnp.logical_or(now[-1] == 0, off)
 
-    blank = Rest(lift, flat, flat[:-1], jnp.zeros(()))
-    begin = size, jnp.ones(()), blank, matrix, 0
-    size, _, rest, matrix, _ = jax.lax.while_loop(unfit, again, begin)
-    return size, rest, matrix
+    blank = Rest(lift, jnp.zeros_like(lift[:-1]), jnp.zeros(()))
+    begin = size, jnp.ones(()), blank, 0
+    size, _, rest, _ = jax.lax.while_loop(unfit, again, begin)
+    return size, rest
 
 
 def descend(
@@ -148,25 +145,24 @@ def descend(
     above = Trail.straight(corners[0] + sigma, flat, flat, -sigma)
 
     def step(carry: tuple[Any, ...], job: tuple[jax.Array, jax.Array]) -> Any:
-        trail, factor, sizes, matrix = carry
+        trail, factor, sizes = carry
         k, place = job
         corner = k < count
         trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
         light = first_size(contact, place)
         between = jnp.interp(place, corners[::-1], sizes[::-1])
-        size, rest, matrix = fitted(
+        size, rest = fitted(
             contact,
             place,
             thresholds,
             jnp.where(corner, light * factor, between),
             jnp.where(corner, trail.lifts[0], trail.guess(place)),
             corner,
-            matrix,
         )
         sizes = jnp.where(jnp.arange(count) == k, size, sizes)
-        return (trail.append(place, rest.lift), size / light, sizes, matrix), (size, rest)
+        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
 
-    begin = above, jnp.ones(()), jnp.ones(count), Matrix.blank(contact.rings)
+    begin = above, jnp.ones(()), jnp.ones(count)
     jobs = jnp.concatenate([corners, places])
     _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
     sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
@@ -185,30 +181,18 @@ def retrace(
     pieces, nodes = contact.passed
     steps = way_points(nodes)
     sigma = contact.interface.heights.rms
-    whole = jnp.broadcast_to(start, (pieces,))
-    flat = jnp.zeros_like(memory.lift)
+    held = memory.thresholds, size
+    pace = rates(contact, start, *held, memory.lift, contact.rings)
+    marks = _marks(contact, memory, start, parting, pace)
+    enter, leave = pieces_to(marks, start, parting, within)
+    back = jnp.where(parting, sigma, -sigma) * 1e-2
+    trail = Trail.straight(start, memory.lift, pace - 1.0, back)
 
-    def step(carry: tuple[Any, ...], k: jax.Array) -> Any:
-        trail, enter, leave, matrix = carry
-        piece = jnp.maximum(k - 1, 0) // nodes
-        share = jnp.asarray(steps)[jnp.maximum(k - 1, 0) % nodes]
-        place = enter[piece] + (leave - enter)[piece] * share
-        lift = jnp.where(k == 0, memory.lift, trail.guess(place))
-        rest, matrix = settle_near(contact, place, memory.thresholds, size, lift, matrix)
-        marks = _marks(contact, memory, start, parting, rest)
-        pair = pieces_to(marks, start, parting, within)
-        enter, leave = (jnp.where(k == 0, a, b) for a, b in zip(pair, (enter, leave), strict=True))
-        back = jnp.where(parting, sigma, -sigma) * 1e-2
-        straight = Trail.straight(place, rest.lift, rest.rates - 1.0, back)
-        trail = jax.tree_util.tree_map(
-            lambda a, b: jnp.where(k == 0, a, b), straight, trail.append(place, rest.lift)
-        )
-        return (trail, enter, leave, matrix), (place, rest)
+    def step(trail: Trail, place: jax.Array) -> Any:
+        rest = settle(contact, place, *held, trail.guess(place), contact.rings)
+        return trail.append(place, rest.lift), rest
 
-    trail = Trail.straight(start, memory.lift, flat, sigma)
-    begin = trail, whole, whole, Matrix.blank(contact.rings)
-    (_, enter, leave, _), found = jax.lax.scan(step, begin, jnp.arange(1 + pieces * nodes))
-    places, rests = jax.tree_util.tree_map(
-        lambda leaf: leaf[1:].reshape(pieces, nodes, *leaf.shape[1:]), found
-    )
+    places = enter[:, None] + (leave - enter)[:, None] * jnp.asarray(steps)
+    _, found = jax.lax.scan(step, trail, places.ravel())
+    rests = jax.tree_util.tree_map(lambda leaf: leaf.reshape(pieces, nodes, *leaf.shape[1:]), found)
     return enter, leave, places, rests

@@ -127,7 +127,7 @@ def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
     displaced = jnp.max(jnp.abs(bulk.excess * (bulk.rows @ off.crept)))
     error = jnp.abs(jnp.stack([off.separation, off.speed, displaced, off.heat]))
     pressure, _ = bulk.pressed(end.gaps, end.thresholds)
-    fit = asked_size(Settled(end.gaps, end.gaps, pressure, jnp.zeros(())), bulk.contact.rings)
+    fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings)
     return Step(
         end, jnp.stack([rates.speed[-1], rates.heat[-1]]), row_of(bulk, end),
         jnp.append(by_law, change.heat), fit, error, jnp.all(solved),

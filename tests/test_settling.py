@@ -1,0 +1,100 @@
+"""Rings on a half-space find their equilibrium, and the linear systems on the way there."""
+
+from math import radians
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from asperity._jax import jax, jnp
+from asperity.contact import ElasticContact
+from asperity.contact.krylov import CLOSE, nearly_solved
+from asperity.contact.settling import rates, rise_of, settle
+from asperity.halfspace import ring_mesh
+from asperity.interface import Interface
+from asperity.laws import Dmt, Hertz, Meniscus
+from asperity.roughness import Gaussian
+from asperity.shapes import Sphere
+
+RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
+MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)
+RINGS = 32
+
+
+def contact(modulus):
+    layer = Interface(Hertz(BETA, E) + Dmt(BETA, 0.03) + MENISCUS, Gaussian(SIGMA), N)
+    return ElasticContact(layer, Sphere(RADIUS), modulus, RINGS)
+
+
+found = eqx.filter_jit(settle)
+paces = eqx.filter_jit(rates)
+
+
+def residual(here, place, thresholds, size, lift):
+    """What is left of h = d + rise + u(p(h)), by dense products of NumPy."""
+    mesh = ring_mesh(here.rings)
+    h = place + rise_of(here, size, here.rings) + lift
+    pressure = np.asarray(here.interface.pressure(h, thresholds))[:-1]
+    rows = np.concatenate([mesh.compliance, mesh.end_compliance[None]])
+    return np.asarray(lift) - size / here.modulus * (rows @ pressure)
+
+
+@pytest.mark.parametrize("bonded", [False, True], ids=["fresh", "torn"])
+@pytest.mark.parametrize("modulus", [1e13, 57e9, 0.5e9], ids=["stiff", "as silica", "soft"])
+@pytest.mark.parametrize("depth", [4.5, 0.5, -10.0])
+def test_rings_settle_from_nothing_and_from_a_guess_nearby(modulus, depth, bonded):
+    here, place, size = contact(modulus), jnp.asarray(depth * SIGMA), jnp.asarray(9e-7)
+    thresholds, flat = here.extreme((bonded,)).thresholds, jnp.zeros(RINGS + 1)
+    rest = found(here, place, thresholds, size, flat, RINGS)
+    assert float(rest.error) < 1e-10
+    left = residual(here, place, thresholds, 9e-7, rest.lift)
+    np.testing.assert_allclose(left, 0.0, atol=3e-12 * (SIGMA + float(jnp.max(rest.lift))))
+    near = found(here, place + 0.1 * SIGMA, thresholds, size, flat, RINGS)
+    again = found(here, place, thresholds, size, near.lift, RINGS)
+    np.testing.assert_allclose(again.lift, rest.lift, atol=1e-11 * SIGMA, rtol=1e-11)
+
+
+def test_rates_are_those_of_rings_at_two_places():
+    here, place, size = contact(57e9), jnp.asarray(-2.0 * SIGMA), jnp.asarray(9e-7)
+    thresholds, flat = here.fresh().thresholds, jnp.zeros(RINGS + 1)
+    step = 1e-4 * SIGMA
+    lifts = [found(here, place + k * step, thresholds, size, flat, RINGS).lift for k in (-1, 0, 1)]
+    measured = 1.0 + (lifts[2] - lifts[0]) / (2.0 * step)
+    rate = paces(here, place, thresholds, size, lifts[1], RINGS)
+    np.testing.assert_allclose(rate, measured, rtol=1e-4)
+    assert 0.05 < float(jnp.min(rate)) < 0.6  # the bulk gives way there
+
+
+def test_a_batch_settles_as_each_alone():
+    here, size = contact(57e9), jnp.asarray(9e-7)
+    thresholds, flat = here.fresh().thresholds, jnp.zeros(RINGS + 1)
+    places = SIGMA * jnp.asarray([5.0, 1.0, -20.0])
+
+    def one(place):
+        return settle(here, place, thresholds, size, flat, RINGS).lift
+
+    together = jax.jit(jax.vmap(one))(places)
+    for row, place in zip(together, places, strict=True):
+        alone = found(here, place, thresholds, size, flat, RINGS).lift
+        np.testing.assert_allclose(row, alone, atol=1e-11 * SIGMA, rtol=1e-11)
+
+
+@pytest.mark.parametrize("strength", [0.0, 1e-3, 1.0, 40.0, 1e7])
+@pytest.mark.parametrize("pulls", [False, True])
+def test_linear_systems_are_solved_as_far_as_asked(strength, pulls):
+    """Slopes of both signs; a pull as strong as a stable contact has."""
+    mesh = ring_mesh(48)
+    slope: jax.Array | np.ndarray = strength * np.exp(-((mesh.radius / 0.8) ** 2))
+    if pulls:
+        slope = slope - 0.1 * np.exp(-(((mesh.radius - 1.5) / 0.3) ** 2))
+    matrix = jnp.asarray(np.eye(48) + mesh.compliance * slope)
+    right = jnp.asarray(1.0 + 0.3 * mesh.radius**2)
+    answer = jax.jit(lambda s, b: nearly_solved(mesh.compliance, -s, b))(slope, right)
+    judge = np.linalg.solve(matrix, right)
+    left = np.linalg.norm(matrix @ answer - right) / np.linalg.norm(right)
+    assert left <= 2.0 * CLOSE
+    np.testing.assert_allclose(answer, judge, atol=20.0 * CLOSE * np.max(np.abs(judge)))
+
+
+def test_nothing_to_solve_is_solved():
+    assert not np.any(nearly_solved(np.eye(5), -jnp.ones(5), jnp.zeros(5)))
