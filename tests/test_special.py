@@ -1,6 +1,6 @@
 """Height integrals against quadrature, closed forms and a published table."""
 
-from math import erfc, exp, pi, sqrt
+from math import erfc, exp, gamma, pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -79,6 +79,25 @@ def test_integer_orders_have_closed_forms_in_the_error_function(separation):
 def test_order_zero_is_the_tail_of_the_normal_distribution(separation):
     exact = 0.5 * erfc(separation / sqrt(2.0))
     assert float(height_integral(0.0, separation)) == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [-0.5, *ORDERS, 3.0, 3.5])
+def test_far_out_it_follows_its_asymptotic_series(order):
+    """n! phi(l) l^-(n+1) (1 - (n+1)(n+2)/(2 l^2) + ...), DLMF 12.9.1."""
+    for l in (14.0, 25.0, 37.0):
+        total, term = 0.0, 1.0
+        for k in range(8):
+            total += term
+            term *= -(order + 2 * k + 1) * (order + 2 * k + 2) / (2.0 * (k + 1) * l * l)
+        exact = gamma(order + 1.0) * exp(-0.5 * l * l) / sqrt(2.0 * pi) / l ** (order + 1.0) * total
+        assert float(height_integral(order, l)) == pytest.approx(exact, rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize("order", [0.25, 1.0 / 3.0, 0.7])
+def test_other_orders_than_halves_too(order):
+    found = np.asarray(height_integral(order, jnp.asarray(PLACES)))
+    exact = np.array([by_quadrature(order, l) for l in PLACES])
+    np.testing.assert_allclose(found, exact, rtol=1e-9, atol=0.0)
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 1.5])

@@ -47,8 +47,8 @@ def height_integral(order: float, separation: jax.Array | float) -> jax.Array:
     Returns
     -------
     Array of the shape of ``separation``. Relative error below 1e-12 for orders -1/2
-    to 3 and separations -8 to 12 (tests). The derivative is
-    :math:`-n F_{n-1}`, for order 0 minus the density.
+    to 3 and separations -8 to 12, and 1e-8 to 37, where it is below 1e-32 (tests). The
+    derivative is :math:`-n F_{n-1}`, for order 0 minus the density.
     """
     x = jnp.asarray(separation, dtype=jnp.float64)
     return height_integrals((float(order),), x[None])[0]
@@ -100,18 +100,31 @@ def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
         return jnp.concatenate([tail, rest])[place]
     table = np.concatenate([np.concatenate(_tables(order)) for order in orders])
     rows = (len(orders),) + (1,) * (separations.ndim - 1)
-    order = np.asarray(orders).reshape(rows)
     base = 2 * _PANELS * np.arange(len(orders)).reshape(rows)
     is_right = separations >= _SPLIT
     reach = jnp.abs(separations - _SPLIT)
-    position = reach / (reach + _STRETCH) * _PANELS
+    falls = 1.0 / (reach + _STRETCH)
+    position = reach * falls * _PANELS
     index = jnp.clip(jnp.floor(position).astype(int), 0, _PANELS - 1)
     panel = jnp.asarray(base) + jnp.where(is_right, index, index + _PANELS)
     smooth = _clenshaw(table, panel, 2.0 * (position - index) - 1.0)
+    # Right of the split the density falls off, left of it the integral grows.
     bounded = jnp.where(is_right, separations, 0.0)
-    size = jnp.where(is_right, reach + _STRETCH, jnp.sqrt(1.0 + jnp.minimum(separations, 0.0) ** 2))
-    power = jnp.where(is_right, -(order + 1.0), order)
-    return smooth * jnp.exp(power * jnp.log(size) - 0.5 * bounded * bounded)
+    size = jnp.sqrt(1.0 + jnp.minimum(separations, 0.0) ** 2)
+    grown = _powers(size, np.asarray(orders).reshape(rows))
+    return smooth * jnp.where(is_right, falls, grown) * jnp.exp(-0.5 * bounded * bounded)
+
+
+def _powers(base: jax.Array, exponents: np.ndarray) -> jax.Array:
+    """Each row of ``base`` to its power: of halves by roots, which cost a third of a logarithm."""
+    twice = np.round(2.0 * exponents).astype(int)
+    if np.any(twice != 2.0 * exponents):
+        return jnp.exp(exponents * jnp.log(base))
+    square, power = jnp.sqrt(base), jnp.ones_like(base)
+    for bit in range(int(np.max(np.abs(twice))).bit_length()):
+        power = jnp.where(np.abs(twice) >> bit & 1, power * square, power)
+        square = square * square
+    return jnp.where(twice < 0, 1.0 / power, power)
 
 
 @integrals_at.defjvp
@@ -161,7 +174,7 @@ def _tables(order: float) -> tuple[np.ndarray, ...]:
     nodes = chebyshev.chebpts1(_DEGREE + 1)
     y = ((np.arange(_PANELS)[:, None] + 0.5 * (nodes + 1.0)) / _PANELS).ravel()
     reach = _STRETCH * y / (1.0 - y)
-    right = _quadrature(order, _SPLIT + reach) * (reach + _STRETCH) ** (order + 1.0)
+    right = _quadrature(order, _SPLIT + reach) * (reach + _STRETCH)
     left = _SPLIT - reach
     growth = _quadrature(order, left) * (1.0 + left * left) ** (-0.5 * order)
     shape = (_PANELS, _DEGREE + 1)
