@@ -14,7 +14,8 @@ from .table import FORCE, STORED, Table
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
 _PLACES = 32
-_HALVINGS = 48  # of a part of a panel: to its rounding
+_STEPS = 48  # halvings and Newton steps within a part of a panel, at most
+_CLOSE = 1e-15  # of a panel: the step that follows one so short is lost in rounding
 
 
 @kept
@@ -41,7 +42,7 @@ def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
     """Static equilibrium on a branch of approach."""
     values = table.values[branch]
     place, panel, found = _outermost(
-        table.ends, values[..., FORCE], lambda force: force - weight > 1e-9 * weight
+        table.ends, values[..., FORCE], lambda force: force - (1.0 + 1e-9) * weight
     )
     x = local(table.ends[panel], table.ends[panel + 1], place)
     excess = chebyshev_sum(values[panel, :, FORCE], x) - weight
@@ -59,7 +60,7 @@ def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
 
 def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:
     """The outermost separation [m] at which the size of a branch's force is above ``least``."""
-    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) > least)
+    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) - least)
     x = local(ends[panel], ends[panel + 1], place)
     carried = chebyshev_sum(force[panel], x)
     # Where the force jumps over that size there is no root to follow, only an end of a panel.
@@ -76,29 +77,52 @@ def _carrying(place: jax.Array, excess: jax.Array, slope: jax.Array) -> jax.Arra
 
 
 def _outermost(
-    ends: jax.Array, force: jax.Array, rule: Callable[[jax.Array], jax.Array]
+    ends: jax.Array, force: jax.Array, excess: Callable[[jax.Array], jax.Array]
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """The largest separation at which a rule on the force begins to hold, by bisection."""
+    """The largest separation at which a function of the force begins to be positive.
+
+    By Newton's method, kept between two places that are looked at.
+    """
     ends, force = jax.lax.stop_gradient((ends, force))
     fractions = np.linspace(0.0, 1.0, _PLACES)  # the ends of a panel are places of its own
     sampled = jax.vmap(lambda row: chebyshev_sum(row[:, None], jnp.asarray(2.0 * fractions - 1.0)))(
         force
     )
-    holds = jnp.logical_and(rule(sampled), (ends[1:] > ends[:-1])[:, None]).ravel()
+    holds = jnp.logical_and(excess(sampled) > 0.0, (ends[1:] > ends[:-1])[:, None]).ravel()
     index = holds.shape[0] - 1 - jnp.argmax(holds[::-1])
     panel, place = index // _PLACES, index % _PLACES
     low, width, row = ends[panel], ends[panel + 1] - ends[panel], force[panel]
 
-    def halve(_: int, pair: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
-        near, far = pair
-        middle = 0.5 * (near + far)
-        inner = rule(chebyshev_sum(row, 2.0 * middle - 1.0))
-        return jnp.where(inner, middle, near), jnp.where(inner, far, middle)
+    def value(at: jax.Array) -> jax.Array:
+        return excess(chebyshev_sum(row, 2.0 * at - 1.0))
+
+    def go_on(now: _Between) -> jax.Array:
+        return jnp.logical_and(now.moved > _CLOSE, now.steps < _STEPS)
+
+    def step(now: _Between) -> _Between:
+        here, slope = jax.jvp(value, (now.at,), (jnp.ones_like(now.at),))
+        near = jnp.where(here > 0.0, now.at, now.near)
+        far = jnp.where(here > 0.0, now.far, now.at)
+        target = now.at - here / jnp.where(slope == 0.0, 1.0, slope)
+        inside = jnp.logical_and(near <= target, target <= far)
+        following = jnp.where(inside, target, 0.5 * (near + far))
+        return _Between(near, far, following, jnp.abs(following - now.at), now.steps + 1)
 
     at = jnp.asarray(fractions)
-    outside = at[jnp.minimum(place + 1, _PLACES - 1)]
-    near, _ = jax.lax.fori_loop(0, _HALVINGS, halve, (at[place], outside))
-    return low + width * near, panel, jnp.any(holds)
+    near, far = at[place], at[jnp.minimum(place + 1, _PLACES - 1)]
+    begin = _Between(near, far, 0.5 * (near + far), far - near, jnp.asarray(0))
+    end = jax.lax.while_loop(go_on, step, begin)
+    return low + width * end.at, panel, jnp.any(holds)
+
+
+class _Between(NamedTuple):
+    """Two places of a panel in parts of its width, one where it holds; the best; its last move."""
+
+    near: jax.Array
+    far: jax.Array
+    at: jax.Array
+    moved: jax.Array
+    steps: jax.Array
 
 
 def _slope(coefficients: jax.Array, x: jax.Array, ends: jax.Array, panel: jax.Array) -> jax.Array:
