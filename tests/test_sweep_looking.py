@@ -24,6 +24,7 @@ from asperity.cli import exporting, looking
 from asperity.errors import InputError, OutputError
 from asperity.plots import style, sweep
 from asperity.plots.sweep.maps import boundary
+from asperity.plots.sweep.quantities import axis_quantity
 from asperity.result import Curve
 from asperity.studies.sweep import force_table, restitution_table
 from asperity.studies.sweep.dataset import open_study
@@ -31,7 +32,7 @@ from asperity.studies.sweep.export import export
 from asperity.studies.sweep.pareto import Goal, front_of, goal_of, undominated
 from asperity.studies.sweep.store import Store
 from asperity.studies.sweep.study import parse
-from asperity.studies.sweep.view import at, view_of
+from asperity.studies.sweep.view import at, view_of, words
 from study_results import GRID, KEEP, SAMPLE, SPEEDS, law, stored
 
 ROUGH, HUMID, SPEED = "roughness.rms_height", "capillary.humidity", "impact.speed"
@@ -419,6 +420,16 @@ def test_lines_stand_at_the_values_in_the_unit_of_the_label(stores: dict[str, Pa
         np.testing.assert_allclose(line.get_ydata(), values)
         assert axes.get_xlabel() == "impact speed [mm/s]"
     assert "[ms]" in drawn.axes[1].get_ylabel()
+
+
+def test_angles_are_drawn_and_told_in_degrees():
+    angle = xarray.DataArray(
+        np.radians([30.0, 73.0]), dims="angle", attrs={"units": "rad", "long_name": "contact angle"}
+    )
+    drawn = axis_quantity(angle)
+    np.testing.assert_allclose(drawn.values, [30.0, 73.0])
+    assert drawn.label == "contact angle [deg]"
+    assert words(math.radians(73.0), "rad") == "73 deg"
 
 
 def test_a_value_between_two_that_do_not_apply_is_drawn(grid: xarray.Dataset):

@@ -8,9 +8,9 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
-from .base import pieces_to, way_points
 from .resolution import Resolution
 from .settling import Rest, Rough, asked_size, rates, settle
+from .ways import pieces_to, way_points
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most

@@ -13,7 +13,8 @@ from .._jax import jax, jnp
 from ..laws.base import Real, quantity
 from ..laws.published import PublishedPressure
 from ..shapes import Sphere
-from .base import Contact, Held, State, first_out_of_reach
+from .base import Contact, Held, State
+from .ways import first_out_of_reach
 
 _PANELS = 1  # between two kinks of the pressures
 _NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))

@@ -16,8 +16,9 @@ from ..layers import Layers, Surfaces
 from ..plastic_interface import PlasticInterface
 from ..quadrature import Near
 from ..shapes import Sphere
-from .base import Contact, State, Way, first_out_of_reach, pieces_to, way_points
+from .base import Contact, State, Way
 from .resolution import LINEAR, Resolution, resolution
+from .ways import first_out_of_reach, pieces_to, way_points
 
 Left = tuple[Thresholds, jax.Array, Any]
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.base import Law, terms
-from .base import Contact, State, first_out_of_reach
+from .base import Contact, State
+from .ways import first_out_of_reach
 
 Flags = jax.Array
 

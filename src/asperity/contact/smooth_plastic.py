@@ -13,7 +13,8 @@ from ..errors import InputError
 from ..laws.base import Law, Sum, terms
 from ..laws.jkr import Jkr
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .base import Contact, State, first_out_of_reach
+from .base import Contact, State
+from .ways import first_out_of_reach
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""

@@ -124,6 +124,9 @@ def _of(values: np.ndarray, name: str, unit: str, *, log: bool) -> Quantity:
     """Values with a prefix to their unit, where it takes one."""
     found = values[np.isfinite(values)]
     typical = np.exp(np.log(found).mean(keepdims=True)) if log else found
-    factor, shown = style.scale_of(typical, unit=unit) if unit in PREFIXED else (1.0, unit)
+    factor, shown = (
+        style.scale_of(typical, unit=unit) if unit in PREFIXED
+        else (np.pi / 180.0, "deg") if unit == "rad" else (1.0, unit)
+    )  # fmt: skip
     shown = "-" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
     return Quantity(values / factor, style.label(name, shown), log, (), factor)

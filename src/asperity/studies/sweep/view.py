@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -79,6 +80,8 @@ def words(value: object, unit: str = "1") -> str:
         return str(value)
     if unit in PREFIXED:
         return amount(float(value), unit)
+    if unit == "rad":
+        return f"{math.degrees(value):.4g} deg"
     return f"{float(value):.4g} {unit}".removesuffix(" 1").rstrip()
 
 
