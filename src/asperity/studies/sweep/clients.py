@@ -25,6 +25,12 @@ _MEMORY = {"MALLOC_TRIM_THRESHOLD_": "268435456", "MALLOC_MMAP_THRESHOLD_": "268
 """Of glibc [bytes]: dask has workers give back each 64 kB, which our arrays then ask for again, at
 half as much time again for a task."""
 
+_UNWATCHED = {
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+    "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "1s",
+}
+"""Of dask: no samples of what a worker does, which nobody looks at, nor of its event loop."""
+
 
 @contextlib.contextmanager
 def local(workers: int) -> Iterator[Any]:
@@ -67,7 +73,7 @@ def local(workers: int) -> Iterator[Any]:
 def _settings(config: Any) -> dict[str, Any]:
     """Of dask: workers of one thread, which say nothing and of which many may die."""
     spawning = "distributed.nanny.pre-spawn-environ"
-    silence = {"DASK_LOGGING__DISTRIBUTED": "critical"}
+    silence = {"DASK_LOGGING__DISTRIBUTED": "critical", **_UNWATCHED}
     return {
         "distributed.scheduler.allowed-failures": _DEATHS,
         spawning: {**config.get(spawning, {}), **ONE_THREAD, **_MEMORY, **silence},
