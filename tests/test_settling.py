@@ -6,6 +6,7 @@ import equinox as eqx
 import numpy as np
 import pytest
 
+import asperity
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.contact.krylov import CLOSE, nearly_solved
@@ -31,12 +32,12 @@ paces = eqx.filter_jit(rates)
 
 
 def residual(here, place, thresholds, size, lift):
-    """What is left of h = d + rise + u(p(h)), by dense products of NumPy."""
+    """What is left of h = d + rise + u(p(h)), by dense products of NumPy; u is 0 at the end."""
     mesh = ring_mesh(here.rings)
     h = place + rise_of(here, size, here.rings) + lift
     pressure = np.asarray(here.interface.pressure(h, thresholds))[:-1]
-    rows = np.concatenate([mesh.compliance, mesh.end_compliance[None]])
-    return np.asarray(lift) - size / here.modulus * (rows @ pressure)
+    displaced = size / here.modulus * (mesh.compliance @ pressure)
+    return np.asarray(lift) - np.append(displaced, 0.0)
 
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["fresh", "torn"])
@@ -63,6 +64,24 @@ def test_rates_are_those_of_rings_at_two_places():
     rate = paces(here, place, thresholds, size, lifts[1], RINGS)
     np.testing.assert_allclose(rate, measured, rtol=1e-4)
     assert 0.05 < float(jnp.min(rate)) < 0.6  # the bulk gives way there
+    assert float(rate[-1]) == 1.0  # but not where the mesh ends
+
+
+@pytest.mark.parametrize("humidity", [0.05, 0.6])
+@pytest.mark.parametrize("rms", ["2 nm", "10.5 nm"])
+def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms, humidity):
+    """Liquid wets far more than what asperities carry: the mesh, and the way back, take it in."""
+    case = asperity.load("published-exact").replace(
+        {
+            "capillary.model": "kelvin-filling",
+            "capillary.surface_rms_height": "11 nm",
+            "capillary.humidity": humidity,
+            "impact.release_gap": "400 nm",
+            "roughness.rms_height": rms,
+            "numerics.max_impacts": 3,
+        }
+    )
+    assert asperity.solve(case).ledger["closure"] < 1e-6
 
 
 def test_a_batch_settles_as_each_alone():

@@ -9,13 +9,13 @@ import numpy as np
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
 from .resolution import Resolution
-from .settling import Rest, Rough, asked_size, rates, settle
+from .settling import Rest, Rough, asked_size, beyond, rates, rise_of, settle
 from .ways import pieces_to, way_points
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
-_MORE = 1.02  # than the way at the first rate
+_MORE = 1.2  # than the way at the first rate, which falls as the bulk springs back
 
 
 class Deforming(Rough, Protocol):
@@ -123,7 +123,9 @@ def fitted(
         size, ratio, rest, passes = now
         size = size * ratio
         rest = settle(contact, place, thresholds, size, rest.lift, rings)
-        return size, jnp.where(free, asked_size(rest, rings), 1.0), rest, passes + 1
+        end = place + rise_of(contact, size, rings)[-1] + rest.lift[-1]
+        asked = asked_size(rest, rings, beyond(contact, size, end))
+        return size, jnp.where(free, asked, 1.0), rest, passes + 1
 
     def unfit(now: tuple[Any, ...]) -> jax.Array:
         off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[-1] < _PASSES)

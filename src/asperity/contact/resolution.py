@@ -6,6 +6,7 @@ from math import asinh, ceil, hypot
 from typing import NamedTuple
 
 from .._jax import jax, jnp
+from ..laws import KelvinFilling
 from ..layers import Surfaces
 from ..program import AT_ONCE, Program
 from ..quadrature import EVEN
@@ -70,9 +71,10 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
     if not deforms:
         panels = ceil(length / (2.2 * grain))
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
-    # Rings that lag behind have a piece of their own.
+    # Rings that lag behind have a piece of their own, where what they hold counts for much.
+    fills = any(isinstance(law, KelvinFilling) for law in interface.hysteretic)
     panels = ceil(length / (1.7 * grain))
-    return Resolution(panels, nodes, pieces + (share > 0.1))
+    return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
 
 
 _RIGID = (Resolution(7, 16, 2),)

@@ -7,6 +7,7 @@ the implicit function theorem.
 from __future__ import annotations
 
 from functools import cache
+from math import pi
 from typing import Any, NamedTuple, Protocol
 
 import equinox as eqx
@@ -21,6 +22,8 @@ from .krylov import CLOSE, dense_solve, nearly_solved
 
 _ENOUGH = 1e-12  # relative change left in the separation
 _INEXACT = 10.0 * CLOSE  # rate at which a step converges whose system is solved to that
+_BEYOND = 1e-6  # of the load may lie beyond the mesh
+_WIDEN = 0.02  # power of that load by which the mesh grows: it may fall off as r^-50
 _RESTART = 20  # steps after which a bad first guess is given up
 _STEPS = 120
 
@@ -75,11 +78,10 @@ def rise_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
 def _compliance(rings: int) -> np.ndarray:
     """Displacement at the rings and at the end per pressure at them, times E* over the size.
 
-    The end carries none.
+    The end neither carries any nor gives way: what lies beyond stands for itself, so that the
+    force is the slope of the energy wherever the mesh may end.
     """
-    mesh = ring_mesh(rings)
-    rows = np.concatenate([mesh.compliance, mesh.end_compliance[None]])
-    return np.pad(rows, ((0, 0), (0, 1)))
+    return np.pad(ring_mesh(rings).compliance, (0, 1))
 
 
 def _displacement(contact: Rough, size: jax.Array, pressure: jax.Array, rings: int) -> jax.Array:
@@ -195,15 +197,29 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
     return lift, change
 
 
-def asked_size(rest: Rest, rings: int) -> jax.Array:
+def asked_size(rest: Rest, rings: int, beyond: jax.Array | float = 0.0) -> jax.Array:
     """Size of the mesh that a pressure asks for, sqrt(2.5 <r^2>), over the present one.
 
     The mean is weighted with the pressure's magnitude: the radius of a Hertz contact, and
-    1.6 standard deviations of a contact of Gaussian tails.
+    1.6 standard deviations of a contact of Gaussian tails. More where more of the load than a
+    millionth lies ``beyond`` the mesh (over the size squared [Pa]), as of liquid about a small
+    contact.
     """
     mesh = ring_mesh(rings)
     weight = mesh.area * jnp.abs(rest.pressure)
-    total = jnp.sum(weight)
+    total = jnp.sum(weight) + beyond
     some = total > 0.0
-    ratio = jnp.sqrt(2.5 * (weight @ mesh.radius**2) / jnp.where(some, total, 1.0))
+    total = jnp.where(some, total, 1.0)
+    ratio = jnp.sqrt(2.5 * (weight @ mesh.radius**2) / total)
+    ratio = jnp.maximum(ratio, (beyond / total / _BEYOND) ** _WIDEN)
     return jnp.where(some, jnp.clip(ratio, 0.2, 3.0), 1.0)
+
+
+def beyond(contact: Rough, size: jax.Array, end: jax.Array) -> jax.Array:
+    """Load that may lie beyond the mesh where its end is at separation ``end``, over size^2 [Pa].
+
+    With all bonds that can hold there: a mesh is kept while a body parts.
+    """
+    torn = contact.interface.torn(end)
+    force = contact.interface.pressure(end, torn, lift=1)
+    return 2.0 * pi * contact.shape.radius * jnp.abs(force) / size**2
