@@ -8,14 +8,15 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
-from .resolution import Resolution
+from .resolution import Resolution, fills_surface
 from .settling import Rest, Rough, asked_size, beyond, rates, rise_of, settle
 from .ways import pieces_to, way_points
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
-_MORE = 1.2  # than the way at the first rate, which falls as the bulk springs back
+_MORE = 1.02  # than the way at the first rate
+_MUCH_MORE = 1.2  # where liquid fills the surface: the rate falls as the bulk springs back
 
 
 class Deforming(Rough, Protocol):
@@ -99,7 +100,8 @@ def _marks(
     fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces = contact.resolved.pieces
     even = np.arange(1.0, pieces) / max(pieces - 1, 1)
-    shares = jnp.append(even / fastest, _MORE / slowest)
+    more = _MUCH_MORE if fills_surface(contact.interface) else _MORE
+    shares = jnp.append(even / fastest, more / slowest)
     ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
         start + ahead * (law.breaking_gap - law.forming_gap) * shares
@@ -117,14 +119,15 @@ def fitted(
     free: jax.Array,
 ) -> tuple[jax.Array, Rest]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
-    rings = contact.rings
+    rings, fills = contact.rings, fills_surface(contact.interface)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
         size, ratio, rest, passes = now
         size = size * ratio
         rest = settle(contact, place, thresholds, size, rest.lift, rings)
-        end = place + rise_of(contact, size, rings)[-1] + rest.lift[-1]
-        asked = asked_size(rest, rings, beyond(contact, size, end))
+        end = place + rise_of(contact, size, rings)[-1]
+        more = beyond(contact, size, end) if fills else 0.0
+        asked = asked_size(rest, rings, more)
         return size, jnp.where(free, asked, 1.0), rest, passes + 1
 
     def unfit(now: tuple[Any, ...]) -> jax.Array:

@@ -72,9 +72,14 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
         panels = ceil(length / (2.2 * grain))
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
-    fills = any(isinstance(law, KelvinFilling) for law in interface.hysteretic)
+    fills = fills_surface(interface)
     panels = ceil(length / (1.7 * grain))
     return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
+
+
+def fills_surface(interface: Surfaces) -> bool:
+    """Whether liquid lies on more than the asperities. Without values."""
+    return any(isinstance(law, KelvinFilling) for law in interface.hysteretic)
 
 
 _RIGID = (Resolution(7, 16, 2),)

@@ -162,7 +162,8 @@ def find_turn(ahead: Ahead, wanted: jax.Array) -> Turn:
 def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
     """The largest kinetic energy [J], by Newton's method from the largest that was looked at.
 
-    Within its piece and the one inwards: where two meet, the force may set in.
+    Within its piece and those beside it: where two meet, the force may set in, and rounding says
+    in which of them the largest was.
     """
     best = jnp.argmax(energies)
     on_way = ahead.pieces * _SHARES.size
@@ -176,8 +177,8 @@ def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
         # At the top the energy does not change with the place.
         return here.energy(place)
 
-    both = jax.vmap(climbed)(jnp.stack([piece, jnp.maximum(piece - 1, 0)]))
-    return jnp.maximum(energies[best], jnp.max(both))
+    each = jax.vmap(climbed)(jnp.stack([piece, jnp.maximum(piece - 1, 0), piece + 1]))
+    return jnp.maximum(energies[best], jnp.max(each))
 
 
 def _polish(piece: _Piece, bracket: _Bracket) -> jax.Array:
