@@ -14,11 +14,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import dask
 import pytest
 
 import fake_study
 from asperity.errors import OutputError, SimulationError
-from asperity.studies.sweep.clients import connected, local
+from asperity.studies.sweep.clients import _settings, connected, local
 from asperity.studies.sweep.cluster import on_cluster
 from asperity.studies.sweep.running import Tally, fill
 from asperity.studies.sweep.store import Store
@@ -61,6 +62,21 @@ def test_workers_compute_with_one_thread_each(client: Any):
     for environment in client.run(lambda: dict(os.environ)).values():
         assert environment["NPROC"] == environment["OMP_NUM_THREADS"] == "1"
         assert "--xla_cpu_multi_thread_eigen=false" in environment["XLA_FLAGS"]
+
+
+def test_workers_keep_their_memory_and_are_not_sampled(client: Any):
+    for name in ("MALLOC_TRIM_THRESHOLD_", "MALLOC_MMAP_THRESHOLD_"):
+        assert set(client.run(os.getenv, name).values()) == {"33554432"}
+    profiled = client.run(dask.config.get, "distributed.worker.profile.enabled")
+    assert set(profiled.values()) == {False}
+
+
+def test_thresholds_of_a_users_own_are_kept():
+    own = {"MALLOC_TRIM_THRESHOLD_": 1000, "MALLOC_MMAP_THRESHOLD_": 65536}
+    with dask.config.set({"distributed.nanny.pre-spawn-environ": own}):
+        given = _settings(dask.config)["distributed.nanny.pre-spawn-environ"]
+    assert given["MALLOC_TRIM_THRESHOLD_"] == 1000
+    assert given["MALLOC_MMAP_THRESHOLD_"] == "33554432"
 
 
 def test_three_workers_of_which_one_is_killed_give_the_bytes_of_one_process(

@@ -8,6 +8,7 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
+from asperity.case.build import build
 from asperity.contact import ElasticContact
 from asperity.contact.krylov import CLOSE, nearly_solved
 from asperity.contact.settling import rates, rise_of, settle
@@ -84,6 +85,47 @@ def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms,
     assert asperity.solve(case).ledger["closure"] < 1e-6
 
 
+def test_a_ledger_closes_where_liquid_fills_a_surface_that_creeps():
+    """At a hundredth of the speed: liquid, and all it leaves on the mesh's end, counts for most."""
+    case = asperity.load("published-exact").replace(
+        {
+            "capillary.model": "kelvin-filling",
+            "capillary.surface_rms_height": "11 nm",
+            "capillary.humidity": 0.05,
+            "impact.speed": "0.01 m/s",
+            "impact.release_gap": "60 nm",
+            "roughness.rms_height": "2 nm",
+            "viscoelasticity.model": "standard-linear-solid",
+            "viscoelasticity.relaxed_modulus_ratio": 0.5,
+            "viscoelasticity.relaxation_time": "200 ns",
+            "numerics.max_impacts": 1,
+        }
+    )
+    assert asperity.solve(case).ledger["closure"] < 1e-6
+
+
+def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():
+    """Bradley's pull falls off as a power beyond any mesh, where it is counted as it is."""
+    case = asperity.load("published-exact").replace(
+        {
+            "adhesion.model": "bradley",
+            "capillary.model": "kelvin-filling",
+            "capillary.surface_rms_height": "11 nm",
+            "capillary.humidity": 0.3,
+        }
+    )
+    places = SIGMA * jnp.asarray([-2.0, 1.0, 3.0, 5.0])
+    forces = []
+    for rings in (48, 96):
+        here = build(case.replace({"numerics.rings": rings})).contact
+        states = jax.jit(jax.vmap(lambda d, here=here: here.state(d, here.extreme((True,)))))(
+            places
+        )
+        assert np.all(states.size < 1e-5)
+        forces.append(np.asarray(states.force))
+    np.testing.assert_allclose(forces[0], forces[1], atol=1e-6 * np.max(np.abs(forces[1])))
+
+
 def test_a_batch_settles_as_each_alone():
     here, size = contact(57e9), jnp.asarray(9e-7)
     thresholds, flat = here.fresh().thresholds, jnp.zeros(RINGS + 1)
@@ -113,6 +155,19 @@ def test_linear_systems_are_solved_as_far_as_asked(strength, pulls):
     left = np.linalg.norm(matrix @ answer - right) / np.linalg.norm(right)
     assert left <= 2.0 * CLOSE
     np.testing.assert_allclose(answer, judge, atol=20.0 * CLOSE * np.max(np.abs(judge)))
+
+
+def test_only_what_steps_do_not_solve_is_factorized():
+    """In a batch: the one solved exactly, the others as far as asked and no further."""
+    mesh = ring_mesh(48)
+    slopes = jnp.asarray([[1.0], [1e7], [40.0]]) * np.exp(-((mesh.radius / 0.8) ** 2))
+    right = jnp.asarray(1.0 + 0.3 * mesh.radius**2)
+    answers = jax.jit(jax.vmap(lambda s: nearly_solved(mesh.compliance, -s, right)))(slopes)
+    for slope, answer, factorized in zip(slopes, answers, (False, True, False), strict=True):
+        judge = np.linalg.solve(np.eye(48) + mesh.compliance * np.asarray(slope), right)
+        off = float(np.max(np.abs(answer - judge)) / np.max(np.abs(judge)))
+        assert (off < 1e-12) == factorized
+        assert off < 20.0 * CLOSE
 
 
 def test_nothing_to_solve_is_solved():

@@ -285,8 +285,8 @@ def test_two_designs_stand_side_by_side(page):
 
 def test_a_built_in_case_and_a_case_of_ones_own_can_be_chosen(page, tmp_path):
     page.locator("#case").select_option("published")
+    expect(page.locator("#use-publication")).to_be_checked()
     settled(page)
-    assert page.locator("#use-publication").is_checked()
     own = tmp_path / "mine.toml"
     own.write_text(CASE.replace('"50 um"', '"40 um"'))
     page.locator("#own-case").set_input_files(own)

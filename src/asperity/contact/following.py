@@ -8,7 +8,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface import Memory as Thresholds
-from .resolution import Resolution, fills_surface
+from .resolution import Resolution, fills_by_contact
 from .settling import Rest, Rough, asked_size, beyond, rates, rise_of, settle
 from .ways import pieces_to, way_points
 
@@ -100,7 +100,7 @@ def _marks(
     fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces = contact.resolved.pieces
     even = np.arange(1.0, pieces) / max(pieces - 1, 1)
-    more = _MUCH_MORE if fills_surface(contact.interface) else _MORE
+    more = _MUCH_MORE if fills_by_contact(contact.interface) else _MORE
     shares = jnp.append(even / fastest, more / slowest)
     ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
@@ -119,7 +119,7 @@ def fitted(
     free: jax.Array,
 ) -> tuple[jax.Array, Rest]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
-    rings, fills = contact.rings, fills_surface(contact.interface)
+    rings, fills = contact.rings, fills_by_contact(contact.interface)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
         size, ratio, rest, passes = now

@@ -72,13 +72,16 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
         panels = ceil(length / (2.2 * grain))
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
-    fills = fills_surface(interface)
+    fills = fills_by_contact(interface)
     panels = ceil(length / (1.7 * grain))
     return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
 
 
-def fills_surface(interface: Surfaces) -> bool:
-    """Whether liquid lies on more than the asperities. Without values."""
+def fills_by_contact(interface: Surfaces) -> bool:
+    """Whether contact leaves liquid between the surfaces, far wider than itself. Without values.
+
+    Liquid that forms at the Kelvin gap leaves as it came, and holds nothing.
+    """
     return any(isinstance(law, KelvinFilling) for law in interface.hysteretic)
 
 

@@ -24,6 +24,7 @@ _ENOUGH = 1e-12  # relative change left in the separation
 _INEXACT = 10.0 * CLOSE  # rate at which a step converges whose system is solved to that
 _BEYOND = 1e-6  # of the load may lie beyond the mesh
 _WIDEN = 0.02  # power of that load by which the mesh grows: it may fall off as r^-50
+_WIDEST = 4.0  # times the size that the pressure on the rings asks for
 _RESTART = 20  # steps after which a bad first guess is given up
 _STEPS = 120
 
@@ -75,7 +76,7 @@ def rise_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
 
 
 @cache
-def _compliance(rings: int) -> np.ndarray:
+def compliance(rings: int) -> np.ndarray:
     """Displacement at the rings and at the end per pressure at them, times E* over the size.
 
     The end neither carries any nor gives way: what lies beyond stands for itself, so that the
@@ -86,7 +87,7 @@ def _compliance(rings: int) -> np.ndarray:
 
 def _displacement(contact: Rough, size: jax.Array, pressure: jax.Array, rings: int) -> jax.Array:
     """Displacement [m] of the rings and of the end under a pressure [Pa] on them."""
-    return size / contact.modulus * (_compliance(rings) @ pressure)
+    return size / contact.modulus * (compliance(rings) @ pressure)
 
 
 def _pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -124,7 +125,7 @@ def settle(
     def step(now: _Step) -> _Step:
         pressure, slope = _pressed(contact, thresholds, now.h)
         right = now.h - safe - _displacement(contact, size, pressure, rings)
-        move = nearly_solved(_compliance(rings), size / contact.modulus * slope, right)
+        move = nearly_solved(compliance(rings), size / contact.modulus * slope, right)
         change = jnp.max(jnp.abs(move) / (rms + jnp.abs(now.h)))
         rate = jnp.maximum(change / now.change, _INEXACT)
         load = jnp.sum(area * jnp.abs(pressure))
@@ -155,7 +156,7 @@ def rates(
 
 def _matrix(contact: Rough, size: jax.Array, slope: jax.Array, rings: int) -> jax.Array:
     """Change of what a separation leaves over, per change of the separation."""
-    return jnp.eye(len(slope)) - _compliance(rings) * (size / contact.modulus * slope)
+    return jnp.eye(len(slope)) - compliance(rings) * (size / contact.modulus * slope)
 
 
 @eqx.filter_custom_jvp
@@ -203,23 +204,25 @@ def asked_size(rest: Rest, rings: int, beyond: jax.Array | float = 0.0) -> jax.A
     The mean is weighted with the pressure's magnitude: the radius of a Hertz contact, and
     1.6 standard deviations of a contact of Gaussian tails. More where more of the load than a
     millionth lies ``beyond`` the mesh (over the size squared [Pa]), as of liquid about a small
-    contact.
+    contact, but never more than four times as much.
     """
     mesh = ring_mesh(rings)
     weight = mesh.area * jnp.abs(rest.pressure)
-    total = jnp.sum(weight) + beyond
-    some = total > 0.0
-    total = jnp.where(some, total, 1.0)
-    ratio = jnp.sqrt(2.5 * (weight @ mesh.radius**2) / total)
-    ratio = jnp.maximum(ratio, (beyond / total / _BEYOND) ** _WIDEN)
+    load = jnp.sum(weight)
+    some = load > 0.0
+    load = jnp.where(some, load, 1.0)
+    ratio = jnp.sqrt(2.5 * (weight @ mesh.radius**2) / load)
+    wider = (beyond / (load + beyond) / _BEYOND) ** _WIDEN
+    ratio = jnp.maximum(ratio, jnp.minimum(wider, _WIDEST * ratio))
     return jnp.where(some, jnp.clip(ratio, 0.2, 3.0), 1.0)
 
 
 def beyond(contact: Rough, size: jax.Array, end: jax.Array) -> jax.Array:
-    """Load that may lie beyond the mesh where its end is at separation ``end``, over size^2 [Pa].
+    """Load of bonds beyond the mesh where its end is at separation ``end``, over size^2 [Pa].
 
-    With all bonds that can hold there: a mesh is kept while a body parts.
+    Of all that can hold there: a mesh is kept while a body parts.
     """
-    torn = contact.interface.torn(end)
+    torn, fresh = contact.interface.torn(end), contact.interface.fresh(end)
     force = contact.interface.pressure(end, torn, lift=1)
+    force = force - contact.interface.pressure(end, fresh, lift=1)
     return 2.0 * pi * contact.shape.radius * jnp.abs(force) / size**2

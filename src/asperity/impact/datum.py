@@ -40,9 +40,9 @@ class Datum(NamedTuple):
 
 def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
     """Static equilibrium on a branch of approach."""
-    values = table.values[branch]
+    values, still = table.values[branch], jax.lax.stop_gradient(weight)
     place, panel, found = _outermost(
-        table.ends, values[..., FORCE], lambda force: force - (1.0 + 1e-9) * weight
+        table.ends, values[..., FORCE], lambda force: force - (1.0 + 1e-9) * still
     )
     x = local(table.ends[panel], table.ends[panel + 1], place)
     excess = chebyshev_sum(values[panel, :, FORCE], x) - weight
@@ -60,7 +60,8 @@ def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
 
 def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:
     """The outermost separation [m] at which the size of a branch's force is above ``least``."""
-    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) - least)
+    still = jax.lax.stop_gradient(least)
+    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) - still)
     x = local(ends[panel], ends[panel + 1], place)
     carried = chebyshev_sum(force[panel], x)
     # Where the force jumps over that size there is no root to follow, only an end of a panel.
@@ -70,7 +71,7 @@ def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:
 
 
 def _carrying(place: jax.Array, excess: jax.Array, slope: jax.Array) -> jax.Array:
-    """A place found by bisection, with the derivative that a Newton step to it has."""
+    """A place that was found, with the derivative that a Newton step to it has."""
     slope = jax.lax.stop_gradient(slope)
     correction = excess / jnp.where(slope == 0.0, 1.0, slope)
     return place - (correction - jax.lax.stop_gradient(correction))

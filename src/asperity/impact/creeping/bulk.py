@@ -10,6 +10,7 @@ import numpy as np
 from ..._jax import jax, jnp
 from ...contact.creep import Creep
 from ...contact.elastic import ElasticContact
+from ...contact.settling import compliance
 from ...halfspace import ring_mesh
 from ...interface import Memory as Thresholds
 from ...laws.base import Real
@@ -57,7 +58,7 @@ class Bulk(NamedTuple):
     def of(cls, creep: Creep, size: jax.Array) -> Bulk:
         contact: Any = creep.contact
         mesh = ring_mesh(contact.rings)
-        rows = np.concatenate([mesh.compliance, mesh.end_compliance[None]])
+        rows = compliance(contact.rings)[:, :-1]
         around = jnp.asarray(2.0 * pi * contact.shape.radius)
         area = jnp.asarray(mesh.area) * size**2
         excess, pace = 1.0 / creep.ratio - 1.0, creep.ratio / creep.time

@@ -16,8 +16,9 @@ from numpy.polynomial import legendre
 
 from ..._jax import jax, jnp
 from ...contact.creep import Creep
+from ...contact.resolution import fills_by_contact
 from ...contact.settling import Rest as Settled
-from ...contact.settling import asked_size
+from ...contact.settling import asked_size, beyond
 from ...interface import Memory as Thresholds
 from ...laws.base import Real
 from ...program import kept
@@ -127,7 +128,9 @@ def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
     displaced = jnp.max(jnp.abs(bulk.excess * (bulk.rows @ off.crept)))
     error = jnp.abs(jnp.stack([off.separation, off.speed, displaced, off.heat]))
     pressure, _ = bulk.pressed(end.gaps, end.thresholds)
-    fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings)
+    fills = fills_by_contact(bulk.contact.interface)
+    more = beyond(bulk.contact, bulk.size, end.gaps[-1]) if fills else 0.0
+    fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings, more)
     return Step(
         end, jnp.stack([rates.speed[-1], rates.heat[-1]]), row_of(bulk, end),
         jnp.append(by_law, change.heat), fit, error, jnp.all(solved),

@@ -21,13 +21,15 @@ PATIENCE = 8.0
 _DEATHS = 10
 """Workers of a local cluster that a task may outlive."""
 
-_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "268435456", "MALLOC_MMAP_THRESHOLD_": "268435456"}
-"""Of glibc [bytes]: dask has workers give back each 64 kB, which our arrays then ask for again, at
-half as much time again for a task."""
+_MEMORY = {"MALLOC_TRIM_THRESHOLD_": "33554432", "MALLOC_MMAP_THRESHOLD_": "33554432"}
+"""Of glibc [bytes], whose largest these are: by itself dask has workers give back each 64 kB, which
+our arrays then ask for again, at half as much time again for a task."""
+
+_BY_ITSELF = "65536"
 
 _UNWATCHED = {
-    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
-    "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "1s",
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
 }
 """Of dask: no samples of what a worker does, which nobody looks at, nor of its event loop."""
 
@@ -73,10 +75,13 @@ def local(workers: int) -> Iterator[Any]:
 def _settings(config: Any) -> dict[str, Any]:
     """Of dask: workers of one thread, which say nothing and of which many may die."""
     spawning = "distributed.nanny.pre-spawn-environ"
-    silence = {"DASK_LOGGING__DISTRIBUTED": "critical", **_UNWATCHED}
+    before = config.get(spawning, {})
+    memory = {k: v for k, v in _MEMORY.items() if str(before.get(k, _BY_ITSELF)) == _BY_ITSELF}
+    silence = {"DASK_LOGGING__DISTRIBUTED": "critical"}
     return {
+        **_UNWATCHED,
         "distributed.scheduler.allowed-failures": _DEATHS,
-        spawning: {**config.get(spawning, {}), **ONE_THREAD, **_MEMORY, **silence},
+        spawning: {**before, **ONE_THREAD, **memory, **silence},
     }
 
 
