@@ -291,7 +291,14 @@ def test_a_motion_can_be_stopped(case):
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        ({"counterface.deformation": "half-space"}, "'rigid'"),
+        (
+            {
+                "counterface.deformation": "half-space",
+                "gas.viscosity": "18 uPa s",
+                "gas.slip_length": "75 nm",
+            },
+            "without a film",
+        ),
         ({"capillary.formation": "kelvin"}, "equilibrium"),
         ({"capillary.formation_time": "-1 s"}, "negative"),
         ({"capillary.formation_time": 1e-6}, "unit"),

@@ -13,7 +13,7 @@ from ._jax import jax
 from .case import Case
 from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
-from .contact.creep import CreptContact
+from .contact.creep import Creep, CreptContact
 from .contact.resolution import in_steps
 from .conversion import Flight, measure_ahead
 from .errors import InputError, Outcome, SimulationError
@@ -292,6 +292,8 @@ def _fly_stepped(
 ) -> Flight:
     """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
     body, creep, late = problem.body, problem.creep, problem.late
+    if late is not None and isinstance(contact, ElasticContact):
+        creep = Creep.none(late)
     tell(0.1, "motion")
 
     def made(count: int) -> None:

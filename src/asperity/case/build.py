@@ -174,7 +174,7 @@ def _late(case: Case, contact: Contact) -> LateContact | None:
     time = case.capillary.formation_time
     if not time or LATE not in contact.mechanisms:
         return None
-    assert isinstance(contact, RigidContact | SmoothContact)
+    assert isinstance(contact, RigidContact | ElasticContact | SmoothContact)
     return LateContact(contact, time)
 
 

@@ -104,15 +104,15 @@ class Case(Table):
         return self
 
     def _late_liquid(self) -> None:
-        """Refuse menisci that take time where every place would have a history of its own."""
+        """Refuse menisci that take time on a rough half-space beside gas."""
         time, rough = self.capillary.formation_time, self.roughness is not None
         if not time or self.capillary.model == "none" or self.publication is not None:
             return
-        if rough and self.counterface.deformation != "rigid":
+        if rough and self.counterface.deformation != "rigid" and self.gas is not None:
             raise InputError(
-                "`formation_time` must be absent on a rough half-space, where every place moves "
-                "in its own way and would need its own history in time; take deformation = "
-                f"'rigid'; got {time:.6g} s",
+                "[gas] must be absent beside `formation_time` on a rough half-space, whose motion "
+                "is stepped without a film; take deformation = 'rigid', or no `formation_time`; "
+                f"got {time:.6g} s",
                 key="capillary.formation_time",
             )
 

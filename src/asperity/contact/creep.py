@@ -12,6 +12,7 @@ from ..laws import Hertz
 from ..laws.base import Real, quantity
 from .base import Contact, Held, Memory, State, Way
 from .elastic import ElasticContact
+from .late import LateContact
 from .smooth import SmoothContact
 
 VISCOUS = "viscous"
@@ -30,11 +31,19 @@ class Creep(eqx.Module):
         Relaxed over instantaneous modulus k, in (0, 1].
     time
         Relaxation time [s]. Under a load it creeps with time/k.
+    late
+        What the menisci of rings take time by, on a bulk that does not creep.
     """
 
     contact: Contact
     ratio: Real = quantity()
     time: Real = quantity()
+    late: LateContact | None = None
+
+    @classmethod
+    def none(cls, late: LateContact) -> Creep:
+        """A bulk that does not creep, under menisci that take time."""
+        return cls(late.told, 1.0, 1.0, late)
 
     def relaxed(self) -> CreptContact:
         """The contact after a long time, as what moves slowly meets it."""

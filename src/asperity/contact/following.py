@@ -100,7 +100,7 @@ def _marks(
     fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces = contact.resolved.pieces
     even = np.arange(1.0, pieces) / max(pieces - 1, 1)
-    more = _MUCH_MORE if fills_by_contact(contact.interface) else _MORE
+    more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
     shares = jnp.append(even / fastest, more / slowest)
     ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
@@ -119,7 +119,7 @@ def fitted(
     free: jax.Array,
 ) -> tuple[jax.Array, Rest]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
-    rings, fills = contact.rings, fills_by_contact(contact.interface)
+    rings, fills = contact.rings, fills_by_contact(contact.interface.hysteretic)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
         size, ratio, rest, passes = now

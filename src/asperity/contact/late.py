@@ -15,12 +15,15 @@ from ..interface import Interface
 from ..laws.base import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
 from ..layers import Layer, Layers, Surfaces
 from .base import Contact, Memory, State
+from .elastic import ElasticContact
 from .resolution import Resolution
 from .rigid import RigidContact
 from .smooth import SmoothContact
 
 LATE = "capillary"
 """The mechanism of the bonds that take time; all others form at once."""
+
+_HIGHEST = 1.0  # m: no asperity is higher
 
 
 class Told(Law):
@@ -95,6 +98,7 @@ class Told(Law):
         return self.law.components(gap, bonded)
 
     def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers] | None:
+        bond_gap = jnp.maximum(bond_gap, -_HIGHEST)  # where there is no meniscus at all
         whole = self.law.powers(jnp.maximum(bond_gap, self.law.forming_gap))
         if whole is None:
             return None
@@ -120,8 +124,8 @@ class LateContact(eqx.Module):
     Parameters
     ----------
     contact
-        The contact, a :class:`RigidContact` or a :class:`SmoothContact`, with menisci that
-        form at once.
+        The contact, a :class:`RigidContact`, an :class:`ElasticContact` or a
+        :class:`SmoothContact`, with menisci that form at once.
     time
         Formation time [s], above 0.
 
@@ -130,7 +134,8 @@ class LateContact(eqx.Module):
     Asperities higher than a threshold b have a meniscus. With the separation d of the rigid
     body, b falls towards d - g_form while it is above: db/dt = (d - g_form - b)/time. It rises
     at once to d - g_break. A smooth body is one asperity of height 0: it has a meniscus while
-    b < 0. All other bonds are those of ``contact``.
+    b < 0. On a half-space each ring has its own b and d. All other bonds are those of
+    ``contact``.
     """
 
     told: Contact
@@ -138,7 +143,7 @@ class LateContact(eqx.Module):
     late: int = eqx.field(static=True)
     time: Real = quantity()
 
-    def __init__(self, contact: RigidContact | SmoothContact, time: Real) -> None:
+    def __init__(self, contact: RigidContact | ElasticContact | SmoothContact, time: Real) -> None:
         smooth = isinstance(contact, SmoothContact)
         self.laws = (
             tuple(law for law in terms(contact.law) if law.hysteretic)
@@ -169,6 +174,16 @@ class LateContact(eqx.Module):
         k = self.late
         return (*memory[:k], threshold, *memory[k + 1 :])
 
+    @property
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost at one stroke when a bond of each law forms, and when it breaks.
+
+        Nothing of menisci that form: :meth:`loss` tells that.
+        """
+        formed = [jnp.asarray(law.formation_loss) for law in self.laws]
+        formed[self.late] = jnp.zeros(())
+        return jnp.stack(formed), jnp.stack([jnp.asarray(law.rupture_loss) for law in self.laws])
+
     def loss(self, gap: jax.Array) -> jax.Array:
         """Energy [J] lost when one meniscus forms at a gap [m]."""
         return -self.law.bonded_energy(gap)
@@ -183,9 +198,12 @@ def _told_smooth(contact: Any) -> SmoothContact:
     return dataclasses.replace(contact, law=law)
 
 
-def _told_rough(contact: Any) -> RigidContact:
+def _told_rough(contact: Any) -> RigidContact | ElasticContact:
     told = _told_surfaces(contact.interface)
-    return dataclasses.replace(contact, interface=told, resolved=_UNUSED)
+    answer: RigidContact | ElasticContact = dataclasses.replace(
+        contact, interface=told, resolved=_UNUSED
+    )
+    return answer
 
 
 def _told_surfaces(surfaces: Surfaces) -> Surfaces:

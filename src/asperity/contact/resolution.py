@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import asinh, ceil, hypot
 from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..laws import KelvinFilling
+from ..laws.base import Law
 from ..layers import Surfaces
 from ..program import AT_ONCE, Program
 from ..quadrature import EVEN
@@ -72,17 +74,17 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
         panels = ceil(length / (2.2 * grain))
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
-    fills = fills_by_contact(interface)
+    fills = fills_by_contact(interface.hysteretic)
     panels = ceil(length / (1.7 * grain))
     return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
 
 
-def fills_by_contact(interface: Surfaces) -> bool:
+def fills_by_contact(bonds: Iterable[Law]) -> bool:
     """Whether contact leaves liquid between the surfaces, far wider than itself. Without values.
 
     Liquid that forms at the Kelvin gap leaves as it came, and holds nothing.
     """
-    return any(isinstance(law, KelvinFilling) for law in interface.hysteretic)
+    return any(isinstance(law, KelvinFilling) for law in bonds)
 
 
 _RIGID = (Resolution(7, 16, 2),)

@@ -10,11 +10,13 @@ import numpy as np
 from ..._jax import jax, jnp
 from ...contact.creep import Creep
 from ...contact.elastic import ElasticContact
+from ...contact.late import LateContact
 from ...contact.settling import compliance
 from ...halfspace import ring_mesh
 from ...interface import Memory as Thresholds
 from ...laws.base import Real
 from ...program import kept
+from .waiting import Holding, Waiting
 
 _CLOSE = 1e-13  # change of a separation that is small enough, relative to heights and itself
 _STEPS = 30
@@ -47,6 +49,7 @@ class Bulk(NamedTuple):
     """What the rings' displacement and force are made of."""
 
     contact: ElasticContact
+    late: LateContact | None
     size: jax.Array
     rows: jax.Array
     area: jax.Array
@@ -62,7 +65,8 @@ class Bulk(NamedTuple):
         around = jnp.asarray(2.0 * pi * contact.shape.radius)
         area = jnp.asarray(mesh.area) * size**2
         excess, pace = 1.0 / creep.ratio - 1.0, creep.ratio / creep.time
-        return cls(contact, size, rows * (size / contact.modulus), area, around, excess, pace)
+        rows = rows * (size / contact.modulus)
+        return cls(contact, creep.late, size, rows, area, around, excess, pace)
 
     @property
     def rise(self) -> jax.Array:
@@ -75,6 +79,11 @@ class Bulk(NamedTuple):
         pressure = self.contact.interface.pressure(gaps, held)
         outside = self.contact.interface.pressure(gaps[-1:], tuple(b[-1:] for b in held), lift=1)
         return pressure[:-1], self.area @ pressure[:-1] + self.around * outside[0]
+
+    @property
+    def waiting(self) -> Waiting | None:
+        """Its menisci, where they take time."""
+        return None if self.late is None else Waiting(self.late, self.contact.interface)
 
     def heat(self, pressure: jax.Array, crept: jax.Array) -> jax.Array:
         """Power that the dashpots take [W]."""
@@ -118,7 +127,7 @@ class Rest(NamedTuple):
 
 
 def balanced(
-    bulk: Bulk, held: Thresholds, rest: Rest, guess: jax.Array
+    bulk: Bulk, holding: Holding, rest: Rest, guess: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
     """Separations that agree with their pressures, by Newton's method, and whether they do."""
     surfaces = bulk.contact.interface
@@ -128,10 +137,10 @@ def balanced(
         gaps, _, count = carry
 
         def pressures(gaps: jax.Array) -> jax.Array:
-            return surfaces.pressure(gaps, held)
+            return surfaces.pressure(gaps, holding(gaps))
 
         pressure, slope = jax.jvp(pressures, (gaps,), (jnp.ones_like(gaps),))
-        _, force = bulk.pressed(gaps, held)
+        _, force = bulk.pressed(gaps, holding(gaps))
         missed = gaps - rest.base - rest.rows @ pressure[:-1] - rest.lever * force
         # The force outside the mesh is the pressure's integral from its end.
         by_gap = jnp.append(bulk.area * slope[:-1], -bulk.around * pressure[-1])
@@ -150,7 +159,7 @@ def balanced(
 
 
 def row_of(bulk: Bulk, here: Here) -> jax.Array:
-    """Quantities of the contact in one row, without its field."""
+    """Quantities of the contact in one row, without its field; what creep takes is 0."""
     surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
     inside = surfaces.measure(here.gaps, here.thresholds)
     last = tuple(b[-1:] for b in here.thresholds)
@@ -169,4 +178,5 @@ def row_of(bulk: Bulk, here: Here) -> jax.Array:
     central = jnp.asarray(mesh.axis) @ here.gaps[:-1]
     head = [force, pull, stored, central, whole(inside.touching, outside.touching), bulk.size]
     bonds = whole(inside.bonds, outside.bonds)
-    return jnp.concatenate([jnp.stack(head), bonds, jnp.zeros(1), parts])
+    taken = jnp.zeros(1 if bulk.late is None else 0)
+    return jnp.concatenate([jnp.stack(head), bonds, taken, parts])

@@ -1,4 +1,7 @@
-"""Fall, touch, rebound on a bulk that creeps: every impact from the release to the end."""
+"""Fall, touch, rebound on a bulk that creeps, or on one under menisci that take time to form.
+
+Every impact from the release to the end.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,10 @@ class Bouncing(Protocol):
     def start(self) -> Samples:
         """The sample of the release."""
 
+    @property
+    def threshold(self) -> float:
+        """Threshold of menisci that are on their way [m], 0 where none are."""
+
     def way(self, inwards: bool) -> tuple[str, Samples]:
         """The samples until the body turns, and how they end."""
 
@@ -47,9 +54,10 @@ def fly_creeping(
     Parameters
     ----------
     contact
-        The contact when its bulk has relaxed, with a ``viscous`` loss.
+        The contact when its bulk has relaxed, with a ``viscous`` loss; that with menisci that form
+        at once where they take time.
     creep
-        How it relaxes.
+        How it relaxes, or what takes time on it.
     body
         The body and its release, outside contact.
     prepared
@@ -79,6 +87,7 @@ def fly_creeping(
     while outcome is None:
         try:
             asked()
+            before = bouncing.threshold
             fall = Way(*bouncing.way(inwards=True))
             rise = Way(fall.fate, _none(last))
             if fall.fate == TURNED:
@@ -90,7 +99,7 @@ def fly_creeping(
             break
         done.append(Bounced(last, fall, rise))
         last = done[-1].end
-        outcome = ledger.outcome(done)
+        outcome = ledger.outcome(done, abs(before - bouncing.threshold))
         tell(len(done))
     return *ledger.motion(done, outcome), outcome
 

@@ -55,7 +55,7 @@ class Ledger(NamedTuple):
     Attributes
     ----------
     contact, body
-        What moves on what; the contact has a ``viscous`` loss.
+        What moves on what; the contact has a ``viscous`` loss where its bulk creeps.
     prepared
         The table of the contact when its bulk has relaxed, and the datum.
     limits
@@ -100,17 +100,21 @@ class Ledger(NamedTuple):
         """Height of the next apex above the equilibrium [m]."""
         return float(bounced.end.separation[0]) - float(self.prepared[1].equilibrium)
 
-    def outcome(self, done: Sequence[Bounced]) -> Outcome | None:
-        """How the motion ends with its last impact; None where it goes on."""
+    def outcome(self, done: Sequence[Bounced], waits: float) -> Outcome | None:
+        """How the motion ends with its last impact; None where it goes on.
+
+        Menisci that are on their way, by a threshold that ``waits`` [m], change the cycles to come.
+        """
         last, limits = done[-1], self.limits
         cycle = np.sum(last.end.lost - last.begin.lost)
+        repeats = waits <= LEAST_LOSS * float(self.contact.reach)
         rules = (
             (FAILED in (last.fall.fate, last.rise.fate), Outcome.FAILED),
             (CREPT in (last.fall.fate, last.rise.fate), Outcome.REST),
             (last.rise.fate == LEFT, Outcome.ESCAPED),
             (last.end.time[0] >= limits.time, Outcome.TIME_LIMIT),
             (self.height(last) < limits.rest * self.height(done[0]), Outcome.REST),
-            (cycle < LEAST_LOSS * self.fastest(done[0]), Outcome.OSCILLATING),
+            (repeats and cycle < LEAST_LOSS * self.fastest(done[0]), Outcome.OSCILLATING),
             (len(done) >= limits.impacts, Outcome.MAX_IMPACTS),
         )
         return next((outcome for holds, outcome in rules if holds), None)

@@ -58,11 +58,11 @@ class Step(NamedTuple):
     here
         Its end.
     rates
-        Acceleration [m/s^2] and power of the creep [W] at its end.
+        Acceleration [m/s^2] and power of the creep, or lost on late menisci [W], at its end.
     row
         Quantities of the contact at its end; what creep has taken is left at 0.
     lost
-        Energy lost within it, by law, and by creep last [J].
+        Energy lost within it, by law, and by creep last where the bulk creeps [J].
     fit
         Size of the mesh that the pressure at its end asks for, over the present one.
     error
@@ -81,12 +81,17 @@ class Step(NamedTuple):
 
 
 class _Rates(NamedTuple):
-    """Rates of separation, speed, crept pressure and energy taken, at each stage."""
+    """Rates of separation, speed, crept pressure, energy taken and thresholds, at each stage.
+
+    The energy is that taken by creep, or on menisci that take time; there are thresholds of these
+    alone.
+    """
 
     separation: jax.Array
     speed: jax.Array
     crept: jax.Array
     heat: jax.Array
+    threshold: jax.Array
 
     def along(self, weights: jax.Array) -> _Rates:
         """Sums of the stages' rates."""
@@ -100,8 +105,7 @@ class _Rates(NamedTuple):
 def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
     """Go on for ``span`` [s] on a mesh of a ``size`` [m]."""
     bulk = Bulk.of(creep, jnp.asarray(size))
-    pressure, force = bulk.pressed(here.gaps, here.thresholds)
-    first = _rates(bulk, body, here.speed, here.crept, pressure, force)
+    first = _rates(bulk, body, here.speed, here.crept, here.gaps, here.thresholds)
     blank = _Rates(*(jnp.zeros((6, *jnp.shape(rate))) for rate in first))
 
     def stage(carry: tuple[_Rates, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
@@ -116,25 +120,48 @@ def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
     change = rates.along(span * _WEIGHTS)
     off = rates.along(span * (_WEIGHTS - _LOWER))
     path = jnp.asarray(_LOOKS) @ jnp.concatenate([here.gaps[None], gaps])
-    thresholds, by_law = _bonds(bulk, here.thresholds, path)
+    thresholds, lost = _bonds(bulk, _waited(bulk, here.thresholds, change), path)
     end = Here(
         here.separation + change.separation, here.speed + change.speed, gaps[-1],
         here.crept + change.crept, thresholds,
     )  # fmt: skip
     # Rings that turned within the step hold bonds that the stages did not know of.
     base = end.separation + bulk.rise + bulk.excess * (bulk.rows @ end.crept)
-    settled, agree = balanced(bulk, thresholds, Rest(base, bulk.rows, jnp.zeros(())), gaps[-1])
+    rest = Rest(base, bulk.rows, jnp.zeros(()))
+    settled, agree = balanced(bulk, lambda gaps: thresholds, rest, gaps[-1])
     end, solved = end._replace(gaps=settled), jnp.append(solved, agree)
-    displaced = jnp.max(jnp.abs(bulk.excess * (bulk.rows @ off.crept)))
-    error = jnp.abs(jnp.stack([off.separation, off.speed, displaced, off.heat]))
     pressure, _ = bulk.pressed(end.gaps, end.thresholds)
-    fills = fills_by_contact(bulk.contact.interface)
-    more = beyond(bulk.contact, bulk.size, end.gaps[-1]) if fills else 0.0
+    bonds = bulk.contact.interface.hysteretic if bulk.late is None else bulk.late.laws
+    more = beyond(bulk.contact, bulk.size, end.gaps[-1]) if fills_by_contact(bonds) else 0.0
     fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings, more)
+    if bulk.late is None:
+        lost = jnp.append(lost, change.heat)
+    else:
+        lost = lost.at[bulk.late.late].add(change.heat)
     return Step(
         end, jnp.stack([rates.speed[-1], rates.heat[-1]]), row_of(bulk, end),
-        jnp.append(by_law, change.heat), fit, error, jnp.all(solved),
+        lost, fit, _errors(bulk, end, off), jnp.all(solved),
     )  # fmt: skip
+
+
+def _waited(bulk: Bulk, held: Thresholds, change: _Rates) -> Thresholds:
+    """Memory in which the menisci that take time have gone on forming."""
+    late = bulk.late
+    if late is None:
+        return held
+    return late.with_threshold(held, held[late.late] + change.threshold)
+
+
+def _errors(bulk: Bulk, end: Here, off: _Rates) -> jax.Array:
+    """Errors of a step by those of its changes, see :class:`Step`."""
+    pressed, heat = bulk.excess * off.crept, off.heat
+    if bulk.waiting is not None:
+        pressed = bulk.waiting.pressing(end.gaps, end.thresholds, off.threshold)[:-1]
+        # A threshold that is off leaves a force, over a way of about a rms height.
+        way = jnp.asarray(bulk.contact.interface.heights.rms)
+        heat = jnp.abs(heat) + way * jnp.abs(bulk.area @ pressed)
+    displaced = jnp.max(jnp.abs(bulk.rows @ pressed))
+    return jnp.abs(jnp.stack([off.separation, off.speed, displaced, heat]))
 
 
 def _rates(
@@ -142,12 +169,18 @@ def _rates(
     body: Body,
     speed: jax.Array,
     crept: jax.Array,
-    pressure: jax.Array,
-    force: jax.Array,
+    gaps: jax.Array,
+    held: Thresholds,
 ) -> _Rates:
+    pressure, force = bulk.pressed(gaps, held)
+    falling, heat = jnp.zeros(0), bulk.heat(pressure, crept)
+    if bulk.waiting is not None:
+        falling = bulk.waiting.rate(gaps, held)
+        inside, outside = bulk.waiting.power(gaps, held, falling, bulk.around)
+        heat = bulk.area @ inside + outside
     return _Rates(
         jnp.asarray(speed), force / body.mass - body.gravity, bulk.pace * (pressure - crept),
-        bulk.heat(pressure, crept),
+        heat, falling,
     )  # fmt: skip
 
 
@@ -162,11 +195,18 @@ def _solved(
     base = place + bulk.rise + bulk.excess * (bulk.rows @ crept)
     rows = bulk.rows * (1.0 + bulk.excess * gain / (1.0 + gain))
     rest = Rest(base, rows, span**2 / body.mass)
-    gaps, solved = balanced(bulk, here.thresholds, rest, guess)
-    pressure, force = bulk.pressed(gaps, here.thresholds)
+
+    def holding(gaps: jax.Array) -> Thresholds:
+        if bulk.waiting is None:
+            return here.thresholds
+        return bulk.waiting.holding(here.thresholds, known.threshold, span)(gaps)
+
+    gaps, solved = balanced(bulk, holding, rest, guess)
+    held = holding(gaps)
+    pressure, force = bulk.pressed(gaps, held)
     crept = crept + gain / (1.0 + gain) * pressure
     speed = speed + span * force / body.mass
-    return gaps, _rates(bulk, body, speed, crept, pressure, force), solved
+    return gaps, _rates(bulk, body, speed, crept, gaps, held), solved
 
 
 def _bonds(bulk: Bulk, held: Thresholds, path: jax.Array) -> tuple[Thresholds, jax.Array]:
@@ -177,7 +217,7 @@ def _bonds(bulk: Bulk, held: Thresholds, path: jax.Array) -> tuple[Thresholds, j
     surfaces = bulk.contact.interface
     if not surfaces.mechanisms:
         return held, jnp.zeros(0)
-    formed, broken = surfaces.losses()
+    formed, broken = surfaces.losses() if bulk.late is None else bulk.late.losses
 
     def count(gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
         inside = surfaces.measure(gaps, held).bonds[:, :-1]

@@ -12,6 +12,7 @@ from ..._jax import jax, jnp
 from ...contact.creep import Creep
 from ...contact.elastic import ElasticContact
 from ...contact.following import first_size
+from ...interface import Memory as Thresholds
 from ...program import Program
 from ..history import Body
 from ..legs import CREPT, FAILED, LEFT, TURNED, Samples
@@ -19,6 +20,7 @@ from ..table import CENTRAL, STORED, quantities
 from .bulk import Freed, Here, freed
 from .flight_times import flight_times
 from .rings import Step, step
+from .waiting import Flight
 
 TOLERANCE = 1e-9
 """Error of a step, relative to heights, speed and energy of the impact."""
@@ -65,10 +67,14 @@ class RoughBounce:
         self._gravity, self._mass = float(body.gravity), float(body.mass)
         rings = told.rings
         self.layout = quantities(told)
-        self.lost = np.zeros(len(told.mechanisms) + 1)
+        self._late = creep.late
+        self.lost = np.zeros(len(told.mechanisms) + (creep.late is None))
         self.time, self.fit = 0.0, 1.0
-        thresholds = told.interface.fresh(np.zeros(rings + 1))
         gaps = float(body.release) + self._rise
+        thresholds = told.interface.fresh(np.zeros(rings + 1))
+        if creep.late is not None:  # in equilibrium with the vapour
+            goal = gaps - float(creep.late.law.forming_gap)
+            thresholds = creep.late.with_threshold(thresholds, jnp.asarray(goal))
         here = Here(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
         self.here: Here = jax.tree_util.tree_map(np.asarray, here)
         # A body may be let go at rest where forces begin; a fall by a height is its first scale.
@@ -123,8 +129,10 @@ class RoughBounce:
         scale = min(1.0 / self._rate, self._rms / fast)
         samples = self._flown(left, flight_times(span, scale))
         share = np.exp(-self._rate * span)
+        thresholds = self._waited(span)
         place = float(samples.separation[-1])
         self.here = self.here._replace(
+            thresholds=thresholds,
             separation=np.asarray(place),
             speed=np.asarray(0.0 if fate == TURNED else samples.speed[-1]),
             crept=self.here.crept * share,
@@ -135,24 +143,46 @@ class RoughBounce:
         self.fastest = max(self.fastest, 0.5 * self._mass * float(samples.speed[-1]) ** 2)
         return fate, samples
 
+    def _waited(self, span: float) -> Thresholds:
+        """Thresholds after a flight: those of menisci that take time go on falling, or are left.
+
+        All others stand where they are, until the body comes back.
+        """
+        held, late, here = self.here.thresholds, self._late, self.here
+        if late is None:
+            return held
+        form, part = float(late.law.forming_gap), float(late.law.breaking_gap)
+        flight = Flight(np.asarray(here.gaps) - form, float(here.speed), self._gravity)
+        after = flight.follow(np.asarray(held[late.late]), span, 1.0 / float(late.time))
+        return late.with_threshold(
+            held, np.maximum(after, flight.goal(np.asarray(span)) + form - part)
+        )
+
+    @property
+    def threshold(self) -> float:
+        """Threshold of the menisci that take time at the mesh's end [m], 0 where none do."""
+        return 0.0 if self._late is None else float(self.here.thresholds[self._late.late][-1])
+
     def _flown(self, left: Freed, spans: np.ndarray) -> Samples:
         """Samples of a flight at times from now."""
         share = np.exp(-self._rate * spans)
         place = float(self.here.separation) + spans * (
             float(self.here.speed) - 0.5 * self._gravity * spans
         )
-        rows = np.zeros((spans.size, self.layout.components.stop + 1))
+        rows = np.zeros((spans.size, self.layout.components.stop + (self._late is None)))
         rows[:, STORED] = float(left.stored) * share**2
         rows[:, CENTRAL] = place + float(left.axis) * share
         lost = np.repeat(self.lost[None], spans.size, axis=0)
-        lost[:, -1] += float(left.stored) * (1.0 - share**2)
+        if self._late is None:
+            lost[:, -1] += float(left.stored) * (1.0 - share**2)
         self._book(rows, lost)
         speed = float(self.here.speed) - self._gravity * spans
         return Samples(self.time + spans, place, speed, rows, lost)
 
     def _book(self, rows: np.ndarray, lost: np.ndarray) -> None:
         """What creep has taken, in its column."""
-        rows[:, self.layout.bonds.stop] = lost[:, -1]
+        if self._late is None:
+            rows[:, self.layout.bonds.stop] = lost[:, -1]
 
     def _go(self, inwards: bool) -> tuple[str, Samples]:
         """One step within reach of the forces, that ends where the body turns."""

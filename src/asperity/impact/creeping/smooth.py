@@ -53,6 +53,11 @@ class SmoothBounce:
             -top / self._length,
         )  # fmt: skip
 
+    @property
+    def threshold(self) -> float:
+        """No meniscus is on its way."""
+        return 0.0
+
     def start(self) -> Samples:
         """The sample of the release."""
         depth, speed = self._bounce.state[:2]

@@ -1,0 +1,122 @@
+"""Menisci that take time on the rings of a half-space: limits, the rigid body, the ledger."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import asperity
+from asperity import InputError, Outcome
+from asperity.case.build import build
+from asperity.contact.late import LateContact
+from asperity.flying import flown, silently
+from asperity.impact.creeping.waiting import Flight
+
+TURNS = ("deepest", "apex", "deepest_time", "apex_time")
+
+
+@pytest.fixture(scope="module")
+def case():
+    return asperity.load("published-exact").replace(
+        {"numerics.rings": 48, "numerics.max_impacts": 2, "capillary.formation_time": "10 us"}
+    )
+
+
+def impacts(case):
+    return flown(case, build(case), silently, None).motion.impacts
+
+
+def lost(case):
+    """On menisci, in the first impact [J]."""
+    return float(impacts(case).lost[0, 0])
+
+
+def test_short_formation_tends_to_formation_at_once_in_proportion_to_the_time(case):
+    at_once = lost(case.replace({"capillary.formation_time": None}))
+    more = [
+        lost(case.replace({"capillary.formation_time": t})) - at_once for t in ("10 ns", "2 ns")
+    ]
+    assert more[0] == pytest.approx(5.0 * more[1], rel=0.02)
+    assert 0.0 < more[0] < 0.02 * at_once
+
+
+def test_long_formation_tends_to_the_dry_motion(case):
+    """From where no asperity is wet at the release."""
+    case = case.replace({"impact.release_gap": "100 nm"})
+    dry = impacts(case.replace({"capillary.model": "none"}))
+    late = impacts(case.replace({"capillary.formation_time": "1000 s"}))
+    for turn in TURNS:
+        found, wanted = float(getattr(late, turn)[0]), float(getattr(dry, turn)[0])
+        assert found == pytest.approx(wanted, rel=5e-8)
+    assert 0.0 < float(late.lost[0, 0]) < 1e-8 * lost(case)
+
+
+@pytest.mark.parametrize("time", ["300 ns", "10 us", "1 ms"])
+def test_a_stiff_half_space_is_the_rigid_body(case, time):
+    """Another method, of order 15: one threshold for all places, polynomials in time."""
+    here = case.replace({"capillary.formation_time": time})
+    problem = build(here)
+    hard = dataclasses.replace(problem.contact, modulus=1e7 * problem.contact.modulus)
+    late = LateContact(hard, problem.late.time)
+    found = flown(here, problem._replace(contact=hard, late=late), silently, None).motion.impacts
+    wanted = impacts(here.replace({"counterface.deformation": "rigid"}))
+    for turn in TURNS:
+        np.testing.assert_allclose(getattr(found, turn), getattr(wanted, turn), rtol=1e-7)
+    np.testing.assert_allclose(found.lost, wanted.lost, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"capillary.contact_angle": "20 deg"},
+        {
+            "capillary.model": "kelvin-filling",
+            "capillary.surface_rms_height": "11 nm",
+            "impact.release_gap": "200 nm",
+        },
+        {
+            "adhesion.model": "jkr",
+            "adhesion.work": "50 mJ/m^2",
+            "roughness.asperity_radius": "200 nm",
+            "impact.release_gap": "120 nm",
+        },
+    ],
+    ids=["wet", "filling", "beside JKR"],
+)
+def test_the_ledger_closes(case, changes):
+    result = asperity.solve(case.replace({**changes, "capillary.formation_time": "2 us"}))
+    assert result.ledger["closure"] < 2e-7
+    assert result.outcome is Outcome.MAX_IMPACTS
+    assert all(value > 0.0 for value in result.ledger["lost"].values())
+
+
+def test_a_wait_longer_than_the_contact_is_told(case):
+    result = asperity.solve(case.replace({"capillary.formation_time": "1 ms"}))
+    assert any("menisci take 0.001 s to form" in line for line in result.warnings)
+    assert result.ledger["closure"] < 1e-7
+
+
+def test_gas_is_refused_beside_it(case):
+    with pytest.raises(InputError, match="without a film") as raised:
+        case.replace({"gas.viscosity": "18.2 uPa s", "gas.slip_length": "75 nm"})
+    assert raised.value.key == "capillary.formation_time"
+
+
+@pytest.mark.parametrize("pace", [1e-3, 0.3, 3.0, 300.0])
+@pytest.mark.parametrize(("speed", "span"), [(-0.5, 1.2), (1.5, 1.2), (0.0, 2.0), (-1.0, 0.0)])
+def test_thresholds_in_flight_are_those_of_an_integration(pace, speed, span):
+    """Falling, and rising until they are met; from beside, above and below where they lag."""
+    begun, gravity = np.array([0.4, 1.0, 1.3, 2.0]), 1.0
+    flight = Flight(np.ones(4), speed, gravity)
+
+    def rate(t, b):
+        goal = 1.0 + speed * t - 0.5 * gravity * t**2
+        return pace * np.minimum(goal - b, 0.0)
+
+    found = flight.follow(begun, span, pace)
+    if span == 0.0:
+        np.testing.assert_array_equal(found, begun)
+        return
+    judge = solve_ivp(rate, (0.0, span), begun, "Radau", rtol=1e-10, atol=1e-12, max_step=0.01)
+    np.testing.assert_allclose(found, judge.y[:, -1], atol=1e-7)
