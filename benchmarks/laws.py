@@ -36,7 +36,7 @@ LAWS: dict[str, Callable[[float], Law]] = {
 }
 
 
-def _seconds(action: Callable[[], Any], repeats: int = 5) -> float:
+def _seconds(action: Callable[[], Any], repeats: int = 15) -> float:
     jax.block_until_ready(action())
     times = []
     for _ in range(repeats):
@@ -99,7 +99,7 @@ def _motions(
         return motion.impacts.apex_time
 
     batch = jax.jit(jax.vmap(one))
-    return _seconds(lambda: batch(speeds), repeats=2)
+    return _seconds(lambda: batch(speeds), repeats=7)
 
 
 def rows() -> list[tuple[str, str]]:

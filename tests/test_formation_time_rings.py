@@ -75,12 +75,15 @@ def test_a_stiff_half_space_is_the_rigid_body(case, time):
             "capillary.surface_rms_height": "11 nm",
             "impact.release_gap": "200 nm",
         },
-        {
-            "adhesion.model": "jkr",
-            "adhesion.work": "50 mJ/m^2",
-            "roughness.asperity_radius": "200 nm",
-            "impact.release_gap": "120 nm",
-        },
+        pytest.param(
+            {
+                "adhesion.model": "jkr",
+                "adhesion.work": "50 mJ/m^2",
+                "roughness.asperity_radius": "200 nm",
+                "impact.release_gap": "120 nm",
+            },
+            marks=pytest.mark.long,
+        ),
     ],
     ids=["wet", "filling", "beside JKR"],
 )

@@ -93,6 +93,7 @@ def works(contact, table, place, parting):
     return work(ours.low, ours.high, ours.values), work(low, high, values) + left
 
 
+@pytest.mark.long
 def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
     impact = float(both[1][0].fastest[0])
     stated, real = [], []

@@ -85,6 +85,7 @@ def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms,
     assert asperity.solve(case).ledger["closure"] < 1e-6
 
 
+@pytest.mark.long
 def test_a_ledger_closes_where_liquid_fills_a_surface_that_creeps():
     """At a hundredth of the speed: liquid, and all it leaves on the mesh's end, counts for most."""
     case = asperity.load("published-exact").replace(

@@ -550,6 +550,10 @@ KINDS: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
         {**RIGID, **FEW, "capillary.formation_time": "1 us"},
         (0.0, 0.25, 1.0),
     ),
+    "menisci that take time on a half-space": (
+        {**FEW, "capillary.formation_time": "1 us", "numerics.rings": 24},
+        (0.0, 0.25, 1.0),
+    ),
     "bulk that creeps": (
         {
             **FEW,
@@ -649,7 +653,14 @@ def test_compilations_are_heard():
     assert found
 
 
-@pytest.mark.parametrize("kind", KINDS)
+STEPPED = {"menisci that take time on a half-space", "bulk that creeps"}
+"""Kinds of which every answer takes seconds."""
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [pytest.param(kind, marks=pytest.mark.long) if kind in STEPPED else kind for kind in KINDS],
+)
 def test_a_slider_never_compiles(client: TestClient, kind: str, real: None):
     """Values are traced: after one answer to a case, none of its numbers needs a new program."""
     form = client.get("/api/form").json()["tables"]
