@@ -21,6 +21,11 @@ def disc(mesh):
     return np.where(mesh.radius < 1.0, 1.0, 0.0)
 
 
+def at_axis(mesh, pressure):
+    """Displacement at the axis, times E*."""
+    return mesh.axis @ (mesh.compliance @ pressure)
+
+
 def test_rings_carry_the_load_of_their_pressure():
     mesh = ring_mesh(96)
     pressure = np.exp(-2.5 * mesh.radius**2)  # as wide as the mesh of a Gaussian contact
@@ -30,7 +35,7 @@ def test_rings_carry_the_load_of_their_pressure():
 
 def test_uniform_pressure_sinks_the_centre_by_two_p_a_over_the_modulus():
     mesh = ring_mesh(96)
-    assert mesh.centre_compliance @ disc(mesh) == pytest.approx(2.0, rel=1e-11)
+    assert at_axis(mesh, disc(mesh)) == pytest.approx(2.0, rel=1e-11)
 
 
 def test_uniform_pressure_displaces_by_the_elliptic_integral():
@@ -48,17 +53,14 @@ def test_hertz_pressure_gives_the_hertz_displacement(rings, bound):
     pressure = np.sqrt(np.maximum(1.0 - mesh.radius**2, 0.0))
     found = mesh.compliance @ pressure
     np.testing.assert_allclose(found, hertz_displacement(mesh.radius), rtol=bound)
-    assert mesh.centre_compliance @ pressure == pytest.approx(pi / 2.0, rel=bound)
-    assert mesh.end_compliance @ pressure == pytest.approx(
-        float(hertz_displacement(np.asarray(mesh.end))), rel=bound
-    )
+    assert at_axis(mesh, pressure) == pytest.approx(pi / 2.0, rel=bound)
 
 
 def gaussian_error(rings):
     """Of the displacement at the axis under exp(-r^2), sqrt(pi)/E* on an endless mesh."""
     mesh = ring_mesh(rings)
     exact = sqrt(pi) * erf(mesh.end)
-    return abs(mesh.centre_compliance @ np.exp(-(mesh.radius**2)) / exact - 1.0)
+    return abs(at_axis(mesh, np.exp(-(mesh.radius**2))) / exact - 1.0)
 
 
 def test_smooth_pressure_converges_with_a_high_order():
@@ -72,10 +74,10 @@ def test_far_displacement_is_that_of_a_point_load():
     """u -> load / (pi E* r)."""
     mesh = ring_mesh(96)
     pressure = np.exp(-4.0 * mesh.radius**2)
-    load = mesh.area @ pressure
-    correction = 1.0 + 0.25 * 0.25 / mesh.end**2
-    exact = load / (pi * mesh.end) * correction
-    assert mesh.end_compliance @ pressure == pytest.approx(exact, rel=1e-3)
+    load, far = mesh.area @ pressure, mesh.radius[-1]
+    correction = 1.0 + 0.25 * 0.25 / far**2
+    exact = load / (pi * far) * correction
+    assert mesh.compliance[-1] @ pressure == pytest.approx(exact, rel=1e-3)
 
 
 def test_displacements_are_reciprocal():

@@ -37,10 +37,6 @@ class Rings(NamedTuple):
         Displacement at ring i per pressure at ring j, times E*, shape (n, n).
     end
         Radius where the mesh ends.
-    end_compliance
-        Displacement at the end per pressure at ring j, times E*, shape (n,).
-    centre_compliance
-        Displacement at the axis, likewise, shape (n,).
     axis
         Weights that give an even function of the radius at the axis from its values, (n,).
     """
@@ -49,8 +45,6 @@ class Rings(NamedTuple):
     area: np.ndarray
     compliance: np.ndarray
     end: float
-    end_compliance: np.ndarray
-    centre_compliance: np.ndarray
     axis: np.ndarray
 
 
@@ -63,11 +57,10 @@ def ring_mesh(rings: int) -> Rings:
     radius = (0.5 * (low + high) + 0.5 * (high - low) * node).ravel()
     area = 2.0 * np.pi * radius * (0.5 * (high - low) * weight).ravel()
     end = float(_PANELS[-1])
-    targets = np.concatenate([radius, [end, 0.0]])
-    matrix = np.concatenate([_panel_columns(targets, k, node) for k in range(PANEL_COUNT)], axis=1)
+    matrix = np.concatenate([_panel_columns(radius, k, node) for k in range(PANEL_COUNT)], axis=1)
     axis = np.zeros_like(radius)
     axis[:order] = _lagrange(radius[:order] ** 2, np.zeros(1))[:, 0]
-    return Rings(radius, area, matrix[:-2], end, matrix[-2], matrix[-1], axis)
+    return Rings(radius, area, matrix, end, axis)
 
 
 def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:
