@@ -688,6 +688,7 @@ def test_a_slider_never_compiles(client: TestClient, kind: str, real: None):
 AUTO = {"counterface.deformation": "rigid", "adhesion.model": "auto", **FEW}
 
 
+@pytest.mark.long
 def test_a_slider_across_a_border_of_laws_compiles_nothing_once_all_are(
     client: TestClient, real: None
 ):
