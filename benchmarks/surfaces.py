@@ -97,7 +97,7 @@ def _motions() -> list[Row]:
     """Motions on summits over those on their Gaussian fit."""
     heights, radii = _summits(1_000_000)
     speeds, out = np.linspace(1e-3, 1e-2, SPEEDS), []
-    for name, law, some in (("DMT, menisci", _wet, SPEEDS), ("JKR, 6 classes", _jkr, 4)):
+    for name, law, some in (("DMT, menisci", _wet, SPEEDS), ("JKR, 6 classes", _jkr, 50)):
         fitted = Interface(law(RADIUS), Gaussian(RMS), DENSITY)
         summits = measured_surface(law, heights, radii, DENSITY, radius=RADIUS)
         taken = [_batch(surface, speeds[:some]) for surface in (summits, fitted)]

@@ -13,7 +13,7 @@ from asperity.contact import RigidContact
 from asperity.errors import Tolerance
 from asperity.impact import Body, simulate
 from asperity.interface import Interface
-from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Maugis, Meniscus
+from asperity.laws import Bradley, ByKelvinGap, ConstantVolume, Dmt, Hertz, Jkr, Maugis, Meniscus
 from asperity.layers import Layers
 from asperity.measures import measure
 from asperity.radius_classes import RadiusClasses, members
@@ -224,6 +224,71 @@ def test_classes_of_one_radius_add_up_to_the_surface_without_classes():
     ours, _ = followed(surface, PATH)
     apart = [followed(part, PATH)[0] for part in kept]
     np.testing.assert_allclose(ours, sum(apart), rtol=1e-8, atol=1e-12 * np.max(abs(ours)))
+
+
+TABULATED = {
+    "jkr": JKR,
+    "stiff jkr": lambda radius: Jkr(radius, 50e9, W),
+    "maugis": lambda radius: Maugis(radius, E, W, 1e-9),
+}
+
+
+@pytest.fixture(scope="module", params=TABULATED)
+def two_ways(request):
+    """Two classes whose branches are tabulated, and the same by quadrature throughout."""
+    parts = measured_surface(
+        TABULATED[request.param], HEIGHTS, RADII, N, radius=RADIUS, classes=2
+    ).parts
+    tabulated, plain = RadiusClasses(parts), RadiusClasses(parts, tabulated=False)
+    assert tabulated.tables
+    assert not plain.tables
+    return tabulated, plain
+
+
+@eqx.filter_jit
+def _all_means(surface, places, memory, lift):
+    return surface.measure(places, memory, lift)
+
+
+@pytest.mark.parametrize("lift", [0, 1])
+def test_tabulated_branches_are_the_quadratures_from_far_below_the_heights_to_the_top(
+    two_ways, lift
+):
+    """Pressures to the quadrature's 1e-5 of what is there 2 rms up, forces on
+    paraboloids to the 1e-6 that quintic cells leave."""
+    places = jnp.asarray(SIGMA * np.concatenate([-np.geomspace(400, 8, 9), np.linspace(-7, 6, 27)]))
+    for memory in (two_ways[0].fresh(), two_ways[0].torn(), (jnp.asarray(1e-9),) * 2):
+        ours, exact = (_all_means(each, places, memory, lift) for each in two_ways)
+        for one, other in zip(ours, exact, strict=True):
+            one, other = np.atleast_2d(one), np.atleast_2d(other)
+            least = np.max(np.abs(other[:, places > 2.0 * SIGMA]), axis=1, keepdims=True)
+            off = np.abs(one - other) / (np.abs(other) + least)
+            assert off.max() < (1e-6 if lift else 1e-5)
+
+
+def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(two_ways):
+    """p = -dF/dh at fixed gaps of the bonds, and a work of approach that is the energy."""
+    surface, _ = two_ways
+    places = jnp.asarray(SIGMA * np.linspace(-20.0, 3.0, 24))
+    for parting in (surface.fresh(), surface.torn()):
+        slope = jax.jvp(
+            lambda h, m=parting: surface.pressure(h, m, 1), (places,), (1 + 0 * places,)
+        )
+        pressure = surface.pressure(places, parting)
+        largest = float(jnp.max(jnp.abs(pressure)))
+        np.testing.assert_allclose(-slope[1], pressure, rtol=1e-5, atol=1e-7 * largest)
+    np.testing.assert_array_equal(
+        surface.work_of_approach(places), surface.energy(places, surface.fresh())
+    )
+
+
+def test_laws_that_act_before_touch_have_no_table():
+    """Bridges formed at the Kelvin gap: every mean is a quadrature."""
+    make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 1.3e-9, ByKelvinGap())  # noqa: E731
+    surface = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=2)
+    assert isinstance(surface, RadiusClasses)
+    assert not surface.tables
+    assert measured_surface(JKR, HEIGHTS, RADII, N, radius=RADIUS, classes=2).tables
 
 
 @pytest.mark.long

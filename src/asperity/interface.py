@@ -111,10 +111,7 @@ class Interface(eqx.Module):
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """The memory after the separation moved monotonically to ``separation`` [m]."""
-        return tuple(
-            separation - self._bond_gap(law, b, separation)
-            for law, b in zip(self.hysteretic, memory, strict=True)
-        )
+        return tuple(separation - gap for gap in self.bond_gaps(separation, memory))
 
     @property
     def closed(self) -> bool:
@@ -199,6 +196,23 @@ class Interface(eqx.Module):
             bonds=jnp.stack(bonds) if bonds else jnp.zeros((0, *separation.shape)),
             touching=sums["touching"],
         )
+
+    def counted(
+        self, separation: jax.Array, memory: Memory, lift: int = 0
+    ) -> tuple[jax.Array, jax.Array]:
+        """Touching asperities and bonds by law, as in :class:`Means`."""
+        edges: tuple[Real, ...] = (0.0, *self.bond_gaps(separation, memory))
+        powers = tuple(TruncatedPower(1.0, 0.0, edge) for edge in edges)
+        sizes = (0.0, *(law.radius_power for law in self.hysteretic))
+        found = self.density * self.heights.mean_powers(powers, lift, separation, sizes)
+        return found[0], found[1:]
+
+    def bond_gaps(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
+        """Gap [m] of each law that remembers below which asperities are bonded."""
+        return [
+            self._bond_gap(law, b, separation)
+            for law, b in zip(self.hysteretic, memory, strict=True)
+        ]
 
     def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import ceil
 from typing import NamedTuple
 
@@ -103,7 +104,7 @@ def means_near(
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
     found = jnp.stack([jnp.einsum("ij,pij->p", row, shares) for row in values])
     if law.hysteretic and not near.level:
-        found = found + _between(law, heights, edge, edges, separations, asked)
+        found = found + between(law, heights, edge, edges, separations, asked)
     if asked.lift == 0 or law.only_bonded:
         return found
     whole = heights.tail(1, jnp.asarray(heights.bottom), law.radius_power)
@@ -125,17 +126,23 @@ def _kinks(law: Law) -> jax.Array:
     return jnp.stack([jnp.asarray(gap, float) for gap in law.kinks])
 
 
-def _between(
+def between(
     law: Law,
     heights: Heights,
     edge: jax.Array,
     edges: jax.Array,
     separations: jax.Array,
     asked: Asked,
+    nodes: int | None = None,
 ) -> jax.Array:
-    """What bonds of gaps between the lowest edge and each place's own add to its mean."""
-    steps = np.linspace(0.0, 1.0, _HALVES + 1)
-    gap, weight = jax.vmap(points)(edge + (edges - edge)[:, None] * steps)
+    """What bonds of gaps between ``edge`` and each place's own of ``edges`` add to its mean.
+
+    ``edge`` is the least of them; ``edges`` and ``separations`` are vectors. As many ``nodes`` in
+    one piece, by default 16 on each half.
+    """
+    steps = np.linspace(0.0, 1.0, (1 if nodes else _HALVES) + 1)
+    rule = partial(points, nodes=nodes or 16)
+    gap, weight = jax.vmap(rule)(edge + (edges - edge)[:, None] * steps)
     bonded = _values(law, gap, jnp.ones(gap.shape, bool), asked.names)
     free = _values(law, gap, jnp.zeros(gap.shape, bool), asked.names)
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)

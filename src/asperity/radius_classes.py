@@ -9,12 +9,15 @@ import equinox as eqx
 import numpy as np
 
 from ._jax import jax, jnp
+from .branch_tables import BranchTable, branch_tables
 from .interface import Interface, Means, Memory
-from .laws.base import Law
-from .quadrature import Near
+from .laws.base import Law, terms
+from .quadrature import Asked, Near, between
 
 CLASSES = 6
 """Classes of tip radius, where a law needs them."""
+
+_NODES = 16  # over the bonds of a class that differ from its branch of approach
 
 
 class Scale(NamedTuple):
@@ -34,14 +37,24 @@ class RadiusClasses(eqx.Module):
     ----------
     parts
         The interfaces, with the same kinds of laws and of heights.
+    tabulated
+        Whether their outermost branches are tabulated where they can be (static): of measured
+        heights on the same nodes. Else every mean is a quadrature.
+
+    Notes
+    -----
+    A mean is that of the branch of approach, read from the table, and a quadrature over the bonds
+    that differ from it; see :mod:`asperity.branch_tables`.
     """
 
     stacked: Interface
+    tables: tuple[BranchTable, ...]
     count: int = eqx.field(static=True)
 
-    def __init__(self, parts: Sequence[Interface]) -> None:
+    def __init__(self, parts: Sequence[Interface], *, tabulated: bool = True) -> None:
         self.stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *parts)
         self.count = len(parts)
+        self.tables = branch_tables(self.stacked) if tabulated else ()
 
     @property
     def law(self) -> Law:
@@ -129,7 +142,9 @@ class RadiusClasses(eqx.Module):
 
     def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
-        return self.energy(separation, self.fresh(), lift)
+        if not self.tables:
+            return self.energy(separation, self.fresh(), lift)
+        return self._sum([table(separation, lift)[-1] for table in self.tables])
 
     @property
     def only_bonded(self) -> bool:
@@ -139,21 +154,76 @@ class RadiusClasses(eqx.Module):
     def measure(
         self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
     ) -> Means:
-        """All means over the heights; see :meth:`Interface.measure`."""
-        each = self._each(lambda part, own: part.measure(separation, own, lift, near), memory)
-        sums = jax.tree_util.tree_map(lambda leaf: jnp.sum(leaf, axis=0), each)
-        bonds = each.bonds.reshape(-1, *each.bonds.shape[2:])
-        return Means(sums.parts, sums.energy, bonds, sums.touching)
+        """All means over the heights; see :meth:`Interface.measure`.
+
+        Places ``near`` one another that are level lie on an outermost branch.
+        """
+        if not self.tables:
+            each = self._each(lambda part, own: part.measure(separation, own, lift, near), memory)
+            sums = jax.tree_util.tree_map(lambda leaf: jnp.sum(leaf, axis=0), each)
+            bonds = each.bonds.reshape(-1, *each.bonds.shape[2:])
+            return Means(sums.parts, sums.energy, bonds, sums.touching)
+        rows = self._rows(separation, memory, lift, near is not None and near.level)
+        parts: dict[str, list[jax.Array]] = {name: [] for name in self.components}
+        for table, values in zip(self.tables, rows, strict=True):
+            for name, value in zip(table.names, values, strict=False):
+                parts[name].append(value)
+        touching, bonds = self._each(lambda part, own: part.counted(separation, own, lift), memory)
+        return Means(
+            parts=jnp.stack([self._sum(values) for values in parts.values()]),
+            energy=self._sum([values[-1] for values in rows]),
+            bonds=bonds.reshape(-1, *separation.shape),
+            touching=jnp.sum(touching, axis=0),
+        )
 
     def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+        if self.tables:
+            rows = self._rows(separation, memory, lift, False)
+            return self._sum([jnp.sum(values[:-1], axis=0) for values in rows])
         each = self._each(lambda part, own: part.pressure(separation, own, lift), memory)
         return jnp.sum(each, axis=0)
 
     def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
+        if self.tables:
+            rows = self._rows(separation, memory, lift, False)
+            return self._sum([values[-1] for values in rows])
         each = self._each(lambda part, own: part.energy(separation, own, lift), memory)
         return jnp.sum(each, axis=0)
+
+    def _rows(
+        self, separation: jax.Array, memory: Memory, lift: int, outer: bool
+    ) -> list[jax.Array]:
+        """Forces and energy of each law, as its table has them; ``outer`` on a branch (static)."""
+        laws = len(self.tables)
+        if outer:
+            return [
+                table(separation, lift, jnp.isneginf(b))
+                for table, b in zip(self.tables, memory[:laws], strict=True)
+            ]
+        more = self._each(lambda part, own: self._beside(part, own, separation, lift), memory)
+        return [
+            table(separation, lift) + jnp.sum(rest, axis=0)
+            for table, rest in zip(self.tables, more, strict=True)
+        ]
+
+    def _beside(
+        self, part: Interface, memory: Memory, separation: jax.Array, lift: int
+    ) -> list[jax.Array]:
+        """What the bonds of a class add that the branch of approach has not, by law."""
+        places, out = jnp.ravel(separation), []
+        laws = zip(terms(part.law), part.bond_gaps(separation, memory), self.tables, strict=True)
+        for law, gaps, table in laws:
+            asked = Asked((*table.names, "energy"), lift)
+            start = jnp.asarray(law.forming_gap, float)
+            more = between(law, part.heights, start, jnp.ravel(gaps), places, asked, _NODES)
+            out.append(part.density * more.reshape(-1, *separation.shape))
+        return out
+
+    @staticmethod
+    def _sum(values: list[jax.Array]) -> jax.Array:
+        return jnp.sum(jnp.stack(values), axis=0)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""

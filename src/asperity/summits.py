@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._jax import jnp
+from ._jax import jax, jnp
 from .interface import Interface
 from .laws.base import Law, Real, Sum, terms
 from .layers import Layers, Surfaces
@@ -79,11 +79,13 @@ def _in_classes(
 ) -> RadiusClasses:
     on = spread or spread_of(np.asarray(heights))
     cut = members(np.asarray(radii), classes) if isinstance(classes, int) else classes
-    # After the cut: under ``jit`` an array made here counts as traced.
-    heights, radii = jnp.asarray(heights), jnp.asarray(radii)
+    # Not as arrays of JAX, which under ``jit`` would count as traced and compile each size.
+    heights, radii = (
+        x if isinstance(x, jax.Array) else np.asarray(x, float) for x in (heights, radii)
+    )
     parts = []
     for chosen in cut:
-        mean = jnp.mean(radii[chosen])
+        mean = radii[chosen].mean()
         sampled = Sampled(heights[chosen], radii[chosen], mean, on)
         parts.append(Interface(make(mean), sampled, density * len(chosen) / radii.size))
     return RadiusClasses(parts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from scipy.special import binom
@@ -85,12 +85,14 @@ class Sampled(Heights):
     ) -> None:
         on = spread or spread_of(np.asarray(heights))
         self.first, self.step = (jnp.asarray(x, jnp.float64) for x in (on.first, on.step))
-        values, ratios = jnp.asarray(heights), jnp.asarray(radii) / radius
-        # In lengths of powers of two, so that few of them are compiled.
+        # In lengths of powers of two, so that few of them are compiled, and padding never.
+        traced = any(isinstance(x, jax.Array) for x in (heights, radii, radius))
+        on_host: Any = jnp if traced else np
+        values, ratios = on_host.asarray(heights), on_host.asarray(radii) / radius
         count = values.size
         rest = (0, (1 << (count - 1).bit_length()) - count)
-        counts = jnp.pad(jnp.full(count, 1.0 / count), rest)
-        values, ratios = (jnp.pad(x, rest, mode="edge") for x in (values, ratios))
+        counts = np.pad(np.full(count, 1.0 / count), rest)
+        values, ratios = (on_host.pad(x, rest, mode="edge") for x in (values, ratios))
         laid = _laid((values, ratios, counts), self.first, self.step, on.nodes)
         self.mean, self.deviation, self.share = laid
         self.tables, self.moments = _tabulated(self.share, self.step, kernels(on.nodes, _KEPT))
@@ -151,20 +153,28 @@ class Sampled(Heights):
         row = np.reshape(
             [n * len(SIZES) + kind for n, kind in zip(number, kinds, strict=True)], shape
         )
-        order = np.reshape(orders, shape)
         x = (places - self.first) / self.step + self.nodes
         inside = self._quintic(tables.reshape(-1, tables.shape[-1]), row, x)
-        # Of the density nothing lies below the nodes; of the others a series in its moments.
         below = x < 0.0
         depth = jnp.where(below, 1.5 * self.nodes - x, 2.0 * self.nodes)
-        factors = np.array([[binom(n, k) for k in range(_MOMENTS + 1)] for n in orders])
-        terms = (factors * self.moments[np.array(kinds)]).T.reshape(-1, *shape)
-        ratio = self.nodes / depth
-        series = jnp.zeros_like(x)
-        for term in terms[::-1]:
-            series = series * ratio + term
-        beneath = jnp.where(order < 0.0, 0.0, (depth * self.step) ** order * series)
-        return jnp.where(below, beneath, inside)
+        beneath = [
+            self._beneath(n, self.moments[kind], depth[k])
+            for k, (n, kind) in enumerate(zip(orders, kinds, strict=True))
+        ]
+        return jnp.where(below, jnp.stack(beneath), inside)
+
+    def _beneath(self, order: float, moments: jax.Array, depth: jax.Array) -> jax.Array:
+        """Integral of one order from so many steps below the middle of the nodes."""
+        if order < 0.0:  # of the density nothing lies there
+            return jnp.zeros_like(depth)
+        # A series in the moments of the others, which ends where the order is whole.
+        count = _MOMENTS if order % 1.0 else int(order)
+        ratio, series = self.nodes / depth, jnp.zeros_like(depth)
+        for k in range(count, -1, -1):
+            series = series * ratio + binom(order, k) * moments[k]
+        reach = depth * self.step
+        root = jnp.sqrt(reach) if order % 1.0 else 1.0
+        return reach ** int(order) * root * series
 
     def _quintic(self, cells: jax.Array, row: np.ndarray, x: jax.Array) -> jax.Array:
         """Polynomials of the cells in which ``x`` lies, 0 above all of them."""
