@@ -16,6 +16,7 @@ from asperity.interface import Interface
 from asperity.laws import Bradley, ByKelvinGap, ConstantVolume, Dmt, Hertz, Jkr, Maugis, Meniscus
 from asperity.layers import Layers
 from asperity.measures import measure
+from asperity.quadrature import Near
 from asperity.radius_classes import RadiusClasses, members
 from asperity.roughness import Gaussian, Sampled, spread_of
 from asperity.shapes import Sphere
@@ -282,6 +283,49 @@ def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(t
     )
 
 
+@pytest.mark.parametrize("parting", [True, False])
+def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, parting):
+    """Both ends and all pieces of the way, against a quadrature at each of its places."""
+    surface, start = two_ways[0], 0.5 * SIGMA
+    gaps = [part.law.forming_gap if parting else part.law.breaking_gap for part in surface.parts]
+    memory = tuple(jnp.asarray(start - gap) for gap in gaps)
+    ends = np.sort([float(end) for end in surface.merging(memory, jnp.asarray(parting))])
+    marks = np.array([start, *(ends if parting else ends[::-1])])
+    steps = np.array([1e-6, 0.1, 0.4, 0.7, 0.9, 1.0 - 1e-6])
+    places = jnp.asarray(marks[:-1, None] + np.diff(marks)[:, None] * steps)
+    exact = _all_means(surface, places, memory, 1)
+
+    def off(nodes):
+        ours = surface.measure(places, memory, 1, Near(level=False, nodes=nodes))
+        pairs = ((ours.parts, exact.parts), (ours.energy, exact.energy))
+        return [float(jnp.max(jnp.abs(a - b)) / jnp.max(jnp.abs(b))) for a, b in pairs]
+
+    few, many = off(8), off(24)
+    assert max(few) < 1e-4
+    assert max(many) < 5e-6
+    counted = surface.measure(places, memory, 1, Near(level=False, nodes=8))
+    np.testing.assert_allclose(counted.bonds, exact.bonds, rtol=1e-12)
+
+
+def test_bonds_that_stretch_over_many_rms_heights_are_read_in_pieces():
+    """Bridges of 4 to 5 rms, by as many places as a motion takes, against quadratures."""
+    make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 1.3e-9)  # noqa: E731
+    parts = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=2).parts
+    surface, plain = RadiusClasses(parts), RadiusClasses(parts, tabulated=False)
+    assert surface.pieces > 2
+    resolved = RigidContact(surface, Sphere(BALL)).resolved
+    start = -1.0 * SIGMA
+    memory = (jnp.asarray(start),) * 2
+    end = float(max(surface.merging(memory, jnp.asarray(True))))
+    places = jnp.linspace(start, end, 101)[None]
+    near = Near(level=False, nodes=resolved.nodes * resolved.pieces)
+    ours, exact = surface.measure(places, memory, 1, near), plain.measure(places, memory, 1)
+    for one, other in ((ours.parts, exact.parts), (ours.energy, exact.energy)):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=5e-6 * np.max(np.abs(other)))
+    alone, largest = surface.measure(places, memory, 1), np.max(np.abs(exact.parts))
+    np.testing.assert_allclose(alone.parts, exact.parts, rtol=0.0, atol=1e-6 * largest)
+
+
 def test_laws_that_act_before_touch_have_no_table():
     """Bridges formed at the Kelvin gap: every mean is a quadrature."""
     make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 1.3e-9, ByKelvinGap())  # noqa: E731
@@ -329,6 +373,20 @@ STIFF = 50e9
 
 def wet(radius):
     return Hertz(radius, STIFF) + Dmt(radius, 0.03) + Meniscus(radius, 0.0728, 0.9, 0.8e-9)
+
+
+@pytest.mark.parametrize(("law", "spread"), [(wet, 0.05), (wet, 1e-3), (JKR, 0.05)])
+def test_the_ledger_closes_on_summits_of_two_levels(law, spread):
+    """Such as steps that were etched: curves and ways are cut as finely as their heights ask."""
+    random = np.random.default_rng(0)
+    heights = np.where(random.random(COUNT) < 0.5, -1.0, 1.0)
+    heights = SIGMA * (heights + spread * random.standard_normal(COUNT))
+    surface = measured_surface(law, heights, RADII, N, radius=RADIUS)
+    contact = RigidContact(surface, Sphere(BALL))
+    motion = simulate(contact, BODY, tolerance=Tolerance(max_impacts=2))
+    closure = motion.impacts.closure / (0.5 * MASS * 1e-3**2)
+    assert np.asarray(motion.impacts.made).all()
+    assert float(jnp.max(closure)) < 1e-6
 
 
 def decrement(surface):

@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 from ._jax import jax, jnp
 from .laws.base import TruncatedPower
 from .laws.plastic import PlasticContact
-from .polynomials import local
+from .polynomials import from_points, local
 from .program import kept
 from .roughness.heights import Heights
 
@@ -34,7 +34,7 @@ _EVEN = 7  # even panels over the heights
 _BELOW = 6  # and over those below the closest approach that laws reach
 
 _X = chebyshev.chebpts1(_NODES)
-_TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(_X, _NODES - 1))
+_TO_COEFFICIENTS = from_points(_NODES)
 _INTEGRAL = np.zeros((_ROW, _ROW))
 for _k in range(_ROW - 1):
     _row = chebyshev.chebint(np.eye(_ROW - 1)[_k], lbnd=1)

@@ -10,6 +10,7 @@ import equinox as eqx
 from ._jax import jax, jnp
 from .laws.base import Law, Powers, Real, TruncatedPower, quantity, terms
 from .quadrature import Asked, Near, means, means_near
+from .roughness.fineness import Fineness
 from .roughness.heights import Heights
 
 Memory = tuple[jax.Array, ...]
@@ -82,9 +83,9 @@ class Interface(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
-    def grain(self) -> float:
-        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
-        return self.heights.grain
+    def fineness(self) -> Fineness:
+        """How finely its curves are cut. Without values."""
+        return self.heights.fineness
 
     @property
     def blur(self) -> float:
@@ -162,7 +163,8 @@ class Interface(eqx.Module):
         lift
             0 for a plane, 1 for a rigid paraboloid (times 2 pi R).
         near
-            How they lie to one another if they are a vector of places near one another.
+            How they lie to one another if they are rows of places, those of a row near one another,
+            which all have one memory.
         """
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         laws = dict(enumerate(terms(self.law)))
@@ -273,7 +275,11 @@ class Interface(eqx.Module):
         """Means of a law without truncated powers, one row a name."""
         if near is None:
             return means(law, self.heights, edge, separation, asked)
-        return means_near(law, self.heights, edge, separation, asked, near)
+        if separation.ndim == 1:
+            return means_near(law, self.heights, edge, separation, asked, near)
+        return jax.vmap(
+            lambda edge, row: means_near(law, self.heights, edge, row, asked, near), out_axes=1
+        )(edge, separation)
 
     @staticmethod
     def _force_names(law: Law) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from .laws.base import Law, terms
 from .plastic_interface import PlasticInterface
 from .quadrature import Near
 from .radius_classes import RadiusClasses, Scale, scale_of
+from .roughness.fineness import Fineness
 
 Layer = Interface | RadiusClasses | PlasticInterface
 
@@ -63,9 +64,9 @@ class Layers(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
-    def grain(self) -> float:
-        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
-        return min(part.grain for part in self.parts)
+    def fineness(self) -> Fineness:
+        """How finely its curves are cut. Without values."""
+        return reduce(Fineness.and_of, [part.fineness for part in self.parts])
 
     @property
     def blur(self) -> float:

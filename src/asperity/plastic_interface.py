@@ -18,6 +18,7 @@ from .laws.base import Law, Real, TruncatedPower, quantity, terms
 from .laws.plastic import PlasticContact
 from .plastic_means import Asperities, means_at
 from .quadrature import Near
+from .roughness.fineness import Fineness
 from .roughness.heights import Heights
 
 PLASTIC = "plastic"
@@ -107,9 +108,9 @@ class PlasticInterface(eqx.Module):
         return ("elastic", *sorted(names))
 
     @property
-    def grain(self) -> float:
-        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
-        return self.heights.grain
+    def fineness(self) -> Fineness:
+        """How finely its curves are cut. Without values."""
+        return self.heights.fineness
 
     @property
     def blur(self) -> float:

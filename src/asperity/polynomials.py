@@ -17,6 +17,11 @@ DERIVATIVE = np.array([chebyshev.chebder(row) for row in np.eye(NODES)]).T
 """From coefficients to those of the derivative with x, one fewer."""
 
 
+def from_points(nodes: int) -> np.ndarray:
+    """From values at so many Chebyshev points in [-1, 1] to as many coefficients."""
+    return np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1))
+
+
 def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
     """Coordinate in [-1, 1] of a place in an interval; 0 where the interval is empty."""
     width = high - low

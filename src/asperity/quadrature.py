@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +19,7 @@ _HALVES = 2  # pieces of the gaps between the edges of places near one another
 
 
 class Near(NamedTuple):
-    """Separations that are a vector within a few rms of one another (all static).
+    """Separations that are within a few rms of one another (all static).
 
     Attributes
     ----------
@@ -29,10 +27,13 @@ class Near(NamedTuple):
         Whether bonds reach up to the same gap at all of them.
     pieces
         Even pieces that they share.
+    nodes
+        Places on the way from a reversal to the branch of one law that tell all of it.
     """
 
     level: bool
     pieces: int = EVEN
+    nodes: int = 16
 
 
 class Asked(NamedTuple):
@@ -95,7 +96,7 @@ def means_near(
     # Up to here places differ in how many asperities are higher; beyond, all of them are.
     uneven = high - heights.bottom
     end = _end(law, uneven, edge, asked.lift)
-    pieces = ceil(near.pieces / heights.grain)
+    pieces = near.pieces * heights.cuts
     even = lowest + (jnp.minimum(uneven, end) - lowest) * np.linspace(0.0, 1.0, pieces + 1)
     kinks = jnp.append(_kinks(law), edge)
     bounds = _pieces((lowest, end), kinks, even, _shortest(law, heights), law)
@@ -133,16 +134,15 @@ def between(
     edges: jax.Array,
     separations: jax.Array,
     asked: Asked,
-    nodes: int | None = None,
+    pieces: int = _HALVES,
 ) -> jax.Array:
     """What bonds of gaps between ``edge`` and each place's own of ``edges`` add to its mean.
 
-    ``edge`` is the least of them; ``edges`` and ``separations`` are vectors. As many ``nodes`` in
-    one piece, by default 16 on each half.
+    ``edge`` is the least of them; ``edges`` and ``separations`` are vectors. 16 nodes on each of
+    even ``pieces`` (static).
     """
-    steps = np.linspace(0.0, 1.0, (1 if nodes else _HALVES) + 1)
-    rule = partial(points, nodes=nodes or 16)
-    gap, weight = jax.vmap(rule)(edge + (edges - edge)[:, None] * steps)
+    steps = np.linspace(0.0, 1.0, pieces + 1)
+    gap, weight = jax.vmap(points)(edge + (edges - edge)[:, None] * steps)
     bonded = _values(law, gap, jnp.ones(gap.shape, bool), asked.names)
     free = _values(law, gap, jnp.zeros(gap.shape, bool), asked.names)
     shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)

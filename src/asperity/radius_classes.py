@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import ceil
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from ._jax import jax, jnp
 from .branch_tables import BranchTable, branch_tables
 from .interface import Interface, Means, Memory
 from .laws.base import Law, terms
+from .polynomials import chebyshev_sum, from_points, local
 from .quadrature import Asked, Near, between
+from .roughness.fineness import Fineness
+from .roughness.heights import Heights
 
 CLASSES = 6
 """Classes of tip radius, where a law needs them."""
-
-_NODES = 16  # over the bonds of a class that differ from its branch of approach
 
 
 class Scale(NamedTuple):
@@ -50,10 +53,12 @@ class RadiusClasses(eqx.Module):
     stacked: Interface
     tables: tuple[BranchTable, ...]
     count: int = eqx.field(static=True)
+    pieces: int = eqx.field(static=True)
 
     def __init__(self, parts: Sequence[Interface], *, tabulated: bool = True) -> None:
         self.stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *parts)
         self.count = len(parts)
+        self.pieces = _pieces(parts)
         self.tables = branch_tables(self.stacked) if tabulated else ()
 
     @property
@@ -85,9 +90,9 @@ class RadiusClasses(eqx.Module):
         return self.stacked.components
 
     @property
-    def grain(self) -> float:
-        """How fine its curves are; see :class:`~asperity.roughness.Heights`. Without values."""
-        return self.stacked.grain
+    def fineness(self) -> Fineness:
+        """How finely its curves are cut. Without values."""
+        return self.stacked.fineness
 
     @property
     def blur(self) -> float:
@@ -163,7 +168,7 @@ class RadiusClasses(eqx.Module):
             sums = jax.tree_util.tree_map(lambda leaf: jnp.sum(leaf, axis=0), each)
             bonds = each.bonds.reshape(-1, *each.bonds.shape[2:])
             return Means(sums.parts, sums.energy, bonds, sums.touching)
-        rows = self._rows(separation, memory, lift, near is not None and near.level)
+        rows = self._rows(separation, memory, lift, near)
         parts: dict[str, list[jax.Array]] = {name: [] for name in self.components}
         for table, values in zip(self.tables, rows, strict=True):
             for name, value in zip(table.names, values, strict=False):
@@ -179,7 +184,7 @@ class RadiusClasses(eqx.Module):
     def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
         if self.tables:
-            rows = self._rows(separation, memory, lift, False)
+            rows = self._rows(separation, memory, lift)
             return self._sum([jnp.sum(values[:-1], axis=0) for values in rows])
         each = self._each(lambda part, own: part.pressure(separation, own, lift), memory)
         return jnp.sum(each, axis=0)
@@ -187,39 +192,38 @@ class RadiusClasses(eqx.Module):
     def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
         if self.tables:
-            rows = self._rows(separation, memory, lift, False)
+            rows = self._rows(separation, memory, lift)
             return self._sum([values[-1] for values in rows])
         each = self._each(lambda part, own: part.energy(separation, own, lift), memory)
         return jnp.sum(each, axis=0)
 
     def _rows(
-        self, separation: jax.Array, memory: Memory, lift: int, outer: bool
+        self, separation: jax.Array, memory: Memory, lift: int, near: Near | None = None
     ) -> list[jax.Array]:
-        """Forces and energy of each law, as its table has them; ``outer`` on a branch (static)."""
+        """Forces and energy of each law, as its table has them."""
         laws = len(self.tables)
-        if outer:
+        if near is not None and near.level:
             return [
                 table(separation, lift, jnp.isneginf(b))
                 for table, b in zip(self.tables, memory[:laws], strict=True)
             ]
-        more = self._each(lambda part, own: self._beside(part, own, separation, lift), memory)
+
+        def beside(part: Interface, own: Memory) -> list[jax.Array]:
+            out = []
+            for law, threshold, table in zip(terms(part.law), own, self.tables, strict=True):
+                asked = Asked((*table.names, "energy"), lift)
+                bonds = _Bonds(law, part.heights, asked, self.pieces)
+                if near is None:
+                    out.append(part.density * bonds.at(threshold, separation))
+                else:
+                    out.append(part.density * bonds.along(threshold, separation, near.nodes))
+            return out
+
+        more = self._each(beside, memory)
         return [
             table(separation, lift) + jnp.sum(rest, axis=0)
             for table, rest in zip(self.tables, more, strict=True)
         ]
-
-    def _beside(
-        self, part: Interface, memory: Memory, separation: jax.Array, lift: int
-    ) -> list[jax.Array]:
-        """What the bonds of a class add that the branch of approach has not, by law."""
-        places, out = jnp.ravel(separation), []
-        laws = zip(terms(part.law), part.bond_gaps(separation, memory), self.tables, strict=True)
-        for law, gaps, table in laws:
-            asked = Asked((*table.names, "energy"), lift)
-            start = jnp.asarray(law.forming_gap, float)
-            more = between(law, part.heights, start, jnp.ravel(gaps), places, asked, _NODES)
-            out.append(part.density * more.reshape(-1, *separation.shape))
-        return out
 
     @staticmethod
     def _sum(values: list[jax.Array]) -> jax.Array:
@@ -240,6 +244,84 @@ class RadiusClasses(eqx.Module):
         """The memory of each class."""
         laws = len(memory) // self.count
         return [memory[k * laws : (k + 1) * laws] for k in range(self.count)]
+
+
+class _Bonds(NamedTuple):
+    """The bonds of one law of a class, and what is asked of it."""
+
+    law: Law
+    heights: Heights
+    asked: Asked
+    pieces: int
+
+    def at(self, threshold: jax.Array, places: jax.Array) -> jax.Array:
+        """What they add that the branch of approach has not, at places of any shape.
+
+        With a threshold of the memory for each place, or one for all.
+        """
+        edges = self._edge(jnp.broadcast_to(places - threshold, places.shape))
+        return self._up_to(edges.ravel(), places.ravel()).reshape(-1, *places.shape)
+
+    def along(self, threshold: jax.Array, places: jax.Array, nodes: int) -> jax.Array:
+        """The same at places of any shape on the way from one reversal, by polynomials.
+
+        One up to where these bonds reach the branch of parting, and one beyond, however many
+        pieces other classes make of the way. Nothing is added below where they reach the branch
+        of approach. The first is one of the root of the distance to the branch of parting: bonds
+        let go at a fold.
+        """
+        low, high = jnp.min(places), jnp.max(places)
+        forms, end = threshold + self.law.forming_gap, threshold + self.law.breaking_gap
+        forming, breaking = (jnp.clip(place, low, high) for place in (forms, end))
+
+        first, last = _root(end - forming), _root(end - breaking)
+        root = last + (first - last) * _steps(nodes)
+        here = jnp.where(jnp.isfinite(end), end, 0.0) - root**2
+        x = local(last, first, _root(end - jnp.clip(places, forming, breaking)))
+        on_way = _read(self._up_to(self._edge(here - threshold), here), x)
+
+        beyond = breaking + (high - breaking) * _steps(nodes)
+        x = local(breaking, high, jnp.clip(places, breaking, high))
+        whole = jnp.asarray(self.law.breaking_gap, float)[None]
+        parted = _read(self._up_to(whole, beyond), x)
+        return jnp.where(places > forms, jnp.where(places <= end, on_way, parted), 0.0)
+
+    def _edge(self, gap: jax.Array) -> jax.Array:
+        return jnp.clip(gap, self.law.forming_gap, self.law.breaking_gap)
+
+    def _up_to(self, edges: jax.Array, places: jax.Array) -> jax.Array:
+        """By quadrature, for vectors; of ``edges`` there may be one for all."""
+        start = jnp.asarray(self.law.forming_gap, float)
+        return between(self.law, self.heights, start, edges, places, self.asked, self.pieces)
+
+
+def _pieces(parts: Sequence[Interface]) -> int:
+    """Pieces of the quadratures over the bonds of a class; two where values are traced."""
+    if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(parts)):
+        return 2
+    part = parts[-1]  # of the largest radii
+    widths = [float(law.breaking_gap - law.forming_gap) for law in part.hysteretic]
+    rms = float(part.heights.rms)
+    nodes, pieces = part.fineness.along(max(widths, default=0.0) / rms if rms > 0.0 else 0.0)
+    return ceil(nodes * pieces / 16)
+
+
+def _root(x: jax.Array) -> jax.Array:
+    """Square root of what is positive and finite, else 0; with derivatives."""
+    fine = (x > 0.0) & (x < jnp.inf)
+    return jnp.where(fine, jnp.sqrt(jnp.where(fine, x, 1.0)), 0.0)
+
+
+def _steps(nodes: int) -> np.ndarray:
+    """Chebyshev points between 0 and 1."""
+    points: np.ndarray = 0.5 * (1.0 + chebyshev.chebpts1(nodes))
+    return points
+
+
+def _read(values: jax.Array, x: jax.Array) -> jax.Array:
+    """Polynomials through rows of values at Chebyshev points of [-1, 1], at x."""
+    series = from_points(values.shape[1]) @ values.T
+    return chebyshev_sum(series[(...,) + (None,) * x.ndim], x)
 
 
 def scale_of(heights: Sequence[Any]) -> Scale:

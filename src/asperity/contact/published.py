@@ -12,6 +12,7 @@ from numpy.polynomial import chebyshev
 from .._jax import jax, jnp
 from ..laws.base import Real, quantity
 from ..laws.published import PublishedPressure
+from ..polynomials import from_points
 from ..shapes import Sphere
 from .base import Contact, Held, State
 from .ways import first_out_of_reach
@@ -30,7 +31,7 @@ def _integrals_from(nodes: int) -> tuple[np.ndarray, np.ndarray]:
     and, in the last row, -1.
     """
     points = np.append(chebyshev.chebpts1(nodes), -1.0)
-    coefficients = np.linalg.inv(chebyshev.chebvander(points[:-1], nodes - 1))
+    coefficients = from_points(nodes)
     once = chebyshev.chebint(coefficients, axis=0)
     twice = chebyshev.chebint(once, axis=0)
     at_1, at_end = (chebyshev.chebval(1.0, each) for each in (once, twice))

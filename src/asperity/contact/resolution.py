@@ -17,6 +17,7 @@ LINEAR = 8.0
 """Panels are even in asinh(separation / (LINEAR rms))."""
 
 _DEEP = 5.0  # rms below the mean plane, down to where a body may come
+_SHORTEST = 4.0  # rms, where heights end soon above the mean plane: some lie below it
 _HEIGHTS = 17.2  # rms between the lowest and the highest
 _PIECE = 6.4  # rms of a quadrature's piece
 
@@ -52,30 +53,30 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     enough for a few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
-        return Resolution(ceil(10 / interface.grain**0.5), 16, 2)
+        finer = interface.fineness.grain**-0.5
+        return Resolution(ceil(10 * finer), 16, ceil(2 * finer))
     lengths = tuple(float(length) for length in _lengths(interface))
     return resolution_of(interface, lengths, deforms=deforms)
 
 
 def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: bool) -> Resolution:
     """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
-    grain = interface.grain
+    fineness = interface.fineness
     share, kinked, reach, bends = lengths
-    nodes = next((n for end, n in ((0.1, 6), (0.5, 8), (2.0, 12)) if share < end), 16)
-    pieces = ceil(share / 4.5) or 1
+    nodes, pieces = fineness.along(share)
     if bends > 1.5:
         nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
     if interface.yields:  # what is left of the heights is steeper than they were
         nodes, pieces = 16, max(pieces, 2)
     # What is smooth counts as the panels do, which widen with the separation.
     smooth = LINEAR * (asinh(reach / LINEAR) - asinh(kinked / LINEAR))
-    length = kinked + max(smooth, 0.0)
+    length = max(kinked + max(smooth, 0.0), _SHORTEST)
     if not deforms:
-        panels = ceil(length / (2.2 * grain))
+        panels = ceil(length / fineness.panel)
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
     fills = fills_by_contact(interface.hysteretic)
-    panels = ceil(length / (1.7 * grain))
+    panels = ceil(length / (1.7 * fineness.grain))
     return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
 
 

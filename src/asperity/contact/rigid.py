@@ -133,16 +133,13 @@ class RigidContact(Contact):
 
     def _states(self, near: Near, places: jax.Array, memory: Thresholds) -> State:
         """The contact at rows of places [m], those of a row near one another."""
-
-        def row(places: jax.Array) -> State:
-            means = self._means(near, places, memory)
-            parts, bonds = means.parts.T, means.bonds.T
-            return jax.vmap(self._state)(places, means._replace(parts=parts, bonds=bonds))
-
-        return jax.vmap(row)(places)
+        means = self._means(near, places, memory)
+        # Its rows of forces and of bonds last, for one place to have all of them.
+        parts, bonds = (jnp.moveaxis(rows, 0, -1) for rows in (means.parts, means.bonds))
+        return jax.vmap(jax.vmap(self._state))(places, means._replace(parts=parts, bonds=bonds))
 
     def _means(self, near: Near, places: jax.Array, memory: Thresholds) -> Means:
-        """At places near one another, on a branch or on the way to it."""
+        """At rows of places near one another, on a branch or on the way to it."""
         if isinstance(self.interface, Yielding) and self.yields and self.left is None:
             return self.interface.first_approach(places, 1)
         return self.interface.measure(places, memory, 1, near)
@@ -178,7 +175,8 @@ class RigidContact(Contact):
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
         places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
-        return Way(enter, leave, self._states(Near(level=False), places, memory))
+        near = Near(level=False, nodes=self.resolved.nodes * self.resolved.pieces)
+        return Way(enter, leave, self._states(near, places, memory))
 
     def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
         """Ends of pieces on the way; they narrow towards where asperities were pressed flat."""

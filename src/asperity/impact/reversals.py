@@ -17,7 +17,7 @@ from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..contact.base import Contact, Held, Memory
-from ..polynomials import NODES, chebyshev_sum, local
+from ..polynomials import NODES, chebyshev_sum, from_points, local
 from ..program import kept
 from .datum import Datum
 from .history import Body
@@ -173,18 +173,14 @@ def _first_fall(table: Table, body: Body) -> tuple[jax.Array, jax.Array]:
 
 def _to_degree(degree: int, nodes: np.ndarray) -> np.ndarray:
     """From values at Chebyshev points to those of the polynomial of a degree that fits them."""
-    found: np.ndarray = chebyshev.chebvander(nodes, degree) @ _inverse(nodes)[: degree + 1]
+    found: np.ndarray = chebyshev.chebvander(nodes, degree) @ from_points(len(nodes))[: degree + 1]
     return found
-
-
-def _inverse(nodes: np.ndarray) -> np.ndarray:
-    return np.linalg.inv(chebyshev.chebvander(nodes, len(nodes) - 1))
 
 
 def _over_places(values: jax.Array, nodes: np.ndarray) -> jax.Array:
     """Values at the places of all ranges as Chebyshev coefficients over these."""
     each = values.reshape(-1, len(nodes), *values.shape[1:])
-    return jnp.einsum("kn,bn...->bk...", _inverse(nodes), each)
+    return jnp.einsum("kn,bn...->bk...", from_points(len(nodes)), each)
 
 
 def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array:

@@ -15,7 +15,7 @@ from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..contact.base import Contact, Memory, State
-from ..polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, local
+from ..polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, from_points, local
 from ..program import kept
 
 LOOKS = 24
@@ -252,7 +252,7 @@ def fit(rows: jax.Array) -> jax.Array:
 def _to_coefficients(nodes: int) -> np.ndarray:
     """From values at so many Chebyshev points to NODES coefficients."""
     out = np.zeros((NODES, nodes))
-    out[:nodes] = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1))
+    out[:nodes] = from_points(nodes)
     return out
 
 

@@ -11,6 +11,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..laws.base import Powers, Real, quantity
 from ..special import height_integral, integrals_at, normal_density, order_ratio
+from .fineness import Fineness
 
 
 class Heights(eqx.Module):
@@ -21,11 +22,16 @@ class Heights(eqx.Module):
     rigid paraboloid T_1.
     """
 
-    grain: ClassVar[float] = 1.0
-    """How fine the curves are that it makes, beside those of Gaussian heights of its rms."""
-
     blur: ClassVar[float] = 0.0
     """Relative error of curves below which nothing is gained: of what is known of the heights."""
+
+    cuts: ClassVar[int] = 1
+    """Into how many each piece of a quadrature over Gaussian heights is cut."""
+
+    @property
+    def fineness(self) -> Fineness:
+        """How finely the curves are cut that it makes. Without values."""
+        return Fineness()
 
     @property
     @abc.abstractmethod

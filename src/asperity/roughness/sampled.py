@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
+import equinox as eqx
 import numpy as np
 from scipy.special import binom
 
 from .._jax import jax, jnp
 from ..laws.base import Powers, Real, quantity
 from ..special import order_ratio
+from .fineness import Fineness, fineness_of
 from .heights import Heights
 from .splines import kernel_rule, kernels
 
@@ -22,6 +24,9 @@ _KEPT = (-1.0, 0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5)
 
 _NARROW = 0.4
 """Distance of the nodes, in rms times the number of heights to the power -1/5."""
+
+_FINE = Fineness(0.45, (0.05, 0.1, 0.45, 0.6))
+"""What most measured heights need."""
 
 _MARGIN = 4  # nodes above the highest and below the lowest
 _MOMENTS = 24  # of the series below the nodes, where it falls by at least 1/3 a term
@@ -38,11 +43,14 @@ class Spread(NamedTuple):
         Distance of the nodes [m].
     nodes
         Their number (static).
+    fineness
+        How finely the curves are cut (static).
     """
 
     first: float
     step: float
     nodes: int
+    fineness: Fineness = _FINE
 
 
 class Sampled(Heights):
@@ -69,12 +77,13 @@ class Sampled(Heights):
     ``spread`` is given.
     """
 
-    grain: ClassVar[float] = 0.2
     blur: ClassVar[float] = 1e-3
+    cuts: ClassVar[int] = 5
 
     share: jax.Array
     tables: jax.Array
     moments: jax.Array
+    told: Fineness = eqx.field(static=True)
     first: Real = quantity()
     step: Real = quantity()
     mean: Real = quantity()
@@ -85,6 +94,7 @@ class Sampled(Heights):
     ) -> None:
         on = spread or spread_of(np.asarray(heights))
         self.first, self.step = (jnp.asarray(x, jnp.float64) for x in (on.first, on.step))
+        self.told = on.fineness
         # In lengths of powers of two, so that few of them are compiled, and padding never.
         traced = any(isinstance(x, jax.Array) for x in (heights, radii, radius))
         on_host: Any = jnp if traced else np
@@ -96,6 +106,10 @@ class Sampled(Heights):
         laid = _laid((values, ratios, counts), self.first, self.step, on.nodes)
         self.mean, self.deviation, self.share = laid
         self.tables, self.moments = _tabulated(self.share, self.step, kernels(on.nodes, _KEPT))
+
+    @property
+    def fineness(self) -> Fineness:
+        return self.told
 
     @property
     def rms(self) -> jax.Array | float:
@@ -196,7 +210,10 @@ def spread_of(heights: np.ndarray) -> Spread:
     wanted = int(np.clip((high - low) / step if step > 0.0 else 1, 32, 1024 - 2 * _MARGIN))
     nodes = -(-(wanted + 2 * _MARGIN) // 32) * 32
     step = max((high - low) / (nodes - 1 - 2 * _MARGIN), 1e-6 * abs(high), 1e-18)
-    return Spread(low - _MARGIN * step, step, nodes)
+    first = low - _MARGIN * step
+    counts = np.bincount(np.rint((values - first) / step).astype(int), minlength=nodes)
+    share = np.convolve(counts, (1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0), mode="same")
+    return Spread(first, step, nodes, fineness_of(share, float(values.std()) / step))
 
 
 @partial(jax.jit, static_argnums=3)
