@@ -9,6 +9,7 @@ from numpy.polynomial import chebyshev, legendre
 from ._jax import jax, jnp
 from .interface import Interface
 from .laws.base import Law, terms
+from .polynomials import quintic
 from .quadrature import points
 from .roughness.sampled import Sampled
 from .roughness.splines import kernel_rule
@@ -198,16 +199,7 @@ def _even_cells(found: jax.Array, step: jax.Array) -> jax.Array:
     ends = jnp.stack([jnp.stack([value, slope, bend]), lifted])
     f0, d0, c0 = (ends[:, k, ..., :-1] for k in range(3))
     f1, d1, c1 = (ends[:, k, ..., 1:] for k in range(3))
-    rise = f1 - f0
-    quintic = (
-        f0,
-        d0,
-        0.5 * c0,
-        10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * c0 + 0.5 * c1,
-        -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * c0 - c1,
-        6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (c0 - c1),
-    )
-    return jnp.moveaxis(jnp.stack(quintic, axis=-1), -3, -2)
+    return jnp.moveaxis(quintic((f0, d0, c0), (f1, d1, c1)), -3, -2)
 
 
 def _deep_cells(

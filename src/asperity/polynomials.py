@@ -1,4 +1,4 @@
-"""Chebyshev polynomials on an interval: their sums and integrals."""
+"""Polynomials on an interval: Chebyshev sums and their integrals, and quintics by their ends."""
 
 from __future__ import annotations
 
@@ -20,6 +20,23 @@ DERIVATIVE = np.array([chebyshev.chebder(row) for row in np.eye(NODES)]).T
 def from_points(nodes: int) -> np.ndarray:
     """From values at so many Chebyshev points in [-1, 1] to as many coefficients."""
     return np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(nodes), nodes - 1))
+
+
+def quintic(
+    start: tuple[jax.Array, jax.Array, jax.Array], end: tuple[jax.Array, jax.Array, jax.Array]
+) -> jax.Array:
+    """Coefficients of powers of t, last axis, from value, slope and curvature at t = 0 and 1."""
+    (f0, d0, c0), (f1, d1, c1) = start, end
+    rise = f1 - f0
+    rows = (
+        f0,
+        d0,
+        0.5 * c0,
+        10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * c0 + 0.5 * c1,
+        -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * c0 - c1,
+        6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (c0 - c1),
+    )
+    return jnp.stack(rows, axis=-1)
 
 
 def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:

@@ -11,6 +11,7 @@ from scipy.special import binom
 
 from .._jax import jax, jnp
 from ..laws.base import Powers, Real, quantity
+from ..polynomials import quintic
 from ..special import order_ratio
 from .fineness import Fineness, fineness_of
 from .heights import Heights
@@ -263,16 +264,8 @@ def _cells(
     """Taylor coefficients of the integral of one order on each cell, (sizes, cells, 6)."""
     value, slope, bend = jax.lax.map(lambda kernel: _at_nodes(share, kernel), kernels)
     f0, d0, c0 = (x[:, :-1] for x in (value, slope, bend))
-    rise, d1, c1 = value[:, 1:] - f0, slope[:, 1:], bend[:, 1:]
-    quintic = (
-        f0,
-        d0,
-        0.5 * c0,
-        10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * c0 + 0.5 * c1,
-        -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * c0 - c1,
-        6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (c0 - c1),
-    )
-    return step**order * jnp.stack(quintic, axis=-1)
+    f1, d1, c1 = (x[:, 1:] for x in (value, slope, bend))
+    return step**order * quintic((f0, d0, c0), (f1, d1, c1))
 
 
 def _at_nodes(share: jax.Array, kernel: jax.Array) -> jax.Array:
