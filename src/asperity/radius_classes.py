@@ -45,7 +45,8 @@ class RadiusClasses(eqx.Module):
     Notes
     -----
     A mean is that of the branch of approach, read from the table, and a quadrature over the bonds
-    that differ from it; see :mod:`asperity.branch_tables`.
+    that differ from it; see :mod:`asperity.branch_tables`. On a way from a reversal that quadrature
+    is read at a few places of each class.
     """
 
     stacked: Interface

@@ -45,7 +45,8 @@ class Spread(NamedTuple):
     nodes
         Their number (static).
     fineness
-        How finely the curves are cut (static).
+        How finely the curves are cut (static): by default enough for most heights, not for heaps
+        of them; :func:`spread_of` finds it by trial.
     """
 
     first: float
