@@ -15,9 +15,9 @@ from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import Datum, end_of_contact
 from .impact.sampling import Series, sample, until
-from .impact.table import CENTRAL, FORCE, STORED, quantities
+from .impact.table import CENTRAL, FORCE, STORED, Table, quantities
 from .impact.trajectory import Trajectory
-from .measures import Measures, measure
+from .measures import FirstContact, Measures, measure
 from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
@@ -25,8 +25,8 @@ from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
 
-_ROWS = 256
-"""Rows of impacts that are measured at least: more than most motions have."""
+_ROWS, _ROWS_IN_GAS = 256, 32
+"""Rows of impacts that are measured at least: more than most motions have. In a gas each costs."""
 
 _measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
@@ -44,28 +44,49 @@ class Flight(NamedTuple):
 def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
     """Compile what measures such a motion, in a thread; shapes serve in place of arrays."""
     rows = jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct((_ROWS, *leaf.shape[1:]), leaf.dtype), motion.impacts
+        lambda leaf: jax.ShapeDtypeStruct((_least_rows(body), *leaf.shape[1:]), leaf.dtype), motion.impacts
     )
-    _measure.ahead(motion._replace(impacts=rows), body, None)
+    _measure.ahead(motion._replace(impacts=rows), body, None, None)
     losses.ahead(contact)
 
 
-def _padded(flight: Flight, body: Body) -> Measures:
+def _least_rows(body: Body) -> int:
+    return _ROWS if body.film is None else _ROWS_IN_GAS
+
+
+def contact_end(table: Table, peak: float) -> float:
+    """The end of a contact whose largest force is ``peak`` [N]: a separation [m]."""
+    return float(_end_of_contact(table, np.asarray(peak)))
+
+
+def measured(flight: Flight, body: Body) -> Measures:
     """Measures over a power of two of rows, seldom more than the first: one compilation."""
     motion = flight.motion
     rows = motion.impacts.made.shape[0]
-    size = max(_ROWS, 1 << (rows - 1).bit_length())
+    size = max(_least_rows(body), 1 << (rows - 1).bit_length())
 
     def pad(leaf: Any) -> Any:
         return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
 
-    passing = None
-    if flight.trajectory is not None and body.film is not None:
-        peak = np.max(np.abs(motion.impacts.force))
-        place = float(_end_of_contact(motion.table, peak))
-        passing = jax.tree_util.tree_map(pad, flight.trajectory.passing(place, float(body.mass)))
     whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
-    return _measure(whole, body, passing)
+    if flight.trajectory is None:
+        return _measure(whole, body, None, None)
+    first, passing = _stepped_contact(flight.trajectory, motion), None
+    if body.film is not None:
+        found = flight.trajectory.passing(float(first.end), float(body.mass))
+        passing = jax.tree_util.tree_map(pad, found)
+    return _measure(whole, body, passing, first)
+
+
+def _stepped_contact(trajectory: Trajectory, motion: Motion) -> FirstContact:
+    """The first contact of a motion that was stepped in time."""
+    pulled, series = trajectory.unloading(), trajectory.series
+    peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
+    end = contact_end(motion.table, peak)
+    held = float(motion.impacts.apex[0]) < end
+    time = np.nan if held else trajectory.contact_time(end)
+    force = np.max(series.rows[series.phase < 2, FORCE])
+    return FirstContact(*(np.asarray(x) for x in (end, time, force)), pulled)
 
 
 def _sampled(
@@ -87,7 +108,7 @@ def _sampled(
 
 def first_restitution(flight: Flight, body: Body) -> float | None:
     """Restitution of a motion's first impact; None where it has none."""
-    return _number(_padded(flight, body).restitution[0])
+    return _number(measured(flight, body).restitution[0])
 
 
 def result_of(
@@ -115,7 +136,7 @@ def result_of(
     """
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
-    measures = _padded(flight, body)
+    measures = measured(flight, body)
     series, lost = _sampled(case, flight, body, most)
     at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
     check_surface(case, problem, at_depth)

@@ -94,12 +94,39 @@ def flown(
         problem, case.numerics.tolerance, limits, tell, drawn=True, many=many
     )
     _check_release(problem, table, many=many)
+    return fly_prepared(problem, contact, (table, datum), limits, tell, stop)
+
+
+def fly_prepared(
+    problem: Problem,
+    contact: Contact,
+    curves: tuple[Table, Datum],
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion of a body whose force curves are there already; see :func:`flown`."""
     if problem.late is None and problem.creep is None:
-        return _fly(problem.body, contact, table, datum, limits, tell, stop)
-    return _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+        return _fly(problem.body, contact, *curves, limits, tell, stop)
+    return _fly_stepped(problem, contact, curves, limits, tell, stop)
 
 
-def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
+def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Datum]:
+    """Force curves over all that a body can reach, and the static equilibrium.
+
+    Parameters
+    ----------
+    contact, body
+        What moves on what.
+    many
+        As for :func:`flown`.
+    """
+    return _preparing(contact, many)(contact, body, many)
+
+
+def first_impact(
+    case: Case, problem: Problem, tell: Report = silently, *, checked: bool = True
+) -> tuple[Contact, Motion]:
     """The contact with its curves, and the motion as far as the first impact.
 
     Parameters
@@ -108,6 +135,8 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
         A case, and what was built from it.
     tell
         As ``progress`` of :func:`solve`.
+    checked
+        Whether a release within contact is refused.
 
     Raises
     ------
@@ -116,7 +145,8 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
     """
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
     contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=False)
-    _check_release(problem, table)
+    if checked:
+        _check_release(problem, table)
     body = problem.body
     tell(0.3, "first impact")
     first, origin = _start(contact, body, table)

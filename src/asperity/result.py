@@ -154,11 +154,18 @@ class Curve:
     deepest : float
         Closest rigid separation [m].
     pull_off : float
-        Largest tension while parting [N].
+        Largest tension while unloading [N].
+    pull_off_separation : float, optional
+        Rigid separation there [m]; None where nothing pulls.
     work_of_separation : float
-        Work against tension while parting [J].
+        Work against tension while unloading, from the separation of zero force on [J].
+    preload : float, optional
+        Load at closest approach [N] where these three depend on it; None where any larger load
+        gives the same.
     loss : float
         Energy lost over in and out [J].
+    warnings : list of str
+        What to know before the numbers are used.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
     """
@@ -173,8 +180,11 @@ class Curve:
     components_parting: Arrays
     deepest: float
     pull_off: float
+    pull_off_separation: float | None
     work_of_separation: float
+    preload: float | None
     loss: float
+    warnings: list[str]
     input_sha256: str | None = None
 
     def dataset(self) -> xarray.Dataset:

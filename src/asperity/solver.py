@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import threading
 
@@ -10,9 +11,11 @@ from .case.build import Problem, build
 from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
 from .errors import InputError, Outcome, SimulationError
 from .flying import Report, cut_in_steps, first_impact, flown, silently
+from .impact import Limits
+from .loading import turning_at
+from .restitution import Launcher, critical_measures
 from .result import Curve, Result
 from .trace import trace
-from .validity import AtDepth, check_surface
 
 
 def solve(
@@ -45,9 +48,14 @@ def solve(
     SimulationError
         If the numerics fail; its ``partial`` is the result so far.
     """
+    _ = case.launch
     tell, problem = progress or silently, build(case)
     flight = flown(case, problem, tell, stop)
     result = _told(case, name, problem, flight, tell, None)
+    if flight.outcome.ok:
+        tell(0.92, "critical velocity")
+        launcher = Launcher(problem, flight, Limits.of(case.tolerance), stop=stop)
+        result.measures.update(critical_measures(launcher.edges(flight)))
     tell(1.0, "done")
     if flight.outcome is Outcome.FAILED and throw:
         raise SimulationError(_failure(case), result)
@@ -80,6 +88,7 @@ def explore(
     InputError, SimulationError
         As :func:`solve`.
     """
+    _ = case.launch
     tell, problem = progress or silently, cut_in_steps(build(case))
     flight = flown(case, problem, tell, stop, many=True)
     result = _told(case, name, problem, flight, tell, most)
@@ -89,7 +98,7 @@ def explore(
         return result, _curve_of(case, name, problem, lambda _, text: tell(0.95, text))
     drawn = trace(flight.contact, flight.motion.table, flight.motion.impacts)
     tell(1.0, "done")
-    return result, Curve(case, name, **drawn)
+    return result, Curve(case, name, **drawn, warnings=result.warnings)
 
 
 def _told(
@@ -111,10 +120,12 @@ def curve(
     case: Case,
     *,
     name: str = "case",
+    load: float | None = None,
+    depth: float | None = None,
     progress: Report | None = None,
     stop: threading.Event | None = None,
 ) -> Curve:
-    """Force against separation, approaching to the depth of the case's first impact and back.
+    """Force against separation: loading to some depth, and unloading.
 
     So slowly that all menisci have the time to form, whatever time they take.
 
@@ -122,23 +133,34 @@ def curve(
     ----------
     case, name, progress, stop
         As for :func:`solve`; a curve is too short to be stopped half-way.
+    load
+        Load at which unloading begins [N]; the case needs no [impact] table then.
+    depth
+        Depth at which it begins [m]: how far the rigid separation is below 0, negative above. In
+        place of a load. Without either it begins at the depth of the case's first impact.
 
     Raises
     ------
     InputError, SimulationError
         As :func:`solve`.
     """
-    return _curve_of(case, name, build(case), progress or silently)
+    problem, tell = build(case), progress or silently
+    if load is None and depth is None:
+        _ = case.launch
+        return _curve_of(case, name, problem, tell)
+    problem, still = turning_at(problem, load=load, depth=depth), ("impact", "gas", "waves")
+    motionless = case.model_copy(update=dict.fromkeys(still))
+    return dataclasses.replace(_curve_of(motionless, name, problem, tell), case=case)
 
 
 def _curve_of(case: Case, name: str, problem: Problem, tell: Report) -> Curve:
     """The curve of what was built from a case."""
-    contact, motion = first_impact(case, problem, tell)
-    check_surface(case, problem, AtDepth.of(contact, motion))
-    tell(0.6, "parting")
+    contact, motion = first_impact(case, problem, tell, checked=case.impact is not None)
+    warnings = assessment_of(case, name, problem, contact, motion).warnings
+    tell(0.6, "unloading")
     drawn = trace(contact, motion.table, motion.impacts)
     tell(1.0, "done")
-    return Curve(case, name, **drawn)
+    return Curve(case, name, **drawn, warnings=warnings)
 
 
 def assess(
@@ -160,7 +182,7 @@ def assess(
     InputError, SimulationError
         As :func:`solve`.
     """
-    tell = progress or silently
+    _, tell = case.launch, progress or silently
     problem = build(case)
     contact, motion = first_impact(case, problem, tell)
     tell(1.0, "done")

@@ -140,7 +140,7 @@ def _film_stops(case: Case, gas: Gas) -> float:
 
 def _far(case: Case) -> list[str]:
     """A film so thick that the sphere is not close to the wall."""
-    release, radius = case.impact.release_gap, case.body.radius
+    release, radius = case.launch.release_gap, case.body.radius
     if release is None or release <= _CLOSE * radius:
         return []
     return [

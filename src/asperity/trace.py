@@ -12,6 +12,7 @@ from ._jax import jax
 from .contact.base import Contact
 from .impact.history import Impacts
 from .impact.table import CENTRAL, FORCE, Table, quantities
+from .impact.unloading import Unloading, unloading
 from .program import AT_ONCE, Program
 
 _POINTS = 240
@@ -39,7 +40,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
     -------
     The arrays and numbers of :class:`asperity.result.Curve`.
     """
-    deepest = float(impacts.deepest[0])
+    deepest, pulled = float(impacts.deepest[0]), first_unloading(table, impacts)
     reach = float(contact.reach)
     top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
     inward, outward = _branch(table, 0), _way_out(table, impacts)
@@ -56,8 +57,10 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
         "components_approach": dict(zip(names, approach[:, layout.components].T, strict=True)),
         "components_parting": dict(zip(names, parting[:, layout.components].T, strict=True)),
         "deepest": deepest,
-        "pull_off": float(max(-out.min(), 0.0)),
-        "work_of_separation": _tension_work(places, out),
+        "preload": float(impacts.force[0]) if pulled.depends else None,
+        "pull_off": float(pulled.pull_off),
+        "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
+        "work_of_separation": float(pulled.work),
         "loss": _loss(contact, approach[:, layout.bonds], parting[:, layout.bonds]),
     }
 
@@ -110,11 +113,13 @@ def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
     return np.concatenate([*steps, [top]])
 
 
-def _tension_work(places: np.ndarray, force: np.ndarray) -> float:
-    """Work against tension on the way out [J], by Simpson's rule."""
-    from scipy.integrate import simpson
+def first_unloading(table: Table, impacts: Impacts) -> Unloading:
+    """What the first of some impacts is pulled back by, as numbers."""
+    first = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[0], impacts.rise)
+    return Unloading(*(np.asarray(value) for value in unloading_of(table, first)))
 
-    return float(-simpson(np.minimum(force, 0.0), x=places))
+
+unloading_of = Program(unloading, AT_ONCE)
 
 
 def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:

@@ -71,7 +71,7 @@ class Problem(NamedTuple):
     contact
         Forces between the two bodies.
     body
-        Mass and release.
+        Mass and release; at rest outside contact where a case has no [impact] table.
     modulus
         Contact modulus E* [Pa].
     tip_radius
@@ -130,12 +130,12 @@ def build(case: Case, resolved: Resolution | None = None) -> Problem:
             contact = RigidContact(interface, shape, resolved)
         else:
             contact = ElasticContact(interface, shape, modulus, case.numerics.rings, resolved)
-    impact = case.impact
-    release: Real = impact.release_gap
-    if release is None:
-        release = contact.reach + CLEARANCE
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    body = Body(mass, impact.gravity, release, impact.speed or 0.0, _film(case), _waves(case))
+    body = Body(mass, 0.0, contact.reach + CLEARANCE)
+    if (impact := case.impact) is not None:
+        release = body.release if impact.release_gap is None else impact.release_gap
+        speed = impact.speed or 0.0
+        body = Body(mass, impact.gravity, release, speed, _film(case), _waves(case))
     late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
     creep = _creep(case, contact)
     contact = contact if creep is None else creep.relaxed()

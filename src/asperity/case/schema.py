@@ -61,7 +61,7 @@ class Case(Table):
     gas: Gas | None = Field(None, json_schema_extra={"rare": True})
     waves: Waves | None = Field(None, json_schema_extra={"rare": True})
     viscoelasticity: Viscoelasticity | None = Field(None, json_schema_extra={"rare": True})
-    impact: Impact
+    impact: Impact | None = None
     publication: Publication | None = Field(None, json_schema_extra={"rare": True})
     numerics: Numerics = Field(default_factory=Numerics)
     output: Output = Field(default_factory=Output)
@@ -118,8 +118,8 @@ class Case(Table):
 
     def _film_between_ends(self) -> None:
         """Refuse a film that has no thinnest or no thickest place."""
-        gas, release = self.gas, self.impact.release_gap
-        if gas is None:
+        gas, release = self.gas, None if self.impact is None else self.impact.release_gap
+        if gas is None or self.impact is None:
             return
         if self.roughness is None and gas.closest_gap is None:
             raise InputError(
@@ -216,6 +216,23 @@ class Case(Table):
         density = self.body_solid.density
         assert density is not None
         return density
+
+    @property
+    def launch(self) -> Impact:
+        """How the body is let go.
+
+        Raises
+        ------
+        InputError
+            Where the case has no [impact] table.
+        """
+        if self.impact is None:
+            raise InputError(
+                "an [impact] table must be given, with a `speed` or a `release_gap`, for a motion "
+                "(`asperity curve` takes --load or --depth without one); got none",
+                key="impact",
+            )
+        return self.impact
 
     @property
     def plasticity_model(self) -> str:

@@ -9,8 +9,8 @@ from ..laws.base import Real
 from ..program import kept
 from .drag import SHARES, Stretch, course_on, turning_place
 from .history import Body
-from .phase import Turn, Work, work_along
-from .table import Pieces
+from .phase import Turn, Work, kinetic_along, time_over, work_along
+from .table import RISE, Pieces
 
 _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
 
@@ -221,3 +221,17 @@ def kinetic_at(
 ) -> jax.Array:
     """Kinetic energy [J] with which a body passes a place [m] of a phase."""
     return pass_through(body, cut(pieces, parting, place), kinetic).turn.kinetic
+
+
+def time_to(
+    body: Body, pieces: Pieces, kinetic: jax.Array, parting: bool, place: jax.Array
+) -> jax.Array:
+    """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
+    passed = cut(pieces, jnp.asarray(parting), place)
+    if body.damped:
+        return pass_through(body, passed, kinetic).duration
+    way = (passed.leave - passed.enter)[:, None]
+    energies = kinetic_along(
+        work_along(passed, kinetic, body.weight), passed.enter[:, None] + way * RISE
+    )
+    return time_over(jnp.abs(way[:, 0]), way[:, 0] != 0.0, energies, body.mass)

@@ -192,6 +192,7 @@ def _row(stage: _Stage, impact: _Impact, fastest: float) -> Impacts:
         "deepest_time": np.asarray(fall.place.time),
         "apex_time": np.asarray(rise.place.time),
         "mechanical": stage.energy(impact.end)[0],
+        "leaving": np.asarray(np.nan),
         "force": deepest[FORCE],
         "touching": deepest[TOUCHING],
         "bonds": deepest[stage.layout.bonds],

@@ -139,6 +139,10 @@ class Impacts(NamedTuple):
         Times [s].
     mechanical
         Kinetic, potential and stored energy at the apex [J].
+    leaving
+        The same energy were the body to leave the contact, whether or not it has enough: a body
+        that is captured has less than its potential energy at the end of contact. NaN with drag
+        and for motions stepped in time, which tell it of no body that is captured.
     force
         Contact force at the deepest point [N].
     touching, bonds
@@ -161,6 +165,7 @@ class Impacts(NamedTuple):
     deepest_time: jax.Array
     apex_time: jax.Array
     mechanical: jax.Array
+    leaving: jax.Array
     force: jax.Array
     touching: jax.Array
     bonds: jax.Array

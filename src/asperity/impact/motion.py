@@ -12,7 +12,15 @@ from ..errors import Outcome, Tolerance
 from .damping import fall_to_rest
 from .datum import Datum, find_datum
 from .history import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
-from .phase import Turn, in_order, look_ahead, pull_work, row_at, travel_time
+from .phase import (
+    Turn,
+    in_order,
+    look_ahead,
+    mechanical_at_end,
+    pull_work,
+    row_at,
+    travel_time,
+)
 from .reversals import inner_pieces, solve_reversals
 from .table import (
     FORCE,
@@ -165,6 +173,7 @@ class _Leg(NamedTuple):
     pull_work: jax.Array
     crept: jax.Array
     followed: jax.Array
+    leaving: jax.Array
 
 
 def _leg(
@@ -212,7 +221,9 @@ def _leg(
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
     row = row[: layout.components.stop]
-    leg = _Leg(turn, phase, row, lost, time, bonds, -pull_work(ahead, turn), crept, followed)
+    leaving = jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead)
+    work = -pull_work(ahead, turn)
+    leg = _Leg(turn, phase, row, lost, time, bonds, work, crept, followed, leaving)
     return after, leg
 
 
@@ -259,7 +270,7 @@ def _impact(
     after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
     row = Impacts(
         jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
-        fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
+        rise.leaving, fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
         rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row

@@ -14,7 +14,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..polynomials import antiderivative, chebyshev_sum, local
-from .table import DRIVE, RATE, RISE, Pieces, Table
+from .table import DRIVE, RATE, RISE, STORED, Pieces, Table
 
 
 class Work(NamedTuple):
@@ -171,7 +171,7 @@ def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     low, high = jnp.minimum(panel, ahead.panel), jnp.maximum(panel, ahead.panel)
     whole = reached & (low < index) & (index < high)
     energies = ahead.outer(table.works.nodes[ahead.branch], table.nodes)
-    total = _time_over(jnp.diff(table.ends), whole, energies, mass)
+    total = time_over(jnp.diff(table.ends), whole, energies, mass)
     # The panel in which the branch begins, and the one in which the body turns.
     panels = jnp.stack([ahead.panel, panel])
     low, high = table.ends[panels], table.ends[panels + 1]
@@ -185,17 +185,17 @@ def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     way = (first - ahead.begin)[:, None] + span[:, None] * RISE
     energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
     used = jnp.stack([reached, jnp.logical_and(reached, panel != ahead.panel)])
-    total = total + _time_over(jnp.abs(span), used, energies, mass)
+    total = total + time_over(jnp.abs(span), used, energies, mass)
     if not ahead.pieces:
         return total
     p = inner.pieces
     enter = until(p.enter)
     span = until(p.leave) - enter
     energies = kinetic_along(inner, enter[:, None] + span[:, None] * RISE)
-    return total + _time_over(jnp.abs(span), span != 0.0, energies, mass)
+    return total + time_over(jnp.abs(span), span != 0.0, energies, mass)
 
 
-def _time_over(
+def time_over(
     length: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array
 ) -> jax.Array:
     """Time [s] over pieces with kinetic energies [J] at the places RISE of each."""
@@ -219,6 +219,15 @@ def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:
         return chebyshev_sum(pull, local(p.low, p.high, inside))
 
     return total + jnp.sum(until(p.leave) - until(p.enter))
+
+
+def mechanical_at_end(ahead: Ahead) -> jax.Array:
+    """Mechanical energy [J] at the end of the table, were a body that moves out not to turn."""
+    place = ahead.table.ends[-1]
+    weight = ahead.inner.weight
+    kinetic = ahead.inner.kinetic[-1] - ahead.before[0] - weight * (place - ahead.begin)
+    stored = chebyshev_sum(ahead.table.values[ahead.branch, -1, :, STORED], jnp.ones(()))
+    return kinetic + weight * place + stored
 
 
 def row_at(ahead: Ahead, turn: Turn) -> jax.Array:

@@ -12,7 +12,8 @@ from .history import Body
 from .legs import Leg, Samples
 from .sampling import Series
 from .stepping import KNOTS, TO_SERIES
-from .table import CENTRAL
+from .table import CENTRAL, FORCE
+from .unloading import Unloading
 
 
 class Trajectory(NamedTuple):
@@ -66,6 +67,52 @@ class Trajectory(NamedTuple):
         for k in passed[::-1]:
             found[phase[k + 1]] = self._kinetic(k, place, mass)
         return found[0::2], found[1::2]
+
+    def contact_time(self, place: float) -> float:
+        """Time between passing a separation [m] on the first way in and out [s]; NaN where not.
+
+        Between samples by Hermite's cubic of separation and speed.
+        """
+        from scipy.interpolate import CubicHermiteSpline
+
+        along, found = self.series, []
+        for phase in (0, 1):
+            x = along.separation - place
+            passed = np.flatnonzero((x[:-1] * x[1:] <= 0.0) & (along.phase[1:] == phase))
+            if not passed.size:
+                return np.nan
+            k = passed[-1 if phase else 0]
+            here = slice(k, k + 2)
+            cubic = CubicHermiteSpline(along.time[here], x[here], along.speed[here])
+            roots = cubic.roots(extrapolate=False)
+            found.append(roots[0] if roots.size else along.time[k + 1])
+        return float(found[1] - found[0])
+
+    def unloading(self) -> Unloading:
+        """The tension on the first way out, as it was met: it depends on load and rate.
+
+        Between samples force, speed and separation are Akima's polynomials of time.
+        """
+        from scipy.interpolate import Akima1DInterpolator
+
+        there = np.flatnonzero(self.series.phase == 1)
+        points = np.concatenate([there[:1] - 1, there])
+        time, first = np.unique(self.series.time[points], return_index=True)
+        points = points[first]
+        force = self.series.rows[points, FORCE]
+        nothing = Unloading(*(np.asarray(x) for x in (0.0, np.nan, 0.0, False)))
+        if time.size < 2 or not np.min(force) < 0.0:
+            return nothing
+        along = Akima1DInterpolator(time, force)
+        power = Akima1DInterpolator(time, force * self.series.speed[points]).antiderivative()
+        rates = along.derivative().roots(extrapolate=False)
+        turns = np.concatenate([time, rates[np.isfinite(rates)]])
+        lowest = turns[np.argmin(along(turns))]
+        zeros = along.roots(extrapolate=False)
+        begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
+        place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
+        work = float(np.max(power(begins)) - power(time[-1]))
+        return Unloading(-along(lowest), place, np.asarray(work), np.asarray(True))
 
     def _kinetic(self, k: int, place: float, mass: float) -> float:
         """Kinetic energy [J] between two samples, by the polynomials of their step."""

@@ -162,7 +162,7 @@ class Evidence:
 
         NaN where the body does not leave it again.
         """
-        motion, gravity = self.wet, self.case.impact.gravity
+        motion, gravity = self.wet, self.case.launch.gravity
         rise = first(motion.measures["rebound_height"])
         fall = self.wet_inputs.release_gap - float(self.contact.pressure.end)
         if not rise > 0.0:

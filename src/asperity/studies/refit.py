@@ -58,7 +58,7 @@ class Inputs(NamedTuple):
     @classmethod
     def of(cls, case: Case) -> Inputs:
         """Those of a case."""
-        assumed, gap = case.publication, case.impact.release_gap
+        assumed, gap = case.publication, case.launch.release_gap
         assert assumed is not None
         assert gap is not None
         return cls(assumed.conjunction_ends, gap, assumed.capillary_factor)

@@ -141,6 +141,7 @@ class Ledger(NamedTuple):
             "deepest_time": middle.time[0],
             "apex_time": end.time[0],
             "mechanical": np.asarray(self.left(end)),
+            "leaving": np.asarray(np.nan),
             "force": middle.rows[0, FORCE],
             "touching": middle.rows[0, TOUCHING],
             "bonds": middle.rows[0, quantities(self.contact).bonds],

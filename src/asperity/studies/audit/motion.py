@@ -97,7 +97,7 @@ def _gas(evidence: Evidence) -> Claim:
         release=inputs.release_gap,
         rebound=edge,
         mass=case.body_density * 4.0 / 3.0 * pi * case.body.radius**3,
-        gravity=case.impact.gravity,
+        gravity=case.launch.gravity,
         radius=case.body.radius,
         viscosity=air.viscosity(ROOM_TEMPERATURE),
         slip_length=slip,
@@ -146,7 +146,7 @@ def _exact(evidence: Evidence) -> list[Claim]:
     edge, release, _ = evidence.wet_inputs
     push = float(evidence.exact_state(release).force) / evidence.weight
     capillary = evidence.exact.case.capillary
-    gap = evidence.exact.case.impact.release_gap
+    gap = evidence.exact.case.launch.release_gap
     assert capillary.humidity is not None
     assert gap is not None
     found, damp = (

@@ -204,7 +204,6 @@ def _totals(group: Group, flight: Flight) -> Columns:
     out = {
         "end_time": flight.end_time,
         "deepest": past["deepest"][:, 0],
-        "largest_force": past["force"][:, 0],
         "energy_lost": flight.lost.sum(axis=1),
     }
     for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
@@ -262,7 +261,6 @@ def _read(result: Result) -> dict[str, Any]:
         **{f"lost_{name}": value for name, value in ledger["lost"].items()},
         "end_time": times[-1],
         "deepest": places[0],
-        "largest_force": float(np.max(result.forces["total"])),
         "turning_separation": places,
         "turning_time": times,
     }

@@ -175,7 +175,7 @@ class _Flying:
             self.history[name][at[row], column_there] = np.asarray(value)[real][row, column]
         self.made[at] += made.sum(axis=1)
         progress = begun.progress._replace(memory=(), bonds=begun.progress.place)
-        ends = begun.datum, begun.origin, progress, begun.reference
+        ends = begun.datum, begun.origin, progress, begun.first
         leaves = [np.asarray(leaf) for leaf in jax.tree_util.tree_leaves(ends)]
         if self._ends is None:
             self._shape = jax.tree_util.tree_structure(ends)
@@ -228,7 +228,7 @@ class _Flying:
         """What became of all cases."""
         flown = np.flatnonzero(self.made > 0)
         measures = self._measured(flown)
-        ends: Any = (None, None, None, None)
+        ends: Any = (None,) * 4
         count = self.made.size
         lost = np.zeros((count, 0))
         outcome, end_time = self.outcome, np.full(count, np.nan)

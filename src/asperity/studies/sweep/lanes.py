@@ -14,7 +14,14 @@ from asperity.contact import ElasticContact
 from asperity.impact import Body, Impacts, Limits, Motion, Progress, Table, fly, prepare, start
 from asperity.impact.datum import Datum
 from asperity.impact.table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
-from asperity.measures import Measures, Passing, contact_ends, measure, passing_at
+from asperity.measures import (
+    FirstContact,
+    Measures,
+    Passing,
+    first_contact,
+    measure,
+    passing_at,
+)
 from asperity.program import Program, kept
 from asperity.studies.sweep.building import Flown
 
@@ -36,15 +43,15 @@ class Begun(NamedTuple):
         Curves, static equilibrium, and mechanical energy at the release [J].
     progress
         The motion at its last apex.
-    reference
-        The end of contact [m].
+    first
+        The first contact; None before it.
     """
 
     table: Table
     datum: Datum
     origin: jax.Array
     progress: Progress
-    reference: jax.Array
+    first: FirstContact | None
 
 
 @kept
@@ -81,12 +88,12 @@ def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
         progress, origin = start(contact, body, table)
         force = jnp.abs(outer_row(table, 0, body.release)[FORCE])
         largest = jnp.max(jnp.abs(table.values[..., 0, FORCE]))
-        begun = Begun(table, datum, origin, progress, jnp.zeros(()))
+        begun = Begun(table, datum, origin, progress, None)
         progress, impacts = _flight(flown, begun)
         deepest = outer_row(table, 0, impacts.deepest[0])
         at_depth = jnp.stack([deepest[TOUCHING], deepest[FORCE] - deepest[PULL], deepest[CENTRAL]])
         checks = Checks(table.error, table.residual, force, largest, at_depth)
-        begun = begun._replace(progress=progress, reference=contact_ends(table, impacts))
+        begun = begun._replace(progress=progress, first=first_contact(table, impacts, body))
         return begun, checks, _slim(body, begun, impacts)
 
     return _over(flown)(one)(flown)
@@ -114,21 +121,22 @@ def _flight(flown: Flown, begun: Begun) -> tuple[Progress, Impacts]:
 def _slim(body: Body, begun: Begun, impacts: Impacts) -> Rows:
     passing = None
     if body.film is not None:
-        passing = passing_at(body, begun.table, impacts, begun.reference)
+        assert begun.first is not None
+        passing = passing_at(body, begun.table, impacts, begun.first.end)
     return impacts._replace(fall=None, rise=None), passing  # type: ignore[arg-type]
 
 
 def _measure(
-    flown: Flown, ends: tuple[Datum, jax.Array, Progress, jax.Array], rows: Rows
+    flown: Flown, ends: tuple[Datum, jax.Array, Progress, FirstContact], rows: Rows
 ) -> Measures:
     """Measures of motions that have ended."""
 
     def one(flown: Flown, ends: Any, rows: Rows) -> Measures:
-        datum, origin, progress, reference = ends
+        datum, origin, progress, first = ends
         impacts, passing = rows
-        # The table is not needed where the end of contact is known.
+        # The table is not needed where the first contact is known.
         motion = Motion(impacts, progress, None, datum, origin)  # type: ignore[arg-type]
-        return measure(motion, flown.body, passing, reference)
+        return measure(motion, flown.body, passing, first)
 
     return jax.vmap(one)(flown, ends, rows)
 

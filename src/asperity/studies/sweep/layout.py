@@ -66,13 +66,20 @@ LOSSES = ("adhesion", "capillary", "plastic", "gas", "waves", "viscous")
 """Mechanisms whose losses can be kept, as ``lost_NAME``."""
 
 MEASURES: tuple[Column, ...] = (
-    Column("impact_speed", "float64", "m/s", "impact speed"),
-    Column("captured", "int8", "", "whether the body sticks"),
+    Column("impact_speed", "float64", "m/s", "speed of approach at the first impact"),
+    Column("maximum_speed", "float64", "m/s", "largest speed on the first way in"),
+    Column("captured", "int8", "", "whether the first impact captures"),
+    Column("critical_velocity", "float64", "m/s", "critical velocity, below which it captures"),
     Column("capture_time", "float64", "s", "time of the impact that captures"),
     Column("stiction_time", "float64", "s", "time from release to rest"),
     Column("end_time", "float64", "s", "time of the last apex"),
     Column("deepest", "float64", "m", "deepest rigid separation of the first impact"),
-    Column("largest_force", "float64", "N", "contact force at the first deepest point"),
+    Column("contact_time", "float64", "s", "time in contact at the first impact"),
+    Column("maximum_force", "float64", "N", "largest contact force of the first impact"),
+    Column("pull_off", "float64", "N", "pull-off force"),
+    Column("pull_off_separation", "float64", "m", "rigid separation at pull-off"),
+    Column("work_of_separation", "float64", "J", "work of separation"),
+    Column("preload", "float64", "N", "load that pull-off and work depend on"),
     Column("energy_lost", "float64", "J", "energy lost in all"),
     *(Column(f"lost_{name}", "float64", "J", f"energy lost to {name}") for name in LOSSES),
     Column("rebound_height", "float64", "m", "rebound height", "impact"),

@@ -1,0 +1,97 @@
+"""Loading to a load or a depth without a motion: an impact that turns just there."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebval
+
+from .case.build import CLEARANCE, Problem
+from .errors import InputError, SimulationError
+from .flying import prepared
+from .impact import Body, Table
+from .impact.datum import find_datum
+from .impact.table import FORCE
+from .program import AT_ONCE, Program
+
+_LEAST, _FACTOR, _STEPS = 1e-24, 8.0, 40  # J: energies of curves, until they reach far enough
+_HELD = 2.0  # times the largest force holds a body back that attraction draws in
+
+_datum = Program(find_datum, AT_ONCE)
+
+
+def turning_at(
+    problem: Problem, *, load: float | None = None, depth: float | None = None
+) -> Problem:
+    """The problem with a body that turns for the first time at a load or at a depth.
+
+    Without weight, gas and waves, from where forces begin. Where attraction alone would draw it
+    in deeper a constant force holds it back.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    load
+        Contact force at the turn [N], 0 or more; the gentlest approach that carries it.
+    depth
+        How far the rigid separation is below 0 at the turn [m]; negative for a turn above.
+
+    Raises
+    ------
+    InputError
+        If the load or the depth cannot be reached, or not exactly one of them is given.
+    SimulationError
+        If the contact cannot be solved.
+    """
+    if (load is None) == (depth is None):
+        raise InputError("either `load` or `depth` must be given; got both or neither", key="load")
+    if load is not None and not (np.isfinite(load) and load >= 0.0):
+        raise InputError(f"`load` must be 0 N or more; got {load:.6g} N", key="load")
+    contact, mass = problem.contact, float(problem.body.mass)
+    release = float(contact.reach) + CLEARANCE
+    if depth is not None and not -release < depth < np.inf:
+        raise InputError(
+            f"`depth` must lie above {-release * 1e9:.6g} nm, where forces begin; "
+            f"got {depth * 1e9:.6g} nm",
+            key="depth",
+        )
+    body = Body(mass, 0.0, release, 0.0)
+    for step in range(_STEPS):
+        speed = np.sqrt(2.0 * _LEAST * _FACTOR**step / mass)
+        table, _ = prepared(contact, dataclasses.replace(body, speed=speed))
+        place = _place(table, load) if depth is None else -depth
+        if place is not None and float(table.ends[0]) < place:
+            return problem._replace(body=_turning(body, table, place))
+    wanted = f"a load of {load:.6g} N" if depth is None else f"a depth of {depth * 1e9:.6g} nm"
+    raise SimulationError(f"no approach was found that reaches {wanted}")
+
+
+def _place(table: Table, load: float | None) -> float | None:
+    """Where an approach first carries a load [m]; None where nothing in the table does."""
+    found = _datum(table, np.asarray(load), 0)
+    return float(found.equilibrium) if bool(found.rests) else None
+
+
+def _turning(body: Body, table: Table, place: float) -> Body:
+    """The body with the energy and the force against it that make it turn at a place [m]."""
+    release = float(body.release)
+    gained = _gained(table, release) - _gained(table, place)
+    looks, works = np.asarray(table.looks).ravel(), np.asarray(table.works.looks)[0].ravel()
+    before = (looks > place) & (looks < release)
+    force = 0.0
+    if gained <= 0.0 or np.any(works[before] <= _gained(table, place)):
+        passed = np.asarray(table.ends)[1:] > place
+        terms = np.abs(np.asarray(table.values)[0, passed, :, FORCE])
+        force = _HELD * float(np.max(np.sum(terms, axis=1)))
+    speed = np.sqrt(2.0 * (gained + force * (release - place)) / float(body.mass))
+    return dataclasses.replace(body, speed=speed, gravity=-force / float(body.mass))
+
+
+def _gained(table: Table, place: float) -> float:
+    """Work of the contact force from the top of the table to a place of its approach [J]."""
+    panel = int(table.panel_at(np.asarray(place)))
+    low, high = np.asarray(table.ends)[panel : panel + 2]
+    x = (2.0 * place - low - high) / (high - low)
+    return float(chebval(x, np.asarray(table.works.integral)[0, panel, :, 0]))
