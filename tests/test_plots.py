@@ -10,9 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from asperity import plots
+from asperity.colours import colour
 from asperity.errors import InputError, Outcome
 from asperity.plots import impacts, style
 from asperity.result import Result
@@ -211,6 +214,73 @@ def test_largest_forces_belong_to_their_impacts():
 def test_heights_count_from_static_equilibrium():
     assert impacts.datum(bounce(impacts=2)) == pytest.approx(SURFACE)
     assert impacts.datum(shorten(bounce(impacts=2), 10)) is None
+
+
+def falling(result: Result, point: int) -> Result:
+    """The same motion released later on its first fall, where it has a speed."""
+    rest = slice(point, None)
+    return dataclasses.replace(
+        result,
+        **{key: getattr(result, key)[rest] for key in ("time", "separation", "speed")},
+        central_separation=result.central_separation[rest],
+        forces={key: values[rest] for key, values in result.forces.items()},
+        energies={key: values[rest] for key, values in result.energies.items()},
+    )
+
+
+@pytest.mark.parametrize(("point", "label"), [(0, "release"), (9, "release + v²/2g")])
+def test_rebounds_of_a_launched_body_decay_from_the_height_of_its_energy(point: int, label: str):
+    result = falling(bounce(0.8, 6), point)
+    axes = plots.figure(result, "motion").axes[1]
+    heights = axes.lines[-1].get_ydata()
+    np.testing.assert_allclose(heights[1:] / heights[:-1], 0.8**2, rtol=1e-9)
+    assert heights[0] == pytest.approx((RELEASE - SURFACE) * 1e9, rel=1e-9)
+    assert axes.get_xlabel() == f"rebound (0: {label})"
+    figure = plots.figure(result)
+    assert texts_outside(figure) == []
+    assert overlapping(figure) == []
+
+
+def test_a_launch_without_gravity_has_no_height_to_compare():
+    result = falling(without(bounce(0.8, 6), "weight"), 9)
+    axes = plots.figure(result, "motion").axes[1]
+    assert axes.get_xlabel() == "rebound"
+    assert np.isnan(axes.lines[-1].get_ydata()[0])
+
+
+def test_energy_shows_what_each_mechanism_took_in_each_impact():
+    result = bounce(0.8, 6)
+    total = sum(values for name, values in result.energies.items() if name.startswith("lost_"))
+    axes = plots.figure(result, "energy").axes[2]
+    assert axes.get_xlabel() == "impact"
+    assert axes.get_ylabel() == "energy lost [aJ]"
+    drawn = np.nansum([line.get_ydata() for line in axes.lines], axis=0) * 1e-18
+    fall = MASS * GRAVITY * (RELEASE - SURFACE) * 0.64 ** np.arange(6)
+    np.testing.assert_allclose(drawn, fall * (1.0 - 0.64), rtol=1e-9)
+    assert np.nansum(drawn) == pytest.approx(total[-1] - total[0], rel=1e-9)
+
+
+def test_a_mechanism_that_took_only_rounding_is_not_drawn_as_a_loss():
+    result = bounce(0.8, 6)
+    rounding = 1e-14 * result.energies["kinetic"].max() * np.linspace(0.0, 1.0, result.time.size)
+    energies = {**result.energies, "lost_plastic": rounding}
+    axes = plots.figure(dataclasses.replace(result, energies=energies), "energy").axes[2]
+    tints = [line.get_color() for line in axes.lines]
+    assert tints == [colour("lost_adhesion"), colour("lost_capillary")]
+
+
+def test_one_pull_on_its_own_scale_is_named_on_the_axis_alone():
+    dry = without(bounce(impacts=2), "capillary")
+    figure = plots.figure(dry, "forces")
+    assert figure.axes[1].get_ylabel() == "adhesion [pN]"
+    assert figure.axes[1].get_legend() is None
+    named = [text.get_text() for axes in figure.axes for text in legend_texts(axes)]
+    assert named.count("adhesion") == 1
+
+
+def legend_texts(axes: Axes) -> list[Text]:
+    legend = axes.get_legend()
+    return legend.get_texts() if legend else []
 
 
 def test_all_pictures_of_two_hundred_rebounds_take_a_moment():
