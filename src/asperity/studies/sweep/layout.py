@@ -67,7 +67,7 @@ LOSSES = ("adhesion", "capillary", "plastic", "gas", "waves", "viscous")
 
 MEASURES: tuple[Column, ...] = (
     Column("impact_speed", "float64", "m/s", "impact speed"),
-    Column("captured", "int8", "", "whether the body sticks"),
+    Column("captured", "int8", "", "whether the first impact captures"),
     Column("capture_time", "float64", "s", "time of the impact that captures"),
     Column("stiction_time", "float64", "s", "time from release to rest"),
     Column("end_time", "float64", "s", "time of the last apex"),
