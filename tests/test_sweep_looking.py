@@ -260,6 +260,15 @@ def test_a_measure_that_no_case_has_gets_no_panel(stores: dict[str, Path]):
     assert view_of(found).measures == ("restitution",)
 
 
+def test_panels_side_by_side_span_the_same_values(stores: dict[str, Path]):
+    found = open_study(stores["speeds"])
+    found["stiction_time"].values[9:] = np.nan  # these never come to rest
+    _, drawn = sweep.figure(found)
+    first, second = (axes.get_xlim() for axes in drawn.axes)
+    assert first == second
+    assert first[0] < 50.0 < 500.0 < first[1]
+
+
 def test_capture_is_drawn_before_how_the_motion_ended(tmp_path: Path):
     text = SPEEDS.replace('"impact_speed", "restitution", "stiction_time"', '"impact_speed"')
     found = open_study(stored(tmp_path, text))

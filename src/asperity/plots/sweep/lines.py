@@ -71,8 +71,8 @@ def _drawing(
             _shade(axes, x, held == 1)
         for number, (row, gone) in enumerate(zip(values / whole.factor, lost, strict=True)):
             _line(axes, x, (row, gone), colour(cases.SERIES[number]), joined=not whole.names)
-        if not (x.log or x.names):
-            axes.margins(x=0.02)
+        if not x.names:  # the same in all panels, whichever values are known
+            axes.set_xlim(*x._replace(values=np.sort(x.values)).edges[[0, -1]])
         if view.facet and not whole.names:
             axes.set_ylim(*_limits(whole))
 
