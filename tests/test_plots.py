@@ -10,11 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from asperity import plots
+from asperity.colours import colour
 from asperity.errors import InputError, Outcome
-from asperity.plots import impacts, style
+from asperity.plots import impacts, restitution, style
 from asperity.result import Result
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -213,6 +216,73 @@ def test_heights_count_from_static_equilibrium():
     assert impacts.datum(shorten(bounce(impacts=2), 10)) is None
 
 
+def falling(result: Result, point: int) -> Result:
+    """The same motion released later on its first fall, where it has a speed."""
+    rest = slice(point, None)
+    return dataclasses.replace(
+        result,
+        **{key: getattr(result, key)[rest] for key in ("time", "separation", "speed")},
+        central_separation=result.central_separation[rest],
+        forces={key: values[rest] for key, values in result.forces.items()},
+        energies={key: values[rest] for key, values in result.energies.items()},
+    )
+
+
+@pytest.mark.parametrize(("point", "label"), [(0, "release"), (9, "release + v²/2g")])
+def test_rebounds_of_a_launched_body_decay_from_the_height_of_its_energy(point: int, label: str):
+    result = falling(bounce(0.8, 6), point)
+    axes = plots.figure(result, "motion").axes[1]
+    heights = axes.lines[-1].get_ydata()
+    np.testing.assert_allclose(heights[1:] / heights[:-1], 0.8**2, rtol=1e-9)
+    assert heights[0] == pytest.approx((RELEASE - SURFACE) * 1e9, rel=1e-9)
+    assert axes.get_xlabel() == f"rebound (0: {label})"
+    figure = plots.figure(result)
+    assert texts_outside(figure) == []
+    assert overlapping(figure) == []
+
+
+def test_a_launch_without_gravity_has_no_height_to_compare():
+    result = falling(without(bounce(0.8, 6), "weight"), 9)
+    axes = plots.figure(result, "motion").axes[1]
+    assert axes.get_xlabel() == "rebound"
+    assert np.isnan(axes.lines[-1].get_ydata()[0])
+
+
+def test_energy_shows_what_each_mechanism_took_in_each_impact():
+    result = bounce(0.8, 6)
+    total = sum(values for name, values in result.energies.items() if name.startswith("lost_"))
+    axes = plots.figure(result, "energy").axes[2]
+    assert axes.get_xlabel() == "impact"
+    assert axes.get_ylabel() == "energy lost [aJ]"
+    drawn = np.nansum([line.get_ydata() for line in axes.lines], axis=0) * 1e-18
+    fall = MASS * GRAVITY * (RELEASE - SURFACE) * 0.64 ** np.arange(6)
+    np.testing.assert_allclose(drawn, fall * (1.0 - 0.64), rtol=1e-9)
+    assert np.nansum(drawn) == pytest.approx(total[-1] - total[0], rel=1e-9)
+
+
+def test_a_mechanism_that_took_only_rounding_is_not_drawn_as_a_loss():
+    result = bounce(0.8, 6)
+    rounding = 1e-14 * result.energies["kinetic"].max() * np.linspace(0.0, 1.0, result.time.size)
+    energies = {**result.energies, "lost_plastic": rounding}
+    axes = plots.figure(dataclasses.replace(result, energies=energies), "energy").axes[2]
+    tints = [line.get_color() for line in axes.lines]
+    assert tints == [colour("lost_adhesion"), colour("lost_capillary")]
+
+
+def test_one_pull_on_its_own_scale_is_named_on_the_axis_alone():
+    dry = without(bounce(impacts=2), "capillary")
+    figure = plots.figure(dry, "forces")
+    assert figure.axes[1].get_ylabel() == "adhesion [pN]"
+    assert figure.axes[1].get_legend() is None
+    named = [text.get_text() for axes in figure.axes for text in legend_texts(axes)]
+    assert named.count("adhesion") == 1
+
+
+def legend_texts(axes: Axes) -> list[Text]:
+    legend = axes.get_legend()
+    return legend.get_texts() if legend else []
+
+
 def test_all_pictures_of_two_hundred_rebounds_take_a_moment():
     result = bounce(0.98, 200)
     plots.pictures(result)
@@ -241,3 +311,101 @@ def test_a_loss_without_a_pull_off_is_drawn_as_the_difference_of_the_branches():
     bridge = curve.components_parting["capillary"]
     np.testing.assert_allclose(axes.lines[-1].get_ydata(), bridge * 1e9, atol=1e-6)
     assert texts_outside(lifted.plot()) == []
+
+
+CRITICAL = 12.3e-3
+SPEEDS = np.geomspace(1e-4, 10.0, 61)
+
+
+def of_jkr(speeds: np.ndarray) -> np.ndarray:
+    """Restitution of a smooth JKR sphere, whose cycle loses the same at each speed."""
+    return np.sqrt(np.clip(1.0 - (CRITICAL / speeds) ** 2, 0.0, None))
+
+
+def upright(axes: Axes) -> list[float]:
+    """Where vertical lines stand."""
+    lines = [line for line in axes.lines if len(set(line.get_xdata())) == 1]
+    return [float(line.get_xdata()[0]) for line in lines if len(line.get_xdata()) == 2]
+
+
+def shaded(axes: Axes) -> list[tuple[float, float]]:
+    return [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]
+
+
+def legend_of(figure: Figure) -> list[str]:
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def test_restitution_is_drawn_over_decades_with_the_critical_velocity():
+    held = SPEEDS < CRITICAL
+    figure = restitution.figure(
+        SPEEDS, of_jkr(SPEEDS), held, edges=(CRITICAL,), critical=CRITICAL, own_speed=0.1, name="a"
+    )
+    (axes,) = figure.axes
+    assert (axes.get_xlabel(), axes.get_xscale()) == ("speed of approach [mm/s]", "log")
+    assert (axes.get_ylabel(), axes.get_yscale()) == ("coefficient of restitution [-]", "linear")
+    assert axes.get_ylim()[0] <= 0.0
+    assert axes.get_ylim()[1] >= 1.0
+    assert axes.get_xlim()[0] <= 0.1
+    assert axes.get_xlim()[1] >= 1e4
+    assert upright(axes) == pytest.approx([12.3, 100.0])
+    rebounds, captures = (line for line in axes.lines if len(line.get_xdata()) > 2)
+    np.testing.assert_allclose(rebounds.get_ydata()[~held], of_jkr(SPEEDS)[~held])
+    assert np.all(np.isnan(rebounds.get_ydata()[held]))
+    np.testing.assert_allclose(captures.get_xdata(), 1e3 * SPEEDS[held])
+    assert not np.any(captures.get_ydata())
+    ((low, high),) = shaded(axes)
+    assert low <= 0.1
+    assert high == pytest.approx(12.3)
+    assert legend_of(figure) == [
+        "critical velocity 12.3 mm/s", "speed of the case 100 mm/s", "captured at the first impact"
+    ]  # fmt: skip
+
+
+def test_every_interval_of_captured_speeds_is_shaded_between_its_edges():
+    edges = (CRITICAL, 0.2, 0.9)
+    held = (SPEEDS < CRITICAL) | ((SPEEDS > 0.2) & (SPEEDS < 0.9))
+    figure = restitution.figure(SPEEDS, of_jkr(SPEEDS), held, edges=edges, critical=CRITICAL)
+    (axes,) = figure.axes
+    assert sorted(upright(axes)) == pytest.approx([12.3, 200.0, 900.0])
+    assert [high for _, high in shaded(axes)] == pytest.approx([12.3, 900.0])
+    assert shaded(axes)[1][0] == pytest.approx(200.0)
+    assert "other edges of capture 200 mm/s, 900 mm/s" in legend_of(figure)
+    assert texts_outside(figure) == []
+
+
+def test_an_interval_that_no_speed_lies_in_is_shaded_too():
+    edges = (1e-3, 1.01e-3)  # no speed of the table lies between
+    figure = restitution.figure(SPEEDS, of_jkr(SPEEDS), SPEEDS < 0.0, edges=edges, critical=1e-3)
+    assert np.allclose(shaded(figure.axes[0]), [(1.0, 1.01)])
+    fast = SPEEDS[SPEEDS > 0.02]  # the critical velocity lies below all of them
+    figure = restitution.figure(
+        fast, of_jkr(fast), fast < 0.0, edges=(CRITICAL,), critical=CRITICAL
+    )
+    ((low, high),) = shaded(figure.axes[0])
+    assert low < high == pytest.approx(12.3)
+
+
+def test_speeds_that_all_rebound_have_no_critical_velocity():
+    fast = SPEEDS[SPEEDS > 1.0]
+    figure = restitution.figure(fast, of_jkr(fast), fast < 0.0)
+    (axes,) = figure.axes
+    assert upright(axes) == shaded(axes) == legend_of(figure) == []
+    assert axes.get_xlabel() == "speed of approach [m/s]"
+
+
+def test_speeds_that_gas_stops_are_left_out_and_counted():
+    bounce = np.where(SPEEDS < 0.05, np.nan, of_jkr(SPEEDS))
+    figure = restitution.figure(SPEEDS, bounce, SPEEDS < 0.0)
+    (line, none) = figure.axes[0].lines
+    assert np.count_nonzero(np.isfinite(line.get_ydata())) == np.count_nonzero(SPEEDS >= 0.05)
+    assert none.get_xdata().size == 0
+    stopped = np.count_nonzero(SPEEDS < 0.05)
+    assert legend_of(figure) == [f"no rebound, no capture at {stopped} of 61 speeds"]
+
+
+def test_restitution_is_a_png_and_an_svg_of_one_column():
+    files = restitution.pictures(restitution.figure(SPEEDS, of_jkr(SPEEDS), SPEEDS < CRITICAL))
+    assert list(files) == ["restitution.png", "restitution.svg"]
+    assert size_mm(files["restitution.png"])[0] == pytest.approx(style.COLUMN, abs=0.2)
+    assert b"speed of approach" in files["restitution.svg"]

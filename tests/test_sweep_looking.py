@@ -33,7 +33,7 @@ from asperity.studies.sweep.pareto import Goal, front_of, goal_of, undominated
 from asperity.studies.sweep.store import Store
 from asperity.studies.sweep.study import parse
 from asperity.studies.sweep.view import at, view_of, words
-from study_results import GRID, KEEP, SAMPLE, SPEEDS, law, stored
+from study_results import GRID, KEEP, REST, SAMPLE, SPEEDS, law, stored
 
 ROUGH, HUMID, SPEED = "roughness.rms_height", "capillary.humidity", "impact.speed"
 LOST = frozenset({5, *range(100, 130)})
@@ -241,7 +241,76 @@ def test_pictures_that_cannot_be_are_refused(
         sweep.pictures(open_study(stores[name]), **options)
 
 
-# The boundary between sticking and bouncing
+def test_a_study_over_speed_spends_no_panel_on_the_speed_itself(stores: dict[str, Path]):
+    found = open_study(stores["speeds"])
+    assert view_of(found).measures == ("restitution", "stiction_time")
+    assert view_of(found, measure="impact_speed").measures == ("impact_speed",)
+
+
+def test_an_impact_speed_that_all_cases_share_gets_no_panel(grid: xarray.Dataset):
+    held, _ = at(grid.copy(deep=True), {HUMID: "0.3"})
+    assert view_of(held).measures == ("restitution", "stiction_time")
+    held["impact_speed"].values[:10] *= 1.1
+    assert view_of(held).measures == ("restitution", "stiction_time", "impact_speed")
+
+
+def test_a_measure_that_no_case_has_gets_no_panel(stores: dict[str, Path]):
+    found = open_study(stores["speeds"])
+    found["stiction_time"].values[...] = np.nan
+    assert view_of(found).measures == ("restitution",)
+
+
+def test_panels_side_by_side_span_the_same_values(stores: dict[str, Path]):
+    found = open_study(stores["speeds"])
+    found["stiction_time"].values[9:] = np.nan  # these never come to rest
+    _, drawn = sweep.figure(found)
+    first, second = (axes.get_xlim() for axes in drawn.axes)
+    assert first == second
+    assert first[0] < 50.0 < 500.0 < first[1]
+
+
+def test_capture_is_drawn_before_how_the_motion_ended(tmp_path: Path):
+    text = SPEEDS.replace('"impact_speed", "restitution", "stiction_time"', '"impact_speed"')
+    found = open_study(stored(tmp_path, text))
+    assert view_of(found).measures[0] == "captured"
+
+
+# The boundary between capture at the first impact and rebound
+
+
+def disagreeing(found: xarray.Dataset) -> xarray.Dataset:
+    """Results of which only the first half is captured, though all come to rest in the end."""
+    found = found.copy(deep=True)
+    assert set(found["outcome"].values.ravel()) == {REST}
+    found["captured"].values.ravel()[:] = np.arange(found["captured"].size) < 10
+    found["impacts"].values[...] = 1
+    return found
+
+
+def test_lines_shade_capture_at_the_first_impact_and_not_rest(stores: dict[str, Path]):
+    found = disagreeing(open_study(stores["speeds"]))
+    _, drawn = sweep.figure(found)
+    (legend,) = drawn.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["captured at the first impact"]
+    speeds = 1e3 * found[SPEED].values
+    for axes in drawn.axes:
+        (span,) = axes.patches
+        ends = span.get_x(), span.get_x() + span.get_width()
+        assert [bool(ends[0] < v < ends[1]) for v in speeds] == (np.arange(19) < 10).tolist()
+
+
+def test_maps_and_points_tell_capture_at_the_first_impact_from_rebound(stores: dict[str, Path]):
+    found = disagreeing(open_study(stores["sample"]))
+    _, drawn = sweep.figure(found)
+    words = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert words == ["rebounds", "captured at the first impact"]
+    assert [line.get_xdata().size for line in drawn.axes[0].lines] == [246, 10]
+    _, drawn = sweep.figure(open_study(stores["grid"]), measure="outcome")
+    words = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert words == ["rest", "captured at the first impact | rebounds", "failed"]
+    _, drawn = sweep.figure(open_study(stores["grid"]), measure="captured")
+    words = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert words == ["rebounds", "captured at the first impact", "failed"]
 
 
 @given(arrays.arrays(int, arrays.array_shapes(min_dims=2, max_dims=2), elements=st.integers(-1, 1)))
@@ -594,6 +663,9 @@ def test_a_table_of_restitution_reads_back_to_the_same_floats(
     speed = open_study(stores["speeds"])[SPEED].values
     np.testing.assert_array_equal(rows, np.stack(law({SPEED: speed}), axis=1))
     assert np.any(rows[:, 1] == 0.0)
+    assert table.about[-1] == (
+        "coefficient of restitution of the first impact, 0 where it captures"
+    )
 
 
 def test_a_table_of_restitution_needs_one_axis(stores: dict[str, Path]):

@@ -16,6 +16,7 @@ from asperity.case import Case, load
 from asperity.case.problems import tables_of
 from asperity.case.reading import builtin_text
 from asperity.colours import COLOURS
+from asperity.shares import share_texts
 from asperity.web.form import form
 from browser import needed, served
 
@@ -119,11 +120,20 @@ def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(page, 
     )
     assert page.locator("#warning-list li").all_text_contents() == result.warnings
     expect(page.locator("#bars")).to_contain_text("lost to capillary")
+    expect(page.locator("#bars")).to_contain_text("(100 % of the energy lost)")
     legend = page.locator("#curve .legend").inner_text().split("\n")
     assert legend == ["approach", "parting"]
     expect(page.locator("#measures")).to_contain_text("487.9 µm/s")
     here = page.url.split("#")[0]
     assert all(one.startswith((here, "blob:", "data:")) for one in asked)
+
+
+@pytest.mark.parametrize(
+    "lost", [[0.505, 0.495], [1.0, 1.0, 1.0], [0.7, 0.2996, 0.0004], [2.0, 1e-9, 0.0], [0.0]]
+)
+def test_shares_on_the_page_are_those_of_the_summary(page, lost):
+    script = "async (lost) => (await import('/static/units.js')).shares(lost)"
+    assert page.evaluate(script, lost) == share_texts(lost)
 
 
 def test_the_form_has_every_key_of_the_schema(page):

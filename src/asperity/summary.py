@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.regimes import LAW_NAMES
+from asperity.shares import share_texts
 from asperity.verdict import verdict
 
 if TYPE_CHECKING:
@@ -140,11 +141,15 @@ def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
 def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
     initial = ledger.get("initial")
     rows = [("energy at release", amount(initial, "J"))]
-    for mechanism, energy in (ledger.get("lost") or {}).items():
-        share = ""
-        if energy and initial and initial > 0.0:
-            share = f"  ({amount(100.0 * energy / initial)} %)"
-        rows.append((f"lost to {mechanism}", amount(energy, "J") + share))
+    lost = ledger.get("lost") or {}
+    total = sum(lost.values())
+    if total > 0.0 and initial and initial > 0.0:
+        share = f"{amount(100.0 * total / initial)} % of that at release"
+        about = share if total <= initial else "with what attraction adds"
+        rows.append(("energy lost", f"{amount(total, 'J')}  ({about})"))
+    for (mechanism, energy), share in zip(lost.items(), share_texts(lost.values()), strict=True):
+        about = f"  ({share} of the energy lost)" if energy > 0.0 else ""
+        rows.append((f"lost to {mechanism}", amount(energy, "J") + about))
     closure = ledger.get("closure")
     closed = "-" if closure is None else f"{closure:.1e} of the impact energy"
     return [*rows, ("balance closes to", closed)]

@@ -11,18 +11,21 @@ from asperity.plots.style import Panel, Row
 from asperity.result import Result
 
 _MANY = 3
+_MARKED = 40
+_LEAST = 1e-9  # of the largest loss of an impact; less is rounding
 _FLOATING = ("potential", "stored")
 
 
 def panels(result: Result) -> Row:
-    """The motion as far as one can tell it apart, the first contact, the losses of all."""
+    """The motion as far as one can tell it apart, the first contact, the losses of each impact."""
     points, shown = impacts.beginning(result)
     row = [Panel(1.7, lambda axes: _stack(axes, result, points, shown))]
     contact = impacts.first_contact(result)
     if contact is not None:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, contact)))
     many = result.events.get("deepest_time", np.empty(0)).size >= _MANY
-    if many and any(name.startswith("lost_") for name in result.energies):
+    losses = [values for name, values in result.energies.items() if name.startswith("lost_")]
+    if many and any(np.any(values > 0.0) for values in losses):
         row.append(Panel(1.0, lambda axes: _losses(axes, result)))
     return row
 
@@ -60,15 +63,22 @@ def _stacked(axes: Axes, result: Result, points: slice, start: float) -> str:
 
 
 def _losses(axes: Axes, result: Result) -> None:
-    lost = {name: values for name, values in result.energies.items() if name.startswith("lost_")}
-    seconds, time_unit = style.scale_of(result.time, unit="s")
-    joules, unit = style.scale_of(*lost.values(), unit="J")
-    for name, values in lost.items():
-        axes.plot(result.time / seconds, values / joules, color=colour(name))
-    axes.set_xlabel(style.label("time since release", time_unit))
+    """What each mechanism took in each impact, the flights on either side of it included."""
+    found = {
+        name: impacts.lost(result, name) for name in result.energies if name.startswith("lost_")
+    }
+    least = _LEAST * max(float(np.max(energy)) for energy in found.values())
+    found = {n: np.where(e > least, e, np.nan) for n, e in found.items() if np.any(e > least)}
+    joules, unit = style.scale_of(*found.values(), unit="J")
+    for name, energy in found.items():
+        size = 2.5 if energy.size <= _MARKED else 1.5
+        number = np.arange(1, energy.size + 1)
+        axes.plot(number, energy / joules, "o", ms=size, mew=0.0, color=colour(name))
+    axes.set_ylim(bottom=0.0)
+    style.log_axis(axes, *found.values())
+    style.count_axis(axes, "impact")
     axes.set_ylabel(style.label("energy lost", unit))
-    axes.margins(x=0.0)
-    axes.set_title("whole motion")
+    axes.set_title("each impact")
 
 
 def _above_lowest(result: Result) -> dict[str, np.ndarray]:

@@ -16,7 +16,10 @@ _MANY = 3
 
 
 def panels(result: Result) -> Row:
-    """First contact; its pulls on their own scale where they are small; peaks where many."""
+    """First contact; its pulls on their own scale where they are small; peaks where many.
+
+    A panel of one pull has its name on the axis, so that no name stands twice in the legends.
+    """
     shown = [name for name in ("contact", "elastic", *_PULLS) if name in result.forces]
     others = [name for name in result.forces if name not in (*shown, "weight", "total")]
     if impacts.first_contact(result) is None and "weight" in result.forces:
@@ -53,9 +56,12 @@ def _contact(axes: Axes, result: Result, names: list[str]) -> None:
         )
     since = "time from closest approach" if start else "time since release"
     axes.set_xlabel(style.label(since, time_unit))
-    axes.set_ylabel(style.label("force", unit))
     axes.margins(x=0.0)
-    style.legend_above(axes)
+    if len(names) == 1:
+        axes.set_ylabel(style.label(names[0], unit))
+    else:
+        axes.set_ylabel(style.label("force", unit))
+        style.legend_above(axes)
 
 
 def _peaks(axes: Axes, result: Result) -> None:

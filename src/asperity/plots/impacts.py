@@ -76,6 +76,15 @@ def largest(result: Result, name: str, sign: float) -> np.ndarray:
     return np.maximum(np.maximum.reduceat(sign * force, starts), 0.0)
 
 
+def lost(result: Result, name: str) -> np.ndarray:
+    """Energy that a channel of losses took from apex to apex, per impact [J]."""
+    deepest = result.events.get("deepest_time", np.empty(0))
+    tops = result.events.get("apex_time", np.empty(0))[: max(deepest.size - 1, 0)]
+    ends = np.concatenate([result.time[:1], tops, result.time[-1:]])[: deepest.size + 1]
+    taken: np.ndarray = np.diff(np.interp(ends, result.time, result.energies[name]))
+    return taken
+
+
 def datum(result: Result) -> float | None:
     """Separation from which heights of rebound count [m]: at rest, or the conjunction's edge."""
     heights = result.measures.get("rebound_height") or []

@@ -27,13 +27,26 @@ def panels(result: Result) -> Row:
 
 
 def _heights(result: Result) -> np.ndarray:
-    """Heights of the release and of the rebounds above the datum [m]; NaN where not above."""
+    """Heights of the release and of the rebounds above the datum [m]; NaN where not above.
+
+    A body that is launched counts with the height v^2/2g that its speed is worth, since the
+    rebounds are to be compared with its energy; without gravity there is no such height.
+    """
     base = impacts.datum(result)
     if base is None:
         return np.empty(0)
     tops = [h if h is not None else np.nan for h in result.measures.get("rebound_height") or []]
-    found = np.array([result.separation[0] - base, *tops], dtype=float)
+    release = result.separation[0] - base
+    if _launched(result):
+        weight = abs(float(result.forces.get("weight", np.zeros(1))[0]))
+        release += result.energies["kinetic"][0] / weight if weight > 0.0 else np.nan
+    found = np.array([release, *tops], dtype=float)
     return np.where(found > 0.0, found, np.nan)
+
+
+def _launched(result: Result) -> bool:
+    """Whether the body is released with a speed."""
+    return bool(result.speed[0] != 0.0)
 
 
 def _whole(axes: Axes, result: Result) -> None:
@@ -84,7 +97,8 @@ def _rebounds(axes: Axes, result: Result, heights: np.ndarray) -> None:
     axes.plot(number, heights / metres, "-", lw=0.5, color=colour("quiet"))
     axes.plot(number, heights / metres, "o", ms=size, mew=0.0, color=colour("apex"))
     style.log_axis(axes, heights)
-    style.count_axis(axes, "rebound (0: release)")
+    release = "release + v²/2g" if _launched(result) else "release"
+    style.count_axis(axes, f"rebound (0: {release})" if np.isfinite(heights[0]) else "rebound")
     above = "rest" if result.case.publication is None else "the edge"
     axes.set_ylabel(style.label(f"height above {above}", unit))
 

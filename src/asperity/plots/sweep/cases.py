@@ -16,11 +16,14 @@ from asperity.studies.sweep.layout import OUTCOMES
 if TYPE_CHECKING:
     import xarray
 
-STICKS, BOUNCES, FAILED = colour("deepest"), colour("motion"), "#DDDDDD"
-"""Colours of cases that stick, that bounce, that failed."""
+CAPTURED, REBOUNDS, FAILED = colour("deepest"), colour("motion"), "#DDDDDD"
+"""Colours of cases whose first impact captures, that rebound from it, that failed."""
+
+WORDS = {"captured": "captured at the first impact", "rebounds": "rebounds"}
+"""What legends call them, however often a body rebounds before it comes to rest."""
 
 SHADE = "#F7E3D8"
-"""Behind lines where cases stick."""
+"""Behind lines where the first impact captures."""
 
 HATCH = "//////"
 
@@ -28,7 +31,7 @@ SERIES = ("motion", "apex", "capillary", "deepest", "gas", "central")
 """Names of the colours of series, in order."""
 
 BOUNDARY: Any = {"color": colour("contact"), "lw": 1.2}
-"""Of the line between sticking and bouncing."""
+"""Of the line between capture and rebound."""
 
 
 def failed(dataset: xarray.Dataset) -> np.ndarray:
@@ -37,8 +40,8 @@ def failed(dataset: xarray.Dataset) -> np.ndarray:
     return found
 
 
-def sticks(dataset: xarray.Dataset) -> np.ndarray | None:
-    """Whether a case sticks: 1, 0, and -1 where that is not known; None where it is not kept."""
+def captured(dataset: xarray.Dataset) -> np.ndarray | None:
+    """Whether the first impact captures: 1, 0, -1 where that is not known; None if not kept."""
     if "captured" not in dataset:
         return None
     values: np.ndarray = dataset["captured"].values
@@ -51,8 +54,8 @@ def failed_handle() -> tuple[Artist, str]:
 
 
 def boundary_handle() -> tuple[Artist, str]:
-    """What the line between sticking and bouncing is in a legend."""
-    return Line2D([], [], **BOUNDARY), "sticks | bounces"
+    """What the line between capture and rebound is in a legend."""
+    return Line2D([], [], **BOUNDARY), f"{WORDS['captured']} | {WORDS['rebounds']}"
 
 
 def dot(tint: str) -> Line2D:

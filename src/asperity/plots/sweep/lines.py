@@ -35,7 +35,7 @@ def page(dataset: xarray.Dataset, view: View, title: str) -> Page:
         for one, text in facets(dataset, view.facet)
         for measure, quantity in whole.items()
     ]
-    across = min(len(blocks), _PANELS if view.facet else 2)
+    across = min(len(blocks), _PANELS if view.facet or len(blocks) == _PANELS else 2)
     return Page(title, blocks, across, _legend(dataset, view))
 
 
@@ -61,7 +61,7 @@ def _drawing(
     shape = tuple(ordered.sizes[key] for key in along)
     values = numbers(ordered, measure).reshape(-1, shape[-1])
     lost = cases.failed(ordered).reshape(values.shape)
-    held = cases.sticks(ordered) if not view.series else None
+    held = cases.captured(ordered) if not view.series else None
 
     def draw(axes: Axes) -> None:
         x = axis_quantity(ordered[view.x])
@@ -71,8 +71,8 @@ def _drawing(
             _shade(axes, x, held == 1)
         for number, (row, gone) in enumerate(zip(values / whole.factor, lost, strict=True)):
             _line(axes, x, (row, gone), colour(cases.SERIES[number]), joined=not whole.names)
-        if not (x.log or x.names):
-            axes.margins(x=0.02)
+        if not x.names:  # the same in all panels, whichever values are known
+            axes.set_xlim(*x._replace(values=np.sort(x.values)).edges[[0, -1]])
         if view.facet and not whole.names:
             axes.set_ylim(*_limits(whole))
 
@@ -118,7 +118,7 @@ def _alone(values: np.ndarray) -> np.ndarray:
 
 
 def _shade(axes: Axes, x: Quantity, held: np.ndarray) -> None:
-    """Shade the cells of the cases that stick."""
+    """Shade the cells of the cases whose first impact captures."""
     order = np.argsort(x.values, kind="stable")
     ends = x._replace(values=x.values[order]).edges
     steps = np.flatnonzero(np.diff(np.concatenate([[0], held[order].astype(int), [0]])))
@@ -135,9 +135,9 @@ def _legend(dataset: xarray.Dataset, view: View) -> list[tuple[Artist, str]]:
             tint = colour(cases.SERIES[number])
             found.append((Line2D([], [], color=tint), f"{label} {words(value, unit)}"))
     else:
-        held = cases.sticks(dataset)
+        held = cases.captured(dataset)
         if held is not None and np.any(held == 1):
-            found.append((Patch(facecolor=cases.SHADE, lw=0.0), "sticks"))
+            found.append((Patch(facecolor=cases.SHADE, lw=0.0), cases.WORDS["captured"]))
     if cases.failed(dataset).any():
         cross = Line2D([], [], ls="", marker="x", ms=3.0, mew=0.6, color=colour("quiet"))
         found.append((cross, "failed"))

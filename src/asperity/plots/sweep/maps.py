@@ -1,4 +1,4 @@
-"""A measure of a study over two of its axes, with the line between sticking and bouncing."""
+"""A measure of a study over two of its axes, with the line between capture and rebound."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 _PANELS = 3
 _TINTS = {
-    "bounces": cases.BOUNCES,
-    "sticks": cases.STICKS,
+    "rebounds": cases.REBOUNDS,
+    "captured": cases.CAPTURED,
     "rest": colour("deepest"),
     "oscillating": colour("apex"),
     "escaped": colour("motion"),
@@ -63,14 +63,14 @@ def page(dataset: xarray.Dataset, view: View, title: str) -> Page:
 
 
 def boundary(edges: tuple[np.ndarray, np.ndarray], held: np.ndarray) -> np.ndarray:
-    """The line between cells that stick and cells that bounce, along the cells' edges.
+    """The line between cells that are captured and cells that rebound, along the cells' edges.
 
     Parameters
     ----------
     edges
         Of the cells along x and y, shapes (columns + 1,) and (rows + 1,).
     held
-        1 where a case sticks, 0 where it bounces, -1 where neither is known; shape
+        1 where the first impact captures, 0 where it does not, -1 where that is unknown; shape
         (rows, columns).
 
     Returns
@@ -105,7 +105,7 @@ def _drawing(
             norm=colours.norm, cmap=colours.map, rasterized=True,
         )  # fmt: skip
         _hatch(axes, (x.edges, y.edges), lost)
-        held = cases.sticks(ordered)
+        held = cases.captured(ordered)
         if held is not None and name != "captured":
             pieces = boundary((x.edges, y.edges), held.astype(int))
             axes.add_collection(
@@ -149,11 +149,11 @@ def _flags(measure: xarray.DataArray) -> list[str]:
 def _legend(dataset: xarray.Dataset, view: View, flags: list[str]) -> list[tuple[Artist, str]]:
     (name,) = view.measures
     found: list[tuple[Artist, str]] = [
-        (Patch(facecolor=_TINTS[flag], lw=0.0), flag.replace("_", " "))
+        (Patch(facecolor=_TINTS[flag], lw=0.0), cases.WORDS.get(flag, flag.replace("_", " ")))
         for code, flag in enumerate(flags)
         if flag in _TINTS and np.any(dataset[name].values == code)
     ]
-    held = cases.sticks(dataset)
+    held = cases.captured(dataset)
     if held is not None and name != "captured" and np.any(held == 1) and np.any(held == 0):
         found.append(cases.boundary_handle())
     if cases.failed(dataset).any():

@@ -74,14 +74,14 @@ Kind = tuple[np.ndarray, str, str]
 
 
 def _kinds(dataset: xarray.Dataset, cases_drawn: np.ndarray) -> list[Kind]:
-    """Cases that bounce and cases that stick: indices among those drawn, colour, name."""
-    held = cases.sticks(dataset)
+    """Cases that rebound and cases that are captured: indices among those drawn, colour, name."""
+    held = cases.captured(dataset)
     if held is None:
-        return [(np.arange(cases_drawn.size), cases.BOUNCES, "")]
+        return [(np.arange(cases_drawn.size), cases.REBOUNDS, "")]
     held = held.ravel()[cases_drawn]
     found = [
-        (np.flatnonzero(held == 0), cases.BOUNCES, "bounces"),
-        (np.flatnonzero(held == 1), cases.STICKS, "sticks"),
+        (np.flatnonzero(held == 0), cases.REBOUNDS, cases.WORDS["rebounds"]),
+        (np.flatnonzero(held == 1), cases.CAPTURED, cases.WORDS["captured"]),
         (np.flatnonzero(held < 0), colour("quiet"), "undecided"),
     ]
     return [kind for kind in found if kind[0].size]

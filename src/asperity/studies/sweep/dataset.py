@@ -209,6 +209,6 @@ def _variable(
 
 _FLAGS = {
     "outcome": ("not_computed", *(outcome.value for outcome in OUTCOMES)),
-    "captured": ("undecided", "bounces", "sticks"),
+    "captured": ("undecided", "rebounds", "captured"),
 }
 """Meanings of the codes -1, 0, 1, ... of a column."""

@@ -124,8 +124,8 @@ def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:
     """The table in pieces of one task, in order: arrays of one length by the columns' names.
 
     Axes and float measures are SI numbers, NaN where one does not apply; outcomes and reasons are
-    words; whether a body sticks is an object array of booleans and None. What has several values
-    a case has a column for each, with its number from 1 in the name.
+    words; whether the first impact captures is an object array of booleans and None. What has
+    several values a case has a column for each, with its number from 1 in the name.
     """
     study, store = found.study, found.store
     for number in range(study.tasks):

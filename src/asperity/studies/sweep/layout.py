@@ -66,10 +66,10 @@ LOSSES = ("adhesion", "capillary", "plastic", "gas", "waves", "viscous")
 """Mechanisms whose losses can be kept, as ``lost_NAME``."""
 
 MEASURES: tuple[Column, ...] = (
-    Column("impact_speed", "float64", "m/s", "speed of approach at the first impact"),
+    Column("impact_speed", "float64", "m/s", "impact speed"),
     Column("maximum_speed", "float64", "m/s", "largest speed on the first way in"),
     Column("captured", "int8", "", "whether the first impact captures"),
-    Column("critical_velocity", "float64", "m/s", "critical velocity, below which it captures"),
+    Column("critical_velocity", "float64", "m/s", "critical velocity"),
     Column("capture_time", "float64", "s", "time of the impact that captures"),
     Column("stiction_time", "float64", "s", "time from release to rest"),
     Column("end_time", "float64", "s", "time of the last apex"),

@@ -34,7 +34,7 @@ class Restitution:
     speed
         Impact speeds [m/s], ascending, shape (points,).
     restitution
-        Coefficients of restitution, 0 where the body sticks, shape (points,).
+        Coefficients of restitution, 0 where the first impact captures, shape (points,).
     about
         What they belong to, in lines.
     """
@@ -85,7 +85,7 @@ def restitution_of(dataset: xarray.Dataset, taken: str = "") -> Restitution:
         f"base case: {dataset.attrs['base']}",
         *([taken] if taken else []),
         *([f"{lost} of {known.size} cases have no restitution and are left out"] if lost else []),
-        "coefficient of restitution of the first impact, 0 where the body sticks",
+        "coefficient of restitution of the first impact, 0 where it captures",
     ]
     return Restitution(speed[order], bounce[order], tuple(about))
 

@@ -28,7 +28,6 @@ PREFIXED = ("m", "s", "N", "J", "W", "Pa", "m/s", "m/s^2", "J/m^2", "N/m", "Pa s
 """Units that take a prefix in front."""
 
 _BESIDE = ("closure", "turning_separation", "turning_time")
-_LATER = "impact_speed"
 
 
 @dataclass(frozen=True)
@@ -86,11 +85,20 @@ def words(value: object, unit: str = "1") -> str:
 
 
 def measures_of(dataset: xarray.Dataset) -> list[str]:
-    """Measures that can be drawn: those that are kept as numbers, the speed of impact, the rest."""
+    """Measures that can be drawn: those kept as numbers, the speed of impact, capture, the rest."""
     known = [str(name) for name in dataset.data_vars if name != "reason"]
-    known.sort(key=lambda name: name == _LATER)
+    known.sort(key=lambda name: (name == "impact_speed", name != "captured"))
     main = [n for n in known if dataset[n].dtype.kind == "f" and n not in _BESIDE]
     return [*main, *(n for n in known if n not in main)]
+
+
+def telling(dataset: xarray.Dataset) -> list[str]:
+    """Measures to draw unasked: none without a value, no impact speed that is given or fixed."""
+    speeds = dataset.get("impact_speed")
+    fixed = speeds is None or bool(speeds.max() <= (1.0 + 1e-6) * speeds.min())
+    idle = ("impact_speed",) if fixed or "impact.speed" in axes_of(dataset) else ()
+    known = measures_of(dataset)
+    return [n for n in known if n not in idle and dataset[n].notnull().any()] or known
 
 
 def measure_named(dataset: xarray.Dataset, name: str, option: str = "measure") -> str:
@@ -145,8 +153,7 @@ def at(dataset: xarray.Dataset, held: Mapping[str, str]) -> tuple[xarray.Dataset
         dataset = dataset.isel({key: index})
         taken.append(f"{axis.attrs['long_name']} {words(axis.values[index], _unit(axis))}")
     if not is_sample(dataset):
-        free = [key for key in axes_of(dataset) if dataset[key].ndim]
-        dataset = dataset.isel({key: 0 for key in free if dataset[key].size == 1})
+        dataset = dataset.isel({key: 0 for key in axes_of(dataset) if dataset[key].shape == (1,)})
     return dataset, ", ".join(taken)
 
 
@@ -164,7 +171,7 @@ def view_of(
     dataset
         The results, with what is held fixed taken out by `at`.
     measure
-        Measure to draw; without it the first that is kept, and for lines all that are.
+        Measure to draw; without it the first that is kept, and for lines all (see `telling`).
     x, y
         Keys of the axes to draw over; ``y`` asks for a map.
 
@@ -173,7 +180,7 @@ def view_of(
     InputError
         Where a name is unknown, or more axes are left than a picture can show.
     """
-    names = (measure_named(dataset, measure),) if measure else tuple(measures_of(dataset)[:1])
+    names = (measure_named(dataset, measure),) if measure else tuple(telling(dataset)[:1])
     for option, key in (("x", x), ("y", y)):
         if key is not None:
             _axis(dataset, key, option)
@@ -207,7 +214,7 @@ def _lines(dataset: xarray.Dataset, names: tuple[str, ...] | None, x: str, rest:
     text_first = sorted(rest, key=lambda key: is_number(dataset[key]))
     series = next((key for key in text_first if dataset[key].size <= FEW), "")
     facet = _facet(dataset, [key for key in rest if key != series])
-    known = measures_of(dataset)
+    known = telling(dataset)
     numbers = [name for name in known if dataset[name].dtype.kind == "f" and name not in _BESIDE]
     drawn = tuple((numbers or known)[: 1 if facet else MOST_PANELS])
     return View("lines", names or drawn, x, series=series, facet=facet)
@@ -215,8 +222,7 @@ def _lines(dataset: xarray.Dataset, names: tuple[str, ...] | None, x: str, rest:
 
 def _facet(dataset: xarray.Dataset, rest: list[str]) -> str:
     """The axis that is left for panels side by side, if any."""
-    short = [key for key in rest if dataset[key].size <= MOST_PANELS]
-    facet = short[0] if short else ""
+    facet = next((key for key in rest if dataset[key].size <= MOST_PANELS), "")
     beyond = [key for key in rest if key != facet]
     if beyond:
         options = " ".join(f"--at {key}={_middle(dataset[key])}" for key in beyond)
@@ -277,9 +283,8 @@ def _nearest(axis: xarray.DataArray, text: str) -> int:
                 key="at",
             )
         return names.index(text)
-    unit = _unit(axis)
+    unit, values = _unit(axis), axis.values.astype(float)
     wanted = _number(text, str(axis.name)) if unit == "1" else quantity(text, unit, str(axis.name))
-    values = axis.values.astype(float)
     if axis.attrs.get("scale") == "log" and wanted > 0.0:
         values, wanted = np.log(values), float(np.log(wanted))
     return int(np.argmin(np.abs(values - wanted)))

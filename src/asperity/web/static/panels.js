@@ -1,7 +1,7 @@
 // Everything that shows answers: charts, verdicts, ledger, measures, warnings.
 
 import { Chart, tint } from "/static/charts.js";
-import { amount, short } from "/static/units.js";
+import { amount, shares } from "/static/units.js";
 
 const MEASURES = [
   ["impact speed", (a) => amount(a.measures.impact_speed, "m/s")],
@@ -137,22 +137,23 @@ function ledger(answered, two) {
     const gone = parts.reduce((sum, [, energy]) => sum + energy, 0);
     const whole = Math.max(initial, gone);
     if (gone <= initial) parts.push(["kept", initial - gone, "transparent"]);
+    const told = shares(Object.values(lost));
     const bar = text("div", "", { className: "bar" });
     bar.setAttribute("aria-hidden", "true");
     const list = document.createElement("ul");
-    for (const [name, energy, colour] of parts) {
+    for (const [number, [name, energy, colour]] of parts.entries()) {
       const share = text("span", "");
-      const percent = whole > 0 ? (100 * energy) / whole : 0;
-      share.style.width = `${percent}%`;
+      share.style.width = `${whole > 0 ? (100 * energy) / whole : 0}%`;
       share.style.background = colour;
       bar.append(share);
       const mark = document.createElement("i");
       mark.style.background = colour;
       const item = document.createElement("li");
-      item.append(mark, `${name}: ${amount(energy, "J")} (${short(percent, 3)} %)`);
+      const about = number < told.length && energy > 0 ? ` (${told[number]} of the energy lost)` : "";
+      item.append(mark, `${name}: ${amount(energy, "J")}${about}`);
       list.append(item);
     }
-    const source = `100 %: ${amount(initial, "J")} at the release`;
+    const source = `whole bar: ${amount(initial, "J")} at the release`;
     const bound = gone > initial ? ` and ${amount(gone - initial, "J")} that attraction gave in the end` : "";
     list.append(text("li", source + bound));
     return [...(two ? [text("strong", letter)] : []), bar, list];

@@ -22,6 +22,20 @@ export function short(value, digits = 4) {
   return size !== 0 && (size < 1e-3 || size >= 1e6) ? rounded.toExponential() : String(rounded);
 }
 
+// Shares of a sum in per cent that add up to 100 as they are written: what rounding down leaves goes
+// to the largest remainders. The same rule as asperity/shares.py.
+export function shares(parts, places = 1) {
+  const sizes = parts.map((part) => (part > 0 ? part : 0));
+  const total = sizes.reduce((sum, size) => sum + size, 0);
+  const unit = 10 ** places;
+  const exact = sizes.map((size) => (total > 0 ? (size / total) * 100 * unit : 0));
+  const steps = exact.map(Math.floor);
+  const missing = total > 0 ? 100 * unit - steps.reduce((sum, step) => sum + step, 0) : 0;
+  const order = [...exact.keys()].sort((a, b) => exact[b] - steps[b] - (exact[a] - steps[a]));
+  for (const k of order.slice(0, missing)) steps[k] += 1;
+  return steps.map((step, k) => (step || !sizes[k] ? `${step / unit} %` : `< ${1 / unit} %`));
+}
+
 export function largest(arrays) {
   let most = 0;
   for (const values of arrays) for (const value of values) if (Math.abs(value) > most) most = Math.abs(value);
