@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .impact import Body, simulate
     from .measures import measure
     from .records import read
+    from .restitution import RestitutionCurve, restitution_curve
     from .result import Curve, Result
     from .solver import curve, solve
     from .studies.reproduce import Reproduction, reproduce
@@ -31,6 +32,7 @@ _HOMES = {
     "InputError": "errors",
     "Outcome": "errors",
     "Reproduction": "studies.reproduce",
+    "RestitutionCurve": "restitution",
     "Result": "result",
     "SimulationError": "errors",
     "Tolerance": "errors",
@@ -39,6 +41,7 @@ _HOMES = {
     "open_study": "studies.sweep.dataset",
     "read": "records",
     "reproduce": "studies.reproduce",
+    "restitution_curve": "restitution",
     "simulate": "impact",
     "solve": "solver",
 }
@@ -50,6 +53,7 @@ __all__ = [
     "InputError",
     "Outcome",
     "Reproduction",
+    "RestitutionCurve",
     "Result",
     "SimulationError",
     "Tolerance",
@@ -59,6 +63,7 @@ __all__ = [
     "open_study",
     "read",
     "reproduce",
+    "restitution_curve",
     "simulate",
     "solve",
 ]

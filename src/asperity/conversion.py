@@ -17,7 +17,8 @@ from .impact.datum import Datum, end_of_contact
 from .impact.sampling import Series, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, Table, quantities
 from .impact.trajectory import Trajectory
-from .measures import FirstContact, Measures, measure
+from .laws.base import as_float64
+from .measures import FirstContact, Measures, least_peak, measure
 from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
@@ -44,7 +45,8 @@ class Flight(NamedTuple):
 def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
     """Compile what measures such a motion, in a thread; shapes serve in place of arrays."""
     rows = jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct((_least_rows(body), *leaf.shape[1:]), leaf.dtype), motion.impacts
+        lambda leaf: jax.ShapeDtypeStruct((_least_rows(body), *leaf.shape[1:]), leaf.dtype),
+        motion.impacts,
     )
     _measure.ahead(motion._replace(impacts=rows), body, None, None)
     losses.ahead(contact)
@@ -56,7 +58,7 @@ def _least_rows(body: Body) -> int:
 
 def contact_end(table: Table, peak: float) -> float:
     """The end of a contact whose largest force is ``peak`` [N]: a separation [m]."""
-    return float(_end_of_contact(table, np.asarray(peak)))
+    return float(_end_of_contact(table, as_float64(peak)))
 
 
 def measured(flight: Flight, body: Body) -> Measures:
@@ -71,22 +73,25 @@ def measured(flight: Flight, body: Body) -> Measures:
     whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
     if flight.trajectory is None:
         return _measure(whole, body, None, None)
-    first, passing = _stepped_contact(flight.trajectory, motion), None
+    first, passing = _stepped_contact(flight.trajectory, motion, body), None
     if body.film is not None:
         found = flight.trajectory.passing(float(first.end), float(body.mass))
         passing = jax.tree_util.tree_map(pad, found)
     return _measure(whole, body, passing, first)
 
 
-def _stepped_contact(trajectory: Trajectory, motion: Motion) -> FirstContact:
+def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> FirstContact:
     """The first contact of a motion that was stepped in time."""
     pulled, series = trajectory.unloading(), trajectory.series
     peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
     end = contact_end(motion.table, peak)
     held = float(motion.impacts.apex[0]) < end
     time = np.nan if held else trajectory.contact_time(end)
-    force = np.max(series.rows[series.phase < 2, FORCE])
-    return FirstContact(*(np.asarray(x) for x in (end, time, force)), pulled)
+    force = float(np.max(series.rows[series.phase < 2, FORCE]))
+    outset = contact_end(motion.table, float(least_peak(body, pulled.pull_off, peak)))
+    return FirstContact(
+        as_float64(end), as_float64(time), as_float64(force), pulled, as_float64(outset)
+    )
 
 
 def _sampled(
@@ -343,7 +348,7 @@ def _plain(measures: Measures, made: int) -> dict[str, Any]:
     """Measures as plain numbers and lists, None where one does not apply."""
     out: dict[str, Any] = {}
     for name, value in measures._asdict().items():
-        if name == "reference":
+        if name in ("reference", "outset"):
             continue
         array = np.asarray(value)
         if array.ndim == 0:

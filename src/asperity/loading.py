@@ -13,6 +13,7 @@ from .flying import prepared
 from .impact import Body, Table
 from .impact.datum import find_datum
 from .impact.table import FORCE
+from .laws.base import as_float64
 from .program import AT_ONCE, Program
 
 _LEAST, _FACTOR, _STEPS = 1e-24, 8.0, 40  # J: energies of curves, until they reach far enough
@@ -61,16 +62,16 @@ def turning_at(
     for step in range(_STEPS):
         speed = np.sqrt(2.0 * _LEAST * _FACTOR**step / mass)
         table, _ = prepared(contact, dataclasses.replace(body, speed=speed))
-        place = _place(table, load) if depth is None else -depth
+        place = _place(table, load) if load is not None else -float(depth or 0.0)
         if place is not None and float(table.ends[0]) < place:
             return problem._replace(body=_turning(body, table, place))
-    wanted = f"a load of {load:.6g} N" if depth is None else f"a depth of {depth * 1e9:.6g} nm"
+    wanted = f"a load of {load:.6g} N" if depth is None else f"a depth of {1e9 * depth:.6g} nm"
     raise SimulationError(f"no approach was found that reaches {wanted}")
 
 
-def _place(table: Table, load: float | None) -> float | None:
+def _place(table: Table, load: float) -> float | None:
     """Where an approach first carries a load [m]; None where nothing in the table does."""
-    found = _datum(table, np.asarray(load), 0)
+    found = _datum(table, as_float64(load / (1.0 + 1e-9)), 0)
     return float(found.equilibrium) if bool(found.rests) else None
 
 
@@ -91,7 +92,7 @@ def _turning(body: Body, table: Table, place: float) -> Body:
 
 def _gained(table: Table, place: float) -> float:
     """Work of the contact force from the top of the table to a place of its approach [J]."""
-    panel = int(table.panel_at(np.asarray(place)))
+    panel = int(table.panel_at(as_float64(place)))
     low, high = np.asarray(table.ends)[panel : panel + 2]
     x = (2.0 * place - low - high) / (high - low)
     return float(chebval(x, np.asarray(table.works.integral)[0, panel, :, 0]))

@@ -20,6 +20,8 @@ from .impact.unloading import Unloading, unloading
 from .laws.base import Real
 from .program import kept
 
+_LEAST = 1e-6  # of the force of one impact: none is gentler
+
 
 @kept
 class Measures(NamedTuple):
@@ -69,6 +71,9 @@ class Measures(NamedTuple):
     reference
         Separation [m] at which energies in and out are compared: the end of contact, or
         NaN where the body is released within it and the static equilibrium is taken.
+    outset
+        Separation [m] beyond which even the gentlest impact meets no force: in that the weight or
+        the pull-off force is the largest.
     """
 
     impact_speed: jax.Array
@@ -89,6 +94,7 @@ class Measures(NamedTuple):
     work_of_separation: jax.Array
     preload: jax.Array
     reference: jax.Array
+    outset: jax.Array
 
 
 @kept
@@ -106,12 +112,15 @@ class FirstContact(NamedTuple):
         Largest contact force of that impact [N].
     unloading
         What pulls the body back after it.
+    outset
+        As in :class:`Measures` [m].
     """
 
     end: jax.Array
     time: jax.Array
     force: jax.Array
     unloading: Unloading
+    outset: jax.Array
 
 
 Passing = tuple[jax.Array, jax.Array]
@@ -183,6 +192,7 @@ def measure(
         work_of_separation=pulled.work,
         preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
         reference=jnp.where(outside, reference, jnp.nan),
+        outset=first.outset,
     )
 
 
@@ -202,7 +212,13 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
         time=jnp.where(rows.apex[0] >= end, time, jnp.nan),
         force=rows.force[0],
         unloading=pulled,
+        outset=end_of_contact(table, least_peak(body, pulled.pull_off, peak)),
     )
+
+
+def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
+    """Largest force of the gentlest impact [N]: the weight or the pull-off force."""
+    return jnp.maximum(jnp.maximum(body.weight, pull_off), _LEAST * peak)
 
 
 def _ahead(table: Table, phase: Phase, *, parting: bool) -> Pieces:

@@ -1,191 +1,244 @@
-"""First impacts at other speeds: the critical velocity, below which a body is captured."""
+"""Coefficient of restitution of the first impact against its speed, over decades."""
 
 from __future__ import annotations
 
+import csv
 import dataclasses
+import io
+import json
+import os
 import threading
-from typing import NamedTuple
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .case.build import CLEARANCE, Problem
-from .conversion import Flight, contact_end, measured
-from .errors import SimulationError
-from .flying import fly_prepared, prepared, silently
+from .capture import Launcher, Rebound, critical_measures
+from .case import Case
+from .case.build import build
+from .conversion import assessment_of, measured
+from .errors import InputError, SimulationError
+from .flying import Report, flown, silently
 from .impact import Limits
-from .impact.critical import Edges, FirstImpacts, capture_edges, speeds_about
-from .summary import amount
-from .trace import first_unloading
+from .summary import amount, warning_lines
 
-_ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
 
-
-class Rebound(NamedTuple):
-    """The first impact of a body with one speed of approach.
-
-    Attributes
-    ----------
-    speed
-        Speed of approach at the end of contact [m/s]; NaN where it could not be computed.
-    restitution
-        Coefficient of restitution; 0 where it is captured, NaN where gas alone holds it.
-    captured
-        Whether it is captured.
-    excess
-        Kinetic energy left at the end of contact [J], as in
-        :class:`asperity.impact.critical.FirstImpacts`.
-    """
-
-    speed: float
-    restitution: float
-    captured: bool
-    excess: float
+POINTS = 61
+"""Speeds that are computed where none are given."""
+_FINER = (4,)  # times as many panels where fast impacts ask for them
+_BELOW, _ABOVE = 0.1, 100.0  # from and to how many critical velocities it is drawn
 
 
-_UNKNOWN = Rebound(np.nan, np.nan, False, np.nan)
-
-
-class Launcher:
-    """First impacts of the body of a problem, launched where the forces on it begin.
+@dataclass(frozen=True, eq=False, repr=False)
+class RestitutionCurve:
+    """Restitution of a case's first impact for many speeds of approach.
 
     Parameters
     ----------
-    problem
-        What was built from a case.
-    flight
-        A motion of it: its contact, its curves and its forces are taken.
-    limits
-        Ends of its motion.
-    many
-        As for :func:`asperity.flying.flown`: it names the programs that are compiled already.
-    finer
-        Factors on the panels of the curves that are tried where these are not fine enough. Each
-        is compiled anew.
-    stop
-        Set from another thread, it ends the search: no impact is computed after.
+    case : Case
+        The resolved case; its own speed does not count.
+    name : str
+        What it is called.
+    speed : numpy.ndarray
+        Speeds of approach where forces begin [m/s], ascending.
+    restitution : numpy.ndarray
+        Coefficient of restitution, 0 where the first impact captures, NaN where gas alone holds
+        the body; as long as ``speed``.
+    captured : numpy.ndarray
+        Whether the first impact captures; as long as ``speed``.
+    critical_velocity : float, optional
+        Lowest speed at which capture gives way to rebound, or the reverse [m/s]; None where all
+        speeds that were tried do the same.
+    capture_edges : list of float
+        All such speeds [m/s], ascending.
+    note : str, optional
+        Why there is no critical velocity, or which speeds are captured where it is not just those
+        below it.
+    own_speed : float
+        Speed of approach of the case itself [m/s].
+    warnings : list of str
+        What to know before the numbers are used, for the case's own speed.
+    input_sha256 : str, optional
+        SHA-256 of the text that the case was read from.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        flight: Flight,
-        limits: Limits,
-        *,
-        many: bool = False,
-        finer: tuple[int, ...] = (),
-        stop: threading.Event | None = None,
-    ) -> None:
-        body = dataclasses.replace(problem.body, release=_where_forces_begin(flight, problem))
-        self._problem, self._many, self._stop = problem._replace(body=body), many, stop
-        self._contacts = [flight.contact, *(flight.contact.refined(n) for n in finer)]
-        self._limits = limits._replace(impacts=np.asarray(1), time=np.asarray(np.inf))
-        self.missed = 0
-        """Impacts that could not be computed."""
+    case: Case
+    name: str
+    speed: np.ndarray
+    restitution: np.ndarray
+    captured: np.ndarray
+    critical_velocity: float | None
+    capture_edges: list[float]
+    note: str | None
+    own_speed: float
+    warnings: list[str]
+    input_sha256: str | None = None
 
-    def __call__(self, speed: float) -> Rebound:
-        """The first impact of a body launched with a speed [m/s]."""
-        found = _UNKNOWN
-        if self._stop is None or not self._stop.is_set():
-            found = self._launched(float(speed))
-            self.missed += not np.isfinite(found.speed)
-        return found
+    def dataset(self) -> xarray.Dataset:
+        """The curve as a dataset over the speed, with units."""
+        import xarray
 
-    def _launched(self, speed: float) -> Rebound:
-        body = dataclasses.replace(self._problem.body, speed=speed)
-        problem = self._problem._replace(body=body)
-        for contact in self._contacts:
-            curves = prepared(contact, body, many=self._many)
-            if float(curves[0].error) <= _ERROR and float(curves[0].residual) <= _ERROR:
-                break
-        else:
-            return _UNKNOWN
-        try:
-            flight = fly_prepared(problem, contact, curves, self._limits, silently, self._stop)
-        except SimulationError:
-            return _UNKNOWN
-        measures = measured(flight, body)
-        if not np.isfinite(measures.reference):  # contact reaches beyond where it was launched
-            return _UNKNOWN
-        leaving = float(np.asarray(flight.motion.impacts.leaving)[0])
-        return Rebound(
-            float(measures.impact_speed),
-            float(np.asarray(measures.restitution)[0]),
-            bool(measures.captured),
-            leaving - float(body.weight) * float(measures.reference),
+        about = {"units": "1", "long_name": "coefficient of restitution of the first impact"}
+        speed = {"units": "m/s", "long_name": "speed of approach"}
+        return xarray.Dataset(
+            {
+                "restitution": ("speed", self.restitution, about),
+                "captured": ("speed", self.captured, {"long_name": "captured at first impact"}),
+            },
+            coords={"speed": ("speed", self.speed, speed)},
+            attrs={"name": self.name, "case": self.case.toml()},
         )
 
-    def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
-        """First impacts with several speeds [m/s], one after the other; there is one case."""
-        found = [self(speed) for speed in speeds.tolist()]
-        columns = zip(*((r.speed, r.captured, r.excess) for r in found), strict=True)
-        mass = float(self._problem.body.mass)
-        return FirstImpacts.of(*(np.asarray(column) for column in columns), mass)
+    def json_object(self) -> dict[str, Any]:
+        """Plain values in SI, None where one does not apply."""
+        from asperity import records
 
-    def edges(self, flight: Flight) -> Edges | None:
-        """The edges of capture about a motion; None where nothing can take energy."""
-        body, impacts = self._problem.body, flight.motion.impacts
-        if not flight.contact.mechanisms and not body.damped:
-            return None
-        lost = float(flight.motion.release) - float(impacts.leaving[0])
-        if not np.isfinite(lost):
-            lost = float(np.sum(impacts.lost[0]))
-        ends = speeds_about(impacts.fastest[:1], np.asarray([lost]), float(body.mass))
-        return capture_edges(self.together, *ends)[0]
+        names = [field.name for field in dataclasses.fields(self) if field.name != "case"]
+        found: dict[str, Any] = records.plain({name: getattr(self, name) for name in names})
+        return found
+
+    def plot(self) -> Figure:
+        """Restitution against speed, with the critical velocity."""
+        from asperity.plots import restitution
+
+        return restitution.figure(
+            self.speed,
+            self.restitution,
+            self.captured,
+            edges=tuple(self.capture_edges),
+            critical=self.critical_velocity,
+            own_speed=self.own_speed,
+            name=self.name,
+        )
+
+    def summary(self) -> str:
+        """Critical velocity and a table of restitution, as text."""
+        lines = [f"{self.name}: restitution of the first impact against speed of approach", ""]
+        critical = self.note or ""
+        if self.critical_velocity is not None:
+            note = f"  ({self.note})" if self.note else ""
+            critical = amount(self.critical_velocity, "m/s") + note
+        lines.append(f"  {'critical velocity':<26}{critical}")
+        lines.append(f"  {'speed of the case':<26}{amount(self.own_speed, 'm/s')}")
+        lines += ["", f"  {'speed':<26}restitution"]
+        for at in range(0, self.speed.size, max(1, (self.speed.size - 1) // 12)):
+            kept, held = self.restitution[at], self.captured[at]
+            told = "captured" if held else "-" if np.isnan(kept) else f"{kept:.4f}"
+            lines.append(f"  {amount(float(self.speed[at]), 'm/s'):<26}{told}")
+        return "\n".join([*lines, *warning_lines(self.warnings)])
+
+    def files(self, *, pictures: bool = True) -> dict[str, bytes]:
+        """Content of every file, by name: a table, its numbers as JSON, pictures, a summary."""
+        found = {
+            "restitution.csv": self._table().encode(),
+            "restitution.json": json.dumps(self.json_object(), allow_nan=False).encode() + b"\n",
+            "restitution.txt": self.summary().encode() + b"\n",
+        }
+        if pictures:
+            from asperity.plots import restitution
+
+            found |= restitution.pictures(self.plot())
+        return found
+
+    def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:
+        """Write table, pictures and summary, all or none; as `Result.save`."""
+        from asperity import records
+
+        return records.write_folder(directory, self.files(), records.RESTITUTION_FILES, force=force)
+
+    def _table(self) -> str:
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["speed [m/s]", "restitution [-]", "captured"])
+        rows = zip(self.speed.tolist(), self.restitution.tolist(), self.captured, strict=True)
+        writer.writerows((speed, "" if e != e else e, int(held)) for speed, e, held in rows)
+        return out.getvalue()
+
+    def __repr__(self) -> str:
+        return f"<RestitutionCurve {self.name}: {self.speed.size} speeds>"
 
 
-def _where_forces_begin(flight: Flight, problem: Problem) -> float:
-    """A separation [m] just outside the end of contact of even the gentlest impact.
-
-    None is gentler than one in which the weight or the pull-off force is the largest force. It is
-    where any force ends for a contact that yields, whose curves are those after one impact, and in
-    gas, which may stop a body where it carries less than its weight.
-    """
-    impacts, table = flight.motion.impacts, flight.motion.table
-    reach = float(flight.contact.reach)
-    if flight.contact.yields or problem.body.film is not None:
-        return reach + CLEARANCE
-    pull = float(first_unloading(table, impacts).pull_off)
-    least = max(float(problem.body.weight), pull, _ERROR * abs(float(impacts.force[0])))
-    return min(reach, contact_end(table, least)) + CLEARANCE
-
-
-def critical_measures(edges: Edges | None) -> dict[str, object]:
-    """The critical velocity as measures of a result.
+def restitution_curve(
+    case: Case,
+    speeds: np.ndarray | None = None,
+    *,
+    points: int = POINTS,
+    name: str = "case",
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+) -> RestitutionCurve:
+    """Restitution of the first impact against speed of approach, and the critical velocity.
 
     Parameters
     ----------
-    edges
-        The edges of capture; None where nothing can take energy.
+    case
+        A case; the body is launched where the forces on it begin.
+    speeds
+        Speeds of launch [m/s], all positive; by default over three decades about the critical
+        velocity, or about the case's own speed where there is none.
+    points
+        How many speeds, where they are chosen.
+    name, progress, stop
+        As for :func:`asperity.solve`.
 
-    Returns
-    -------
-    ``critical_velocity``, the lowest edge [m/s] or None; ``capture_edges``, all of them; and
-    ``critical_velocity_note``: why there is none, or which speeds are captured where they are not
-    just those below it.
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`asperity.solve`.
     """
-    note: str | None = None
-    if edges is None:
-        note = "every speed rebounds: nothing takes energy"
-    elif not np.isfinite(edges.tried[0]):
-        note = "not known: no first impact at another speed could be computed"
-    elif not edges.speeds:
-        low, high = (amount(speed, "m/s") for speed in edges.tried)
-        note = f"every speed tried {'is captured' if edges.lowest else 'rebounds'}, {low} to {high}"
-    elif len(edges.speeds) > 1 or not edges.lowest:
-        note = _intervals(edges)
-    speeds = [] if edges is None else list(edges.speeds)
-    return {
-        "critical_velocity": speeds[0] if speeds else None,
-        "capture_edges": speeds,
-        "critical_velocity_note": note,
-    }
+    if speeds is not None:
+        speeds = np.unique(np.asarray(speeds, float))
+        if not speeds.size or not np.all(np.isfinite(speeds)) or speeds[0] <= 0.0:
+            raise InputError("`speeds` must be positive and finite, in m/s", key="speeds")
+    tell, problem, _ = progress or silently, build(case), case.launch
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1, time_limit=np.inf))
+    numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
+    first = case.model_copy(update={"numerics": numerics})
+    flight = flown(first, problem, tell, stop)
+    about = assessment_of(case, name, problem, flight.contact, flight.motion)
+    measures = measured(flight, problem.body)
+    own = float(measures.impact_speed)  # none where gas stops the body before
+    own = own if np.isfinite(own) else float(measures.maximum_speed)
+    launcher = Launcher(problem, flight, limits, finer=_FINER, stop=stop)
+    tell(0.3, "critical velocity")
+    found = critical_measures(launcher.edges(flight))
+    if speeds is None:
+        speeds = _decades(found["capture_edges"], own, points)
+    rebounds: list[Rebound] = []
+    for number, speed in enumerate(speeds.tolist()):
+        tell(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
+        rebounds.append(launcher(speed))
+    known = sorted((r for r in rebounds if np.isfinite(r.speed)), key=lambda r: r.speed)
+    if not known:
+        raise SimulationError("no first impact could be computed at any of the speeds")
+    warnings = list(about.warnings)
+    if len(known) < len(rebounds):
+        warnings.append(
+            f"{len(rebounds) - len(known)} of {len(rebounds)} speeds are left out: their force "
+            "curves are not fine enough, or their motion could not be solved"
+        )
+    tell(1.0, "done")
+    return RestitutionCurve(
+        case=case,
+        name=name,
+        speed=np.array([rebound.speed for rebound in known]),
+        restitution=np.array([rebound.restitution for rebound in known]),
+        captured=np.array([rebound.captured for rebound in known]),
+        critical_velocity=found["critical_velocity"],
+        capture_edges=found["capture_edges"],
+        note=found["critical_velocity_note"],
+        own_speed=own,
+        warnings=warnings,
+    )
 
 
-def _intervals(edges: Edges) -> str:
-    """Which speeds are captured."""
-    ends = [""] * edges.lowest + [amount(speed, "m/s") for speed in edges.speeds]
-    parts = []
-    for low, high in zip(ends[::2], [*ends[1::2], ""], strict=False):
-        both = f"from {low} to {high}" if low and high else ""
-        parts.append(both or (f"below {high}" if high else f"above {low}"))
-    return "captured " + ", ".join(parts)
+def _decades(edges: list[float], own: float, points: int) -> np.ndarray:
+    """Speeds [m/s] over decades: about the edges of capture, and about the case's own."""
+    low, high = (edges[0], edges[-1]) if edges else (own, own)
+    first, last = min(_BELOW * low, own), max(_ABOVE * high, own)
+    speeds: np.ndarray = np.geomspace(first, last, points)
+    return speeds

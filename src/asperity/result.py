@@ -87,23 +87,35 @@ class Result:
 
         return plots.figure(self)
 
-    def summary(self) -> str:
-        """Outcome and measures as text."""
+    def summary(self, *, published: bool | None = None) -> str:
+        """Outcome and measures as text.
+
+        Parameters
+        ----------
+        published : bool, optional
+            Whether the publication's measures are in it: decrement and power losses; by default
+            for a case with a [publication] table.
+        """
         from asperity import records
 
-        return summary.of_result(self, records.attributes(self))
+        return summary.of_result(self, records.attributes(self), published=published)
 
-    def files(self, *, pictures: bool | None = None) -> dict[str, bytes]:
+    def files(
+        self, *, pictures: bool | None = None, published: bool | None = None
+    ) -> dict[str, bytes]:
         """Content of every file of the result, by name.
 
         Parameters
         ----------
         pictures : bool, optional
             Whether to draw; without it as the case's ``output.pictures`` says.
+        published : bool, optional
+            As for `summary`.
         """
         from asperity import records
 
-        found = {"record.nc": records.encode(self), "summary.txt": self.summary().encode()}
+        text = self.summary(published=published).encode()
+        found = {"record.nc": records.encode(self), "summary.txt": text}
         if self.case.output.pictures if pictures is None else pictures:
             from asperity import plots
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 import threading
+from typing import Any
 
+from .capture import sought
 from .case import Case
 from .case.build import Problem, build
 from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
@@ -13,7 +15,6 @@ from .errors import InputError, Outcome, SimulationError
 from .flying import Report, cut_in_steps, first_impact, flown, silently
 from .impact import Limits
 from .loading import turning_at
-from .restitution import Launcher, critical_measures
 from .result import Curve, Result
 from .trace import trace
 
@@ -25,6 +26,7 @@ def solve(
     progress: Report | None = None,
     stop: threading.Event | None = None,
     throw: bool = True,
+    critical: bool = True,
 ) -> Result:
     """Motion of a case from its release to its end, with everything measured.
 
@@ -40,6 +42,8 @@ def solve(
         Set from another thread, it ends the motion early; what was computed is returned.
     throw
         Whether a numerical failure raises, or comes back as the result's outcome.
+    critical
+        Whether the critical velocity is sought: that takes some twenty first impacts.
 
     Raises
     ------
@@ -52,10 +56,9 @@ def solve(
     tell, problem = progress or silently, build(case)
     flight = flown(case, problem, tell, stop)
     result = _told(case, name, problem, flight, tell, None)
-    if flight.outcome.ok:
+    if critical:
         tell(0.92, "critical velocity")
-        launcher = Launcher(problem, flight, Limits.of(case.tolerance), stop=stop)
-        result.measures.update(critical_measures(launcher.edges(flight)))
+        result.measures.update(sought(flight, problem, Limits.of(case.tolerance), stop))
     tell(1.0, "done")
     if flight.outcome is Outcome.FAILED and throw:
         raise SimulationError(_failure(case), result)
@@ -99,6 +102,36 @@ def explore(
     drawn = trace(flight.contact, flight.motion.table, flight.motion.impacts)
     tell(1.0, "done")
     return result, Curve(case, name, **drawn, warnings=result.warnings)
+
+
+def critical_velocity(
+    case: Case,
+    *,
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+) -> dict[str, Any]:
+    """The critical velocity of a case, by the programs that :func:`explore` has compiled.
+
+    Parameters
+    ----------
+    case, progress, stop
+        As for :func:`solve`.
+
+    Returns
+    -------
+    As :func:`asperity.capture.critical_measures`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    _ = case.launch
+    numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
+    case = case.model_copy(update={"numerics": numerics})
+    tell, problem = progress or silently, cut_in_steps(build(case))
+    flight = flown(case, problem, tell, stop, many=True)
+    return sought(flight, problem, Limits.of(case.tolerance), stop, many=True)
 
 
 def _told(

@@ -27,11 +27,14 @@ _PREFIXES = {
 _COLUMNS = (
     ("height", "rebound_height", "m"),
     ("restitution", "restitution", ""),
-    ("decrement", "log_decrement", ""),
     ("period", "impact_time", "s"),
+)
+_PUBLISHED = (
+    ("decrement", "log_decrement", ""),
     ("power loss", "power_loss", "W"),
     ("one-way", "power_loss_published", "W"),
 )
+"""What the publication counts."""
 
 
 def scaled(value: float, unit: str) -> tuple[float, str]:
@@ -67,7 +70,7 @@ def amount(value: float | None, unit: str = "") -> str:
     return f"{value / factor:.4g} {prefixed}".strip()
 
 
-def of_result(result: Result, made: Mapping[str, object]) -> str:
+def of_result(result: Result, made: Mapping[str, object], *, published: bool | None = None) -> str:
     """All of a result: outcome, measures, regime, energy, every impact, warnings, provenance.
 
     Parameters
@@ -76,6 +79,9 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
         The result.
     made : mapping of str to object
         Its record's attributes, for the versions and the hash of the input.
+    published : bool, optional
+        Whether the publication's measures are shown too: decrement and power losses; by default
+        for a case with a [publication] table.
     """
     return "\n".join(
         [
@@ -85,7 +91,7 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
             *_section("Surface", _surface(result.surface)),
             *_section("Regime", _regime(result.regime)),
             *_chosen(result.regime),
-            *_impacts(result.measures, None),
+            *_impacts(result, None, published),
             *warning_lines(result.warnings),
             *_provenance(made),
             "",
@@ -96,11 +102,12 @@ def of_result(result: Result, made: Mapping[str, object]) -> str:
 def of_curve(curve: Curve, made: Mapping[str, object]) -> str:
     """The numbers of a curve, and where they come from; ``made`` as for `of_result`."""
     heading = _heading(curve.name, "Force against separation, in and out.")
-    return "\n".join([*heading, *_section("Curve", _curve(curve)), *_provenance(made), ""])
+    rows = _section("Curve", _curve(curve))
+    return "\n".join([*heading, *rows, *warning_lines(curve.warnings), *_provenance(made), ""])
 
 
-def brief(result: Result) -> str:
-    """What a terminal shows of a result: verdict, measures, the first impacts, warnings."""
+def brief(result: Result, *, published: bool | None = None) -> str:
+    """What a terminal shows of a result; ``published`` as for `of_result`."""
     rows = [*_motion(result.measures), *_energy(result.ledger)]
     return "\n".join(
         [
@@ -108,33 +115,57 @@ def brief(result: Result) -> str:
             *_wrapped(_ended(result)),
             *_section("", rows),
             *_chosen(result.regime),
-            *_impacts(result.measures, FEW),
+            *_impacts(result, FEW, published),
             *warning_lines(result.warnings),
         ]
     )
 
 
 def _ended(result: Result) -> str:
-    """How the motion ended, and the answer in a sentence where there is one."""
-    answer = f" The body {verdict(result)}." if result.outcome.ok else ""
-    return f"{result.outcome.message}{answer}"
+    """The answer in a sentence where there is one, and how the motion ended."""
+    answer = f"The body {verdict(result)}. " if result.outcome.ok else ""
+    return f"{answer}{result.outcome.message}"
 
 
 def brief_curve(curve: Curve) -> str:
     """What a terminal shows of a curve."""
     title = f"{curve.name}: force against separation"
-    return "\n".join([title, *_section("", _curve(curve))])
+    return "\n".join([title, *_section("", _curve(curve)), *warning_lines(curve.warnings)])
 
 
 def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
     captured = {True: "yes", False: "no", None: "-"}[measures.get("captured")]
-    heights = measures.get("rebound_height") or []
+    restitution = measures.get("restitution") or []
+    first = restitution[0] if restitution else None
+    critical = measures.get("critical_velocity_note")
+    if measures.get("critical_velocity") is not None:
+        note = f"  ({critical})" if critical else ""
+        critical = amount(measures["critical_velocity"], "m/s") + note
     return [
         ("impact speed", amount(measures.get("impact_speed"), "m/s")),
-        ("impacts", str(len(heights))),
-        ("captured", captured),
+        ("restitution", _cell(first, 1.0, "")),
+        ("captured at first impact", captured),
+        ("critical velocity", critical or "-"),
+        ("contact time", amount(measures.get("contact_time"), "s")),
+        ("largest force", amount(measures.get("maximum_force"), "N")),
+        *_pull(measures),
+        ("impacts", str(len(restitution))),
         ("time to capture", amount(measures.get("capture_time"), "s")),
         ("time to rest", amount(measures.get("stiction_time"), "s")),
+    ]
+
+
+def _pull(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Pull-off and work of separation, with the load that they belong to."""
+    after = ""
+    if found.get("preload") is not None:
+        after = f"  (after {amount(found['preload'], 'N')})"
+    where = ""
+    if found.get("pull_off_separation") is not None:
+        where = f" at {amount(found['pull_off_separation'], 'm')}"
+    return [
+        ("pull-off force", amount(found.get("pull_off"), "N") + where + after),
+        ("work of separation", amount(found.get("work_of_separation"), "J") + after),
     ]
 
 
@@ -207,22 +238,23 @@ def _chosen(regime: dict[str, Any]) -> list[str]:
 def _curve(curve: Curve) -> list[tuple[str, str]]:
     return [
         ("closest rigid separation", amount(curve.deepest, "m")),
-        ("pull-off force", amount(curve.pull_off, "N")),
-        ("work of separation", amount(curve.work_of_separation, "J")),
+        *_pull(vars(curve)),
         ("lost over in and out", amount(curve.loss, "J")),
     ]
 
 
-def _impacts(measures: dict[str, Any], most: int | None) -> list[str]:
+def _impacts(result: Result, most: int | None, published: bool | None) -> list[str]:
     """The table of impacts, each column in one unit; its first ``most`` rows."""
-    given = [measures.get(key) or [] for _, key, _ in _COLUMNS]
+    shows = result.case.publication is not None if published is None else published
+    columns = [*_COLUMNS, *(_PUBLISHED if shows else ())]
+    given = [result.measures.get(key) or [] for _, key, _ in columns]
     count = max(len(values) for values in given)
     if not count:
         return []
     shown = min(count, most or count)
-    units = [_column_unit(values[:shown], _COLUMNS[i][2]) for i, values in enumerate(given)]
-    lines = ["", "Impacts (one-way: the power loss as the publication counts it)"]
-    lines.append(_row("", [title for title, _, _ in _COLUMNS]))
+    units = [_column_unit(values[:shown], columns[i][2]) for i, values in enumerate(given)]
+    lines = ["", "Impacts" + " (one-way: the power loss as the publication counts it)" * shows]
+    lines.append(_row("", [title for title, _, _ in columns]))
     lines.append(_row("", [unit for _, unit in units]))
     for number in range(shown):
         cells = [

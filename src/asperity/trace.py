@@ -116,7 +116,7 @@ def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
 def first_unloading(table: Table, impacts: Impacts) -> Unloading:
     """What the first of some impacts is pulled back by, as numbers."""
     first = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[0], impacts.rise)
-    return Unloading(*(np.asarray(value) for value in unloading_of(table, first)))
+    return unloading_of(table, first)
 
 
 unloading_of = Program(unloading, AT_ONCE)

@@ -1,4 +1,4 @@
-"""The answer to the user's question in one sentence: does the body bounce or stick, and why."""
+"""The answer in one sentence: what the first impact does, how the motion ends, and why."""
 
 from __future__ import annotations
 
@@ -24,37 +24,51 @@ _LITTLE = 1e-9
 
 
 def verdict(result: Result) -> str:
-    """E.g. ``sticks after 3 rebounds; menisci take 71 % of the energy lost``.
+    """What happens at the first impact, how the motion ends, and what takes most of the energy.
+
+    E.g. ``leaves the first impact with e = 0.922 and sticks after 13 rebounds; menisci take all of
+    the energy lost``.
 
     Parameters
     ----------
     result : Result
         The result.
     """
-    return "; ".join(part for part in (_ending(result), _taken(result.ledger)) if part)
+    if not result.measures["rebound_height"]:
+        return "touched nothing before the run ended"
+    parts = [part for part in (_first(result.measures), _ending(result)) if part]
+    return "; ".join(part for part in (" and ".join(parts), _taken(result.ledger)) if part)
+
+
+def _first(measures: dict[str, Any]) -> str:
+    """What happens at the first impact."""
+    kept = measures["restitution"][0]
+    if measures["captured"]:
+        return "is captured at the first impact"
+    if kept is None:
+        return ""
+    return f"leaves the first impact with e = {kept:.{3 if kept < 0.9995 else 6}g}"
 
 
 def _ending(result: Result) -> str:
+    """How the motion ends, where the first impact does not say it."""
     measures, outcome = result.measures, result.outcome
     impacts = len(measures["rebound_height"])
-    if not impacts:
-        return "touched nothing before the run ended"
     if outcome is Outcome.TIME_LIMIT:
         impacts = _rebounds_made(result)
-    if measures["captured"] and _held(result):
-        return f"sticks {_after(_rebounds_before(result))}"
     if measures["captured"]:
-        return f"comes to rest {_after(_rebounds_before(result))}, held by its weight alone"
+        return "" if _held(result) else "held there by its weight alone"
+    if measures["capture_time"] is not None:
+        held = "sticks" if _held(result) else "comes to rest, held by its weight alone,"
+        return f"{held} {_after(_rebounds_before(result))}"
     if outcome is Outcome.REST:
-        return f"comes to rest {_after(impacts)}, none of which the surface held"
+        return f"comes to rest {_after(impacts)}"
     if outcome is Outcome.ESCAPED:
-        kept = measures["restitution"][-1]
-        share = "" if kept is None else f" with {100.0 * kept:.3g} % of its speed"
-        return f"bounces off{share} and does not come back"
+        return "does not come back"
     if outcome is Outcome.OSCILLATING:
         if _takes(result.ledger):
             return "goes on for ever: its last cycle loses nothing"
-        return "bounces for ever: nothing takes its energy"
+        return "bounces for ever"
     if outcome is Outcome.FAILED:
         return "the numerics failed before there was an answer"
     if not impacts:
@@ -82,7 +96,7 @@ def _rebounds_before(result: Result) -> int:
 
 def _after(rebounds: int) -> str:
     if not rebounds:
-        return "at the first touch"
+        return "at the first impact"
     return f"after {rebounds} rebound{'s' * (rebounds > 1)}"
 
 

@@ -38,7 +38,7 @@ from ..laws import (
     Meniscus,
     PublishedPressure,
 )
-from ..laws.base import Real, Sum
+from ..laws.base import Sum
 from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..laws.meniscus import Formation
 from ..laws.published import FINE

@@ -14,17 +14,22 @@ from asperity.cli import completing
 from asperity.cli.arguments import (
     CaseName,
     Cases,
+    Depth,
     Folder,
     Force,
     InstallCompletion,
     Json,
+    Load,
     Materials,
     Missing,
     OnlyJson,
+    Published,
     Quiet,
     Refit,
     ShowCompletion,
     Size,
+    SpeedPoints,
+    Speeds,
     Tables,
     TwoSurfaces,
     Unit,
@@ -70,20 +75,24 @@ def run(
     as_json: Json = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
+    publication: Published = False,
 ) -> None:
     """Compute a motion: bounce or stick.
 
     Writes record.nc, pictures and summary.txt to DIR, ./NAME-out unless given.
     """
     _compute(
-        "solve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
-    )
+        "solve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
+        published=publication or None,
+    )  # fmt: skip
 
 
 @app.command()
 def curve(
     case: CaseName,
     output: Folder = None,
+    load: Load = None,
+    depth: Depth = None,
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -91,12 +100,40 @@ def curve(
 ) -> None:
     """Compute force against separation.
 
-    In and out, without motion. Writes curve.nc, a picture and curve.txt to DIR, ./NAME-out unless
-    given.
+    Loading and unloading, without motion: to the depth of the case's first impact, or to --load or
+    --depth, for which a case needs no [impact] table. Writes curve.nc, a picture and curve.txt to
+    DIR, ./NAME-out unless given.
     """
+    from asperity.cli.speeds import turn_of
+
     _compute(
-        "curve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
-    )
+        "curve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
+        given=turn_of(load, depth),
+    )  # fmt: skip
+
+
+@app.command()
+def restitution(
+    case: CaseName,
+    output: Folder = None,
+    speeds: Speeds = None,
+    points: SpeedPoints = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
+    """Compute restitution against speed, and the critical velocity.
+
+    Of the first impact, over decades of speed. Writes restitution.csv, restitution.json,
+    restitution.txt and a picture as PNG and SVG to DIR, ./NAME-out unless given.
+    """
+    from asperity.cli.speeds import speeds_of
+
+    _compute(
+        "restitution_curve", case, output=output, force=force, as_json=as_json, quiet=quiet,
+        verbose=verbose, given=speeds_of(speeds, points),
+    )  # fmt: skip
 
 
 def _compute(what: str, case: str, **options: Any) -> None:

@@ -51,6 +51,44 @@ Folder = Annotated[
 Force = Annotated[
     bool, typer.Option("--force", help="Replace earlier results in DIR; other files stay.")
 ]
+Published = Annotated[
+    bool,
+    typer.Option(
+        "--publication", help="Show the publication's measures too: decrement and power losses."
+    ),
+]
+Load = Annotated[
+    str | None,
+    typer.Option(
+        "--load", metavar="FORCE", help='Load at which unloading begins, such as "1 uN".',
+        show_default=False,
+    ),
+]  # fmt: skip
+Depth = Annotated[
+    str | None,
+    typer.Option(
+        "--depth",
+        metavar="LENGTH",
+        help='Depth at which unloading begins, below a rigid separation of 0, such as "5 nm".',
+        show_default=False,
+    ),
+]
+Speeds = Annotated[
+    str | None,
+    typer.Option(
+        "--speeds",
+        metavar="FROM,TO",
+        help='First and last speed of launch, such as "1 mm/s, 10 m/s"; by default chosen about '
+        "the critical velocity.",
+        show_default=False,
+    ),
+]
+SpeedPoints = Annotated[
+    int | None,
+    typer.Option(
+        "--points", min=2, max=1001, help="How many speeds; 61 unless given.", show_default=False
+    ),
+]
 Json = Annotated[
     bool,
     typer.Option(

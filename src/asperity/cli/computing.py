@@ -1,12 +1,13 @@
-"""``asperity run``, ``asperity curve`` and ``asperity plot``: from a case to files or JSON."""
+"""``asperity run``, ``curve``, ``restitution`` and ``plot``: from a case to files or JSON."""
 
 from __future__ import annotations
 
 import dataclasses
 import importlib
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -16,10 +17,23 @@ from asperity.cli.terminal import say
 from asperity.cli.voice import Voice, files_of, written_to
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
-from asperity.records import CURVE_FILES, RUN_FILES, check_folder, json_object, read, write_folder
+from asperity.records import (
+    CURVE_FILES,
+    RESTITUTION_FILES,
+    RUN_FILES,
+    check_folder,
+    json_object,
+    read,
+    write_folder,
+)
 from asperity.result import Curve, Result
 
-_FILES = {"solve": RUN_FILES, "curve": CURVE_FILES}
+if TYPE_CHECKING:
+    from asperity.restitution import RestitutionCurve
+
+    Answer = Result | Curve | RestitutionCurve
+
+_FILES = {"solve": RUN_FILES, "curve": CURVE_FILES, "restitution_curve": RESTITUTION_FILES}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,15 +45,31 @@ class _Request:
     folder: Path | None
     force: bool
     voice: Voice
+    given: Mapping[str, Any]
+    published: bool | None
 
 
-def compute(what: str, case: str, *, output: str | None, force: bool, **manner: bool) -> None:
+def compute(
+    what: str,
+    case: str,
+    *,
+    output: str | None,
+    force: bool,
+    given: Mapping[str, Any] | None = None,
+    published: bool | None = None,
+    **manner: bool,
+) -> None:
     """Compute a case, keep the result, and say what came out.
 
     Parameters
     ----------
     what : str
-        "solve" for a motion, "curve" for force against separation.
+        "solve" for a motion, "curve" for force against separation, "restitution_curve" for
+        restitution against speed.
+    given : mapping of str to object, optional
+        What else the computation takes.
+    published : bool, optional
+        Whether the publication's own measures are shown.
     case : str
         As the user named it.
     output : str or None
@@ -50,18 +80,18 @@ def compute(what: str, case: str, *, output: str | None, force: bool, **manner: 
         As `Voice` takes them.
     """
     voice = Voice(**manner)
-    given = source(case)
+    named = source(case)
     folder = None
     if output is not None or not voice.as_json:
-        folder = Path(output or given.case.output.directory or f"{given.name}-out")
+        folder = Path(output or named.case.output.directory or f"{named.name}-out")
         check_folder(folder, _FILES[what], force=force)
-    request = _Request(what, given, folder, force, voice)
+    request = _Request(what, named, folder, force, voice, given or {}, published)
     try:
         with voice.watch() as progress:
             work = Work(lambda stop: _task(request, stop, progress))
             result, code = work.wait()
     except InputError as error:
-        error.file = error.file or given.file
+        error.file = error.file or named.file
         raise
     except SimulationError as error:
         if isinstance(error.partial, (Result, Curve)):
@@ -76,13 +106,16 @@ def compute(what: str, case: str, *, output: str | None, force: bool, **manner: 
         raise typer.Exit(code)
 
 
-def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Result | Curve:
+def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Answer:
     """Load what computes, and compute; in a thread of its own."""
-    function = getattr(importlib.import_module("asperity.solver"), request.what)
-    given, tell = request.source, progress
+    home = "restitution" if request.what == "restitution_curve" else "solver"
+    function = getattr(importlib.import_module(f"asperity.{home}"), request.what)
+    named, tell = request.source, progress
     if request.folder is not None:
         tell = _importing(progress)
-    answer: Result | Curve = function(given.case, name=given.name, progress=tell, stop=stop)
+    answer: Answer = function(
+        named.case, name=named.name, progress=tell, stop=stop, **request.given
+    )
     return answer
 
 
@@ -110,7 +143,7 @@ def _import_ahead() -> None:
         importlib.import_module(name)
 
 
-def _ended(request: _Request, result: Result | Curve, outcome: Outcome | None) -> Result | Curve:
+def _ended(request: _Request, result: Answer, outcome: Outcome | None) -> Answer:
     """The result with the hash of its input, and with how it was cut short."""
     changes: dict[str, object] = {"input_sha256": request.source.input_sha256}
     if isinstance(result, Result) and outcome is not None:
@@ -118,23 +151,35 @@ def _ended(request: _Request, result: Result | Curve, outcome: Outcome | None) -
     return dataclasses.replace(result, **changes)  # type: ignore[arg-type]
 
 
-def _deliver(result: Result | Curve, request: _Request, code: int) -> int:
+def _deliver(result: Answer, request: _Request, code: int) -> int:
     """Write the files and print the answer; the exit code, an interruption's if one came."""
     written, code = _keep(result, request, code)
     if code:
         say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
-    request.voice.answer(lambda: _brief(result), lambda: json_object(result))
+    request.voice.answer(lambda: _brief(result, request), lambda: _object(result))
     request.voice.written(written)
     return code
 
 
-def _brief(result: Result | Curve) -> str:
+def _brief(result: Answer, request: _Request) -> str:
     if isinstance(result, Curve):
         return summary.brief_curve(result)
-    return summary.brief(result)
+    if isinstance(result, Result):
+        return summary.brief(result, published=request.published)
+    return result.summary()
 
 
-def _keep(result: Result | Curve, request: _Request, code: int) -> tuple[Sequence[Path], int]:
+def _object(result: Answer) -> dict[str, Any]:
+    return json_object(result) if isinstance(result, Result | Curve) else result.json_object()
+
+
+def _files(result: Answer, request: _Request, **manner: bool) -> dict[str, bytes]:
+    if isinstance(result, Result):
+        return result.files(published=request.published, **manner)
+    return result.files(**manner)
+
+
+def _keep(result: Answer, request: _Request, code: int) -> tuple[Sequence[Path], int]:
     """Write the files; without pictures, which take a second, where time presses."""
     if request.folder is None:
         return [], code
@@ -143,8 +188,8 @@ def _keep(result: Result | Curve, request: _Request, code: int) -> tuple[Sequenc
     if not code:
         # In a thread, where no interruption can be lost in a callback of somebody else's.
         with request.voice.step("record and pictures"):
-            files, code = Work(lambda stop: result.files()).wait()
-    files = files or result.files(pictures=False)
+            files, code = Work(lambda stop: _files(result, request)).wait()
+    files = files or _files(result, request, pictures=False)
     with request.voice.step("files"):
         return write_folder(request.folder, files, own, force=request.force), code
 

@@ -221,9 +221,10 @@ def _leg(
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
     row = row[: layout.components.stop]
-    leaving = jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead)
-    work = -pull_work(ahead, turn)
-    leg = _Leg(turn, phase, row, lost, time, bonds, work, crept, followed, leaving)
+    leg = _Leg(
+        turn, phase, row, lost, time, bonds, -pull_work(ahead, turn), crept, followed,
+        jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
+    )  # fmt: skip
     return after, leg
 
 

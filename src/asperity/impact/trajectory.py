@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import legval
 
+from .._jax import jnp
+from ..laws.base import as_float64
 from .collocation import STAGES
 from .history import Body
 from .legs import Leg, Samples
@@ -100,9 +102,8 @@ class Trajectory(NamedTuple):
         time, first = np.unique(self.series.time[points], return_index=True)
         points = points[first]
         force = self.series.rows[points, FORCE]
-        nothing = Unloading(*(np.asarray(x) for x in (0.0, np.nan, 0.0, False)))
         if time.size < 2 or not np.min(force) < 0.0:
-            return nothing
+            return _unloading(0.0, np.nan, 0.0, False)
         along = Akima1DInterpolator(time, force)
         power = Akima1DInterpolator(time, force * self.series.speed[points]).antiderivative()
         rates = along.derivative().roots(extrapolate=False)
@@ -112,7 +113,7 @@ class Trajectory(NamedTuple):
         begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
         place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
         work = float(np.max(power(begins)) - power(time[-1]))
-        return Unloading(-along(lowest), place, np.asarray(work), np.asarray(True))
+        return _unloading(-float(along(lowest)), float(place), work, True)
 
     def _kinetic(self, k: int, place: float, mass: float) -> float:
         """Kinetic energy [J] between two samples, by the polynomials of their step."""
@@ -125,3 +126,9 @@ class Trajectory(NamedTuple):
         low, high = 2.0 * KNOTS[k - first] - 1.0, 2.0 * KNOTS[k - first + 1] - 1.0
         x = brentq(lambda x: legval(x, there), low, high, xtol=1e-15)
         return float(0.5 * mass * legval(x, speed) ** 2)
+
+
+def _unloading(pull_off: float, separation: float, work: float, depends: bool) -> Unloading:
+    return Unloading(
+        as_float64(pull_off), as_float64(separation), as_float64(work), jnp.asarray(depends)
+    )

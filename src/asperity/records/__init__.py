@@ -3,6 +3,7 @@
 from asperity.records.folder import (
     CURVE_FILES,
     REPRODUCTION_FILES,
+    RESTITUTION_FILES,
     RUN_FILES,
     SURFACE_FILES,
     check_folder,
@@ -14,6 +15,7 @@ from asperity.records.netcdf import dataset, encode, read
 __all__ = [
     "CURVE_FILES",
     "REPRODUCTION_FILES",
+    "RESTITUTION_FILES",
     "RUN_FILES",
     "SURFACE_FILES",
     "attributes",

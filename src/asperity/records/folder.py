@@ -17,6 +17,9 @@ RUN_FILES = ("record.nc", "motion.png", "forces.png", "energy.png", "summary.txt
 CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
 """Names that a curve may write. They stand beside those of a run without touching them."""
 
+RESTITUTION_FILES = tuple(f"restitution.{kind}" for kind in ("csv", "json", "png", "svg", "txt"))
+"""Names that restitution against speed may write, beside the others too."""
+
 SURFACE_FILES = (
     *(f"{name}.{kind}" for name in ("surface", "surface-1", "surface-2", "composite")
       for kind in ("png", "svg")),

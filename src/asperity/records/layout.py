@@ -18,7 +18,7 @@ from asperity.result import Curve, Result
 KIND = "asperity_record"
 """Attribute that marks a record; "run" or "curve"."""
 
-VERSION = 1
+VERSION = 2
 """Version of this layout."""
 
 _FORCES = {
@@ -37,8 +37,19 @@ _EVENTS = {
     "apex_time": ("s", "time of the rebound's turning point"),
     "apex_separation": ("m", "rigid separation at the rebound's turning point"),
 }
+_PULL = {
+    "pull_off": ("N", "largest tension while unloading from the first turn"),
+    "pull_off_separation": ("m", "rigid separation at pull-off"),
+    "work_of_separation": ("J", "work against tension while unloading"),
+    "preload": ("N", "load at the first turn, where pull-off and work depend on it"),
+}
 _MEASURES = {
-    "impact_speed": ("m/s", "speed at the first contact"),
+    "impact_speed": ("m/s", "speed of approach at the first impact, where forces begin"),
+    "maximum_speed": ("m/s", "largest speed on the first way in"),
+    "critical_velocity": ("m/s", "speed of approach below which the first impact captures"),
+    "contact_time": ("s", "time in contact at the first impact"),
+    "maximum_force": ("N", "largest contact force of the first impact"),
+    **_PULL,
     "capture_time": ("s", "time from release to capture"),
     "stiction_time": ("s", "time from release to rest"),
     "rebound_height": ("m", "height of rebound above static equilibrium"),
@@ -50,8 +61,7 @@ _MEASURES = {
 }
 _CURVE = {
     "deepest": ("m", "closest rigid separation"),
-    "pull_off": ("N", "largest tension while parting"),
-    "work_of_separation": ("J", "work against tension while parting"),
+    **_PULL,
     "loss": ("J", "energy lost over in and out"),
 }
 
@@ -85,6 +95,8 @@ def attributes(result: Result | Curve) -> dict[str, str | int]:
         "input_sha256": result.input_sha256 or hashlib.sha256(resolved.encode()).hexdigest(),
         **versions(),
     }
+    if isinstance(result, Curve):
+        found["warnings"] = json.dumps(result.warnings)
     if isinstance(result, Result):
         found["outcome"] = result.outcome.value
         for part in ("regime", "measures", "ledger", "warnings"):
@@ -106,7 +118,7 @@ def json_object(result: Result | Curve) -> dict[str, Any]:
     """What ``--json`` prints: plain Python values in SI, None where a value does not apply."""
     if isinstance(result, Curve):
         arrays = ("rigid_separation", "central_separation", "force_approach", "force_parting")
-        return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE)}
+        return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE, "warnings")}
     parts = ("regime", "measures", "ledger", "warnings")
     found = {name: plain(getattr(result, name)) for name in parts}
     if result.surface is not None:

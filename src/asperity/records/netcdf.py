@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _MOTION = ("time", "separation", "central_separation", "speed")
 _EVENTS = ("deepest_time", "deepest_separation", "apex_time", "apex_separation")
 _NUMBERS = ("deepest", "pull_off", "work_of_separation", "loss")
+_MAYBE = ("pull_off_separation", "preload")
 _SEAL = "content_sha256"
 _UNSEALED = "0" * 64
 _SEAL_OFFSET = 24  # the name, padded to 16 bytes; type and length of its value
@@ -123,7 +124,7 @@ def _decode(content: bytes, name: str) -> Result | Curve:
         "input_sha256": str(said["input_sha256"]),
     }
     if said[layout.KIND] == "curve":
-        return _curve(arrays, shared)
+        return _curve(arrays, said, shared)
     return _result(arrays, said, shared)
 
 
@@ -144,8 +145,10 @@ def _result(
     )
 
 
-def _curve(arrays: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:
+def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:
     numbers: dict[str, Any] = {key: float(arrays[key]) for key in _NUMBERS}
+    for key in _MAYBE:
+        numbers[key] = None if np.isnan(arrays[key]) else float(arrays[key])
     along = ("rigid_separation", "central_separation", "force_approach", "force_parting")
     return Curve(
         **shared,
@@ -153,6 +156,7 @@ def _curve(arrays: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:
         components_approach=_below(arrays, "force_approach_"),
         components_parting=_below(arrays, "force_parting_"),
         **numbers,
+        warnings=json.loads(said["warnings"]),
     )
 
 

@@ -210,7 +210,7 @@ def _tables(case: Case, entries: list[Entry], stop: threading.Event) -> Motions:
     out: Motions = {}
     for entry in _unique(entries):
         try:
-            motion = solve(surface_case(case, entry), name=entry.name, stop=stop)
+            motion = solve(surface_case(case, entry), name=entry.name, stop=stop, critical=False)
         except SimulationError:
             if not stop.is_set():
                 raise

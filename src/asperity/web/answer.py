@@ -61,7 +61,7 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
             "parting": packed(curve.force_parting),
             **{
                 name: plain(getattr(curve, name))
-                for name in ("deepest", "pull_off", "work_of_separation", "loss")
+                for name in ("deepest", "pull_off", "work_of_separation", "preload", "loss")
             },
         },
         "place": _place(result),

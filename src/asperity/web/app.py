@@ -27,7 +27,7 @@ from asperity.case.writing import text_of
 from asperity.errors import InputError, OutputError, SimulationError, one_line
 from asperity.web.answer import adhesion_map
 from asperity.web.asking import Asked, asked, refuse_depth
-from asperity.web.exploring import FILES, ahead, file, glance, kind_of
+from asperity.web.exploring import FILES, ahead, critical, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
 from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
@@ -80,6 +80,7 @@ def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOC
         Route("/api/read", page.read, methods=["POST"]),
         Route("/api/toml", page.toml, methods=["POST"]),
         Route("/api/explore", page.explore, methods=["POST"]),
+        Route("/api/critical", page.critical, methods=["POST"]),
         Route("/api/files/{name}", page.file, methods=["POST"]),
         Route("/api/surfaces/{name}", page.surface, methods=["POST"]),
         Mount("/static", StaticFiles(directory=str(static))),
@@ -181,6 +182,16 @@ class _Page:
             self._ready.add(kind)
 
         self.desk.spare(task)
+
+    async def critical(self, request: Request) -> Response:
+        """The critical velocity of the case."""
+        what = asked(await _body(request, SIZE_LIMIT))
+        what.case()
+        asker = f"{what.asker or _from(request)} critical"
+        event = await self._last(request, asker, critical(what, self.surfaces))
+        if event.kind != "answer":
+            return JSONResponse(_told(event), 422 if event.kind == "error" else 409)
+        return JSONResponse(event.value)
 
     async def file(self, request: Request) -> Response:
         """A file of the case's results."""

@@ -48,6 +48,20 @@ def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Even
     return compute
 
 
+def critical(
+    asked: Asked, surfaces: Surfaces
+) -> Callable[[Report, threading.Event], dict[str, Any]]:
+    """A computation that gives the critical velocity, which takes longer than all the rest."""
+
+    def compute(tell: Report, stop: threading.Event) -> dict[str, Any]:
+        with _resolved(asked, surfaces, tell) as (case, _):
+            solver = importlib.import_module("asperity.solver")
+            found: dict[str, Any] = solver.critical_velocity(case, progress=tell, stop=stop)
+            return found
+
+    return compute
+
+
 def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], None]:
     """A computation that compiles what a case needs under each law that "auto" may choose.
 

@@ -16,6 +16,7 @@ from asperity.errors import InputError, Outcome, SimulationError
 from asperity.result import Result
 from asperity.solver import solve
 from asperity.studies.sweep.building import Group, Values, built
+from asperity.studies.sweep.critical import critical_velocities
 from asperity.studies.sweep.flights import Flight, compile_ahead, fly_group
 from asperity.studies.sweep.lanes import Clock
 from asperity.studies.sweep.layout import OUTCOMES, REASON_SIZE
@@ -123,6 +124,8 @@ def _computed(
     compile_ahead(whole.groups)
     for group in whole.groups:
         flight = fly_group(group, clock)
+        if any(column.name == "critical_velocity" for column in study.columns) and flight.measures:
+            flight.measures["critical_velocity"] = critical_velocities(group, flight, clock)
         _write(study, out, group, flight)
         sound = out["outcome"][group.rows] != _FAILED
         for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
@@ -225,7 +228,8 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> li
     """A case that is stepped in time, by itself; its warnings, None where it cannot be solved."""
     clock.look()
     try:
-        result = solve(case, stop=clock.stop)
+        critical = any(column.name == "critical_velocity" for column in study.columns)
+        result = solve(case, stop=clock.stop, critical=critical)
     except (InputError, SimulationError) as error:
         clock.look()
         _fail(out, row, str(error))

@@ -32,6 +32,8 @@ class Flight(NamedTuple):
         Number of impacts.
     end_time
         Time of the last apex [s].
+    origin
+        Mechanical energy at the release [J].
     lost
         Energy lost in all, by mechanism [J].
     history
@@ -47,6 +49,7 @@ class Flight(NamedTuple):
     outcome: np.ndarray
     made: np.ndarray
     end_time: np.ndarray
+    origin: np.ndarray
     lost: np.ndarray
     history: dict[str, np.ndarray]
     measures: dict[str, np.ndarray]
@@ -62,7 +65,7 @@ class _Lanes(NamedTuple):
     begun: Begun
 
 
-def fly_group(group: Group, clock: Clock) -> Flight:
+def fly_group(group: Group, clock: Clock, *, launched: bool = False) -> Flight:
     """Fly all cases of a group.
 
     Parameters
@@ -71,11 +74,15 @@ def fly_group(group: Group, clock: Clock) -> Flight:
         The cases.
     clock
         Told of the time in compiled code.
+    launched
+        Whether they are launched where forces begin, not released by the user: that is not
+        checked, and nothing finer is compiled for them.
     """
-    flying = _Flying(group, clock)
+    flying = _Flying(group, clock, launched=launched)
     places = np.arange(group.rows.size)
-    for factor in _REFINEMENTS:
-        places = flying.begin(places, factor, last=factor == _REFINEMENTS[-1])
+    refinements = _REFINEMENTS[:1] if launched else _REFINEMENTS
+    for factor in refinements:
+        places = flying.begin(places, factor, last=factor == refinements[-1])
         if not places.size:
             break
     return flying.flight()
@@ -86,7 +93,7 @@ def compile_ahead(groups: list[Group]) -> None:
     for group in groups:
         count = group.rows.size
         some = next(_slices(np.arange(count), lanes.width(group.flown, count)))
-        here = _take(group.flown, some)
+        here = taken(group.flown, some)
         begun, _checks, _rows = lanes._begin_program.ahead(here)
         lanes._go_on_program.ahead(here, begun)
 
@@ -94,8 +101,8 @@ def compile_ahead(groups: list[Group]) -> None:
 class _Flying:
     """Cases on their way."""
 
-    def __init__(self, group: Group, clock: Clock) -> None:
-        self.group, self.clock = group, clock
+    def __init__(self, group: Group, clock: Clock, *, launched: bool) -> None:
+        self.group, self.clock, self.launched = group, clock, launched
         count = group.rows.size
         self.width = lanes.width(group.flown, count)
         self.ended: dict[str, np.ndarray] = {}
@@ -114,7 +121,7 @@ class _Flying:
         wanted = np.maximum(self.group.tolerance, contact.blur)
         coarse, pool = [], []
         for some in _slices(places, self.width):
-            here = _take(flown, some)
+            here = taken(flown, some)
             begun, checks, rows = self.clock.run(lanes._begin_program, here)
             error = np.asarray(checks.error)
             fine = ~(error > wanted[some]) & (some >= 0)
@@ -203,7 +210,7 @@ class _Flying:
         force, release = np.asarray(checks.at_release), np.asarray(body.release)
         weight = np.asarray(body.weight)
         limit = np.where(weight > 0.0, 1e-3 * weight, 1e-6 * np.asarray(checks.largest))
-        inside = ~(force <= limit)
+        inside = ~(force <= limit) & (not self.launched)
         residual = np.asarray(checks.residual)
         unsolved = ~(residual <= _RESIDUAL)
         for lane in np.flatnonzero((inside | unsolved) & (places >= 0)).tolist():
@@ -232,9 +239,10 @@ class _Flying:
         count = self.made.size
         lost = np.zeros((count, 0))
         outcome, end_time = self.outcome, np.full(count, np.nan)
+        origin = np.full(count, np.nan)
         if self._ends is not None:
             ends = jax.tree_util.tree_unflatten(self._shape, self._ends)
-            progress = ends[2]
+            origin, progress = np.where(self.made > 0, ends[1], np.nan), ends[2]
             outcome = np.where(self.made > 0, progress.outcome, self.outcome)
             end_time = np.where(self.made > 0, progress.time, np.nan)
             lost = progress.lost
@@ -242,8 +250,9 @@ class _Flying:
         for place in flown[outcome[flown] == failed].tolist():
             self.reasons[place] = "the motion left the tabulated separations"
         return Flight(
-            outcome, self.made, end_time, lost, self.history, measures, self.at_depth, self.reasons
-        )
+            outcome, self.made, end_time, origin, lost, self.history, measures, self.at_depth,
+            self.reasons,
+        )  # fmt: skip
 
     def _measured(self, places: np.ndarray) -> dict[str, np.ndarray]:
         """The measures of cases that were flown, in calls of like lengths."""
@@ -264,14 +273,14 @@ class _Flying:
         return out
 
     def _measures_of(self, some: np.ndarray) -> Measures:
-        ends = jax.tree_util.tree_unflatten(self._shape, _take(self._ends, some))
+        ends = jax.tree_util.tree_unflatten(self._shape, taken(self._ends, some))
         size = _power(int(self.made[some].max()))
         past = {name: array[some, :size] for name, array in self.history.items()}
         passing = None
         if "passing_in" in past:
             passing = past.pop("passing_in"), past.pop("passing_out")
         impacts = Impacts(**past, fall=None, rise=None)  # type: ignore[arg-type]
-        here = _take(self.group.flown, some)
+        here = taken(self.group.flown, some)
         answer: Measures = self.clock.run(lanes._measure_program, here, ends, (impacts, passing))
         return answer
 
@@ -288,8 +297,8 @@ def _slices(places: np.ndarray, width: int) -> Iterator[np.ndarray]:
         yield np.concatenate([some, np.full(width - some.size, -1, int)])
 
 
-def _take(tree: Any, places: np.ndarray) -> Any:
-    """Cases by their places; where there is none, the first of the places."""
+def taken(tree: Any, places: np.ndarray) -> Any:
+    """Cases by their places in a tree of arrays; where there is none, the last of the places."""
     index = np.where(places >= 0, places, places.max())
     return jax.tree_util.tree_map(
         lambda leaf: np.asarray(leaf)[index] if _is_array(leaf) else leaf, tree

@@ -23,7 +23,7 @@ try:
 except ImportError:  # not a POSIX system: nothing keeps a second writer out
     fcntl = None  # type: ignore[assignment]
 
-SCHEMA = 1
+SCHEMA = 2
 """Version of stores and manifests that this program writes."""
 
 

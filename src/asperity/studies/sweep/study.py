@@ -289,6 +289,8 @@ def parse(text: str, *, file: str | None = None, folder: Path | None = None) -> 
 def _refuse(study: Study) -> None:
     """Refuse columns that there are not, cases beyond counting, and what no store could hold."""
     _ = study.columns
+    if study.base.impact is None and not any(place(a.key)[0] == "impact" for a in study.axes):
+        raise InputError("`base` must have an [impact] table, for motions; got none", key="base")
     if study.size > CASES_LIMIT:
         got = f"at least 10^{len(str(study.size)) - 1}"
         raise InputError(f"[axes] must give at most 2^53 cases; got {got}", key="axes")

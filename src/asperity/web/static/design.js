@@ -1,8 +1,9 @@
 // The designs on the page: their cases, their answers, and the one newest question of each.
 
-import { explored, unpacked } from "/static/server.js";
+import { explored, posting, unpacked } from "/static/server.js";
 
 const PATIENT = 600; // ms that a running question may take before a newer one replaces it
+const CALM = 400; // ms after an answer until its critical velocity is asked for
 const page = Math.random().toString(36).slice(2);
 
 export class Design {
@@ -88,9 +89,28 @@ export class Design {
         this.running = null;
         this.work = null;
         if (this.waiting) this.send(show);
+        else this.seek(show);
         show("answer");
       }
     }
+  }
+
+  // What takes longer than the rest, once nothing newer was asked for a while.
+  seek(show) {
+    clearTimeout(this.seeking);
+    this.seeking = setTimeout(async () => {
+      const { answer, shown } = this;
+      if (!answer || this.running) return;
+      let found;
+      try {
+        found = await posting("/api/critical", JSON.stringify(this.question()));
+      } catch (error) {
+        found = { critical_velocity: null, critical_velocity_note: error.message };
+      }
+      if (this.shown !== shown || this.answer !== answer) return;
+      Object.assign(answer.measures, found);
+      show("measures");
+    }, CALM);
   }
 
   take(answer, number, since) {
@@ -106,6 +126,7 @@ export class Design {
 
   cancel() {
     this.waiting = false;
+    clearTimeout(this.seeking);
     this.running?.abort.abort();
   }
 

@@ -21,6 +21,7 @@ const current = () => designs[active];
 
 function show(what) {
   work();
+  if (what === "measures") panels.measured(designs);
   if (what !== "answer") return;
   const design = current();
   form.refuse(design.refusal);

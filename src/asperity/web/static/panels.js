@@ -5,15 +5,16 @@ import { amount, shares } from "/static/units.js";
 
 const MEASURES = [
   ["impact speed", (a) => amount(a.measures.impact_speed, "m/s")],
+  ["first restitution", (a) => amount(a.measures.restitution[0])],
+  ["captured at first impact", (a) => (a.measures.captured ? "yes" : "no")],
+  ["critical velocity", critical],
+  ["contact time", (a) => amount(a.measures.contact_time, "s")],
+  ["largest force", (a) => amount(a.measures.maximum_force, "N")],
+  ["pull-off force", (a) => amount(a.measures.pull_off, "N") + preload(a)],
+  ["work of separation", (a) => amount(a.measures.work_of_separation, "J") + preload(a)],
   ["impacts", (a) => amount(a.motion.impacts)],
-  ["stays in contact", (a) => (a.measures.captured ? "yes" : "no")],
   ["time to capture", (a) => amount(a.measures.capture_time, "s")],
   ["time to rest", (a) => amount(a.measures.stiction_time, "s")],
-  ["first restitution", (a) => amount(a.measures.restitution[0])],
-  ["first logarithmic decrement", (a) => amount(a.measures.log_decrement[0])],
-  ["first power loss", (a) => amount(a.measures.power_loss[0], "W")],
-  ["pull-off force", (a) => amount(a.curve.pull_off, "N")],
-  ["work of separation", (a) => amount(a.curve.work_of_separation, "J")],
   ["loss in and out", (a) => amount(a.curve.loss, "J")],
   ["energy at release", (a) => amount(a.ledger.initial, "J")],
   ["balance closes to", (a) => `${(a.ledger.closure ?? NaN).toExponential(1)} of the impact energy`],
@@ -22,6 +23,19 @@ const MEASURES = [
 ];
 
 const text = (tag, words, properties = {}) => Object.assign(document.createElement(tag), { textContent: words, ...properties });
+
+// The critical velocity, or why there is none; it is asked for after the rest.
+function critical({ measures }) {
+  if (measures.critical_velocity === undefined) return "being sought";
+  if (measures.critical_velocity === null) return measures.critical_velocity_note;
+  const note = measures.critical_velocity_note ? ` (${measures.critical_velocity_note})` : "";
+  return amount(measures.critical_velocity, "m/s") + note;
+}
+
+// The load that pull-off and work depend on.
+function preload({ measures }) {
+  return measures.preload === null ? "" : ` after ${amount(measures.preload, "N")}`;
+}
 
 export class Panels {
   constructor() {
@@ -55,6 +69,11 @@ export class Panels {
     measures(answered, two);
     warnings(answered, two);
     document.querySelectorAll("#panels figure, #ledger").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal || (!d.running && d.shown < d.asked))));
+  }
+
+  measured(designs) {
+    const answered = designs.filter((one) => one.answer);
+    measures(answered, answered.length > 1);
   }
 
   verdicts(designs) {
