@@ -228,7 +228,7 @@ def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime
     wetting = _wetting(case, problem, at_depth)
     return regimes.Regime(
         tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
-        wetting.regime, wetting.reason,
+        wetting.regime, wetting.reason, None if rough is None else touching,
     )  # fmt: skip
 
 

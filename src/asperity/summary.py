@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.regimes import LAW_NAMES
-from asperity.verdict import verdict
+from asperity.verdict import unjudged, verdict
 
 if TYPE_CHECKING:
     from asperity.result import Curve, Result
@@ -115,8 +115,11 @@ def brief(result: Result) -> str:
 
 def _ended(result: Result) -> str:
     """How the motion ended, and the answer in a sentence where there is one."""
-    answer = f" The body {verdict(result)}." if result.outcome.ok else ""
-    return f"{result.outcome.message}{answer}"
+    if not result.outcome.ok:
+        return result.outcome.message
+    answer = verdict(result)
+    told = answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
+    return f"{result.outcome.message} {told}."
 
 
 def brief_curve(curve: Curve) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.errors import Outcome
+from asperity.regimes import missed
 
 if TYPE_CHECKING:
     from asperity.result import Result
@@ -31,7 +32,25 @@ def verdict(result: Result) -> str:
     result : Result
         The result.
     """
+    if unjudged(result):
+        touching = result.regime["touching_asperities"]
+        return (
+            f"no verdict: {touching:.2g} asperities are expected to touch at closest approach, so "
+            f"{missed(touching)}; the numbers are means over many bodies"
+        )
     return "; ".join(part for part in (_ending(result), _taken(result.ledger)) if part)
+
+
+def unjudged(result: Result) -> bool:
+    """Whether fewer than one asperity is expected to touch, so that no single body does as told.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    """
+    touching = result.regime.get("touching_asperities")
+    return touching is not None and touching < 1.0 and result.outcome is not Outcome.FAILED
 
 
 def _ending(result: Result) -> str:
