@@ -220,7 +220,7 @@ def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime
         plasticity = regimes.plasticity_index(
             problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
         )
-    touching = at_depth.touching
+    touching = max(at_depth.touching, 0.0)  # far apart, a polynomial may say a little less
     if work and touching > 0.0:
         elastic = at_depth.elastic
         load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)

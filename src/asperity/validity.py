@@ -172,7 +172,7 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
     if rough is None:
         return []
     out = []
-    touching = at_depth.touching
+    touching = max(at_depth.touching, 0.0)
     if touching < 1.0:
         out.append(_hardly_one(touching))
     elif touching < FEW:

@@ -32,6 +32,8 @@ def verdict(result: Result) -> str:
     result : Result
         The result.
     """
+    if result.outcome is Outcome.STOPPED and not unjudged(result):
+        return "; ".join((_stopped(result), _taken(result.ledger)))
     if unjudged(result):
         touching = result.regime["touching_asperities"]
         return (
@@ -50,7 +52,27 @@ def unjudged(result: Result) -> bool:
         The result.
     """
     touching = result.regime.get("touching_asperities")
-    return touching is not None and touching < 1.0 and result.outcome is not Outcome.FAILED
+    if result.outcome is Outcome.FAILED or _untouched(result):
+        return False
+    return touching is not None and touching < 1.0
+
+
+def _untouched(result: Result) -> bool:
+    """Whether the gas film stopped the body on its first way in."""
+    if result.outcome is not Outcome.STOPPED:
+        return False
+    apexes, deepest = (result.events[f"{name}_separation"] for name in ("apex", "deepest"))
+    return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
+
+
+def _stopped(result: Result) -> str:
+    """Where the gas film stopped the body."""
+    place = f"{result.events['apex_separation'][-1] * 1e9:.4g} nm"
+    if _untouched(result):
+        return f"stopped by the gas film at {place} before it touched"
+    kept = result.measures["restitution"][0]
+    share = "" if kept is None else f" with {100.0 * kept:.3g} % of its speed"
+    return f"bounces off{share}, and is stopped by the gas film at {place} on its way out"
 
 
 def _ending(result: Result) -> str:
