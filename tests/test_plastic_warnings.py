@@ -2,6 +2,8 @@
 
 import pytest
 
+import asperity
+from asperity import solver
 from asperity.case import load
 from asperity.materials import contact_modulus
 from asperity.yielding import yielded
@@ -57,7 +59,46 @@ def test_elastic_asperities_say_it_where_they_are_beyond_yield():
     share, taken = lines(CASE)
     assert "are beyond yield at closest approach" in share
     assert taken == TAKEN
-    assert lines(CASE, FAR) == []
+    assert lines(CASE, FAR) == [
+        "yielding was judged by silica alone: no hardness or yield strength of silicon carbide is "
+        "known"
+    ]
+
+
+def numbered(text):
+    """The case with a body of numbers, of no known strength."""
+    numbers = 'youngs_modulus = "70 GPa"\npoisson = 0.2\ndensity = "2500 kg/m^3"'
+    return text.replace('material = "silica"', numbers, 1)
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+@pytest.mark.parametrize(
+    ("text", "unknown"),
+    [
+        (between("soda-lime glass", "silicon"), "soda-lime glass and silicon"),
+        (between("silicon", "silicon"), "silicon"),
+        (numbered(CASE), "the body and silicon carbide"),
+    ],
+)
+def test_yielding_that_cannot_be_judged_is_said(text, unknown, smooth):
+    """However hard the impact: bodies that touch over all their heights."""
+    if smooth:
+        text = text.split("deformation")[0] + '[impact]\nspeed = "5 m/s"\n'
+    expected = f"yielding not judged: no hardness or yield strength of {unknown} is known"
+    assert lines(text) == [expected]
+    assert lines(text + YIELDS + 'hardness = "2 GPa"') != [expected]
+
+
+def test_a_glass_bead_shot_at_silicon_says_that_yielding_was_not_judged():
+    """Issued by `run` and `regime` alike, once."""
+    smooth = between("soda-lime glass", "silicon").split("deformation")[0]
+    case = load(smooth + '[impact]\nspeed = "3000 m/s"\n[numerics]\nmax_impacts = 1\n')
+    for found in (asperity.solve(case), solver.assess(case)):
+        assert sum("yielding not judged" in line for line in found.warnings) == 1
+
+
+def test_where_both_strengths_are_known_nothing_is_left_unsaid():
+    assert lines(between("silica", "sapphire"), 2.0 * FAR) == []
 
 
 @pytest.mark.parametrize(

@@ -85,9 +85,10 @@ def test_study_does_not_depend_on_the_units_of_its_text(other):
 @pytest.mark.parametrize("text", ["50 um", "8 nm", "0.1 mm", "1e-7 m", "3.3 um", "10.5 nm"])
 def test_value_of_an_axis_is_the_float_of_a_case_file(text):
     base = builtin("published")
-    found = study(f'"body.radius" = {{values = ["{text}"]}}')
-    assert found.values(0, 1)["body.radius"][0] == base.replace({"body.radius": text}).body.radius
-    assert found.case(0).body.radius == base.replace({"body.radius": text}).body.radius
+    found = study(f'"impact.release_gap" = {{values = ["{text}"]}}')
+    expected = base.replace({"impact.release_gap": text}).impact.release_gap
+    assert found.values(0, 1)["impact.release_gap"][0] == expected
+    assert found.case(0).impact.release_gap == expected
 
 
 def test_a_listed_whole_number_stays_whole_beside_an_equal_float():

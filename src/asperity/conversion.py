@@ -246,7 +246,7 @@ def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime
         plasticity = regimes.plasticity_index(
             problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
         )
-    touching = at_depth.touching
+    touching = max(at_depth.touching, 0.0)  # far apart, a polynomial may say a little less
     if work and touching > 0.0:
         elastic = at_depth.elastic
         load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)
@@ -254,7 +254,7 @@ def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime
     wetting = _wetting(case, problem, at_depth)
     return regimes.Regime(
         tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
-        wetting.regime, wetting.reason,
+        wetting.regime, wetting.reason, None if rough is None else touching,
     )  # fmt: skip
 
 

@@ -71,6 +71,7 @@ class Outcome(enum.Enum):
     REST = "rest"
     OSCILLATING = "oscillating"
     ESCAPED = "escaped"
+    STOPPED = "stopped"
     TIME_LIMIT = "time_limit"
     MAX_IMPACTS = "max_impacts"
     INTERRUPTED = "interrupted"
@@ -91,6 +92,7 @@ _MESSAGES = {
     Outcome.REST: "The body came to rest: its rebound fell below `numerics.rest` of the first.",
     Outcome.OSCILLATING: "The body oscillates: a whole cycle loses no energy, so it never rests.",
     Outcome.ESCAPED: "The body escaped: it left the surface and nothing brings it back.",
+    Outcome.STOPPED: "The gas film stopped the body where nothing else acts on it.",
     Outcome.TIME_LIMIT: "The motion was stopped at `numerics.time_limit`.",
     Outcome.MAX_IMPACTS: "The motion was stopped after `numerics.max_impacts` impacts.",
     Outcome.INTERRUPTED: "The run was interrupted; what was computed until then is kept.",

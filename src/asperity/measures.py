@@ -151,6 +151,7 @@ def measure(
     escaped = end.outcome == ENDS.index(Outcome.ESCAPED)
     last = jnp.arange(rows.made.shape[0]) == end.made - 1
     gone = jnp.logical_and(escaped, last)
+    away = gone | (last & (end.outcome == ENDS.index(Outcome.STOPPED)))  # of no further maximum
 
     falls = body.weight > 0.0
     top = body.release + jnp.where(
@@ -164,10 +165,10 @@ def measure(
     decrement = jnp.log(jnp.where(fits, before, 1.0) / jnp.where(fits, height, 1.0))
 
     duration = rows.apex_time - _shift(rows.apex_time, 0.0)
-    period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(gone)), duration, jnp.nan)
+    period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(away)), duration, jnp.nan)
     total = jnp.sum(rows.lost, axis=1)
     rests = end.outcome == ENDS.index(Outcome.REST)
-    captures = _captures(motion, body, reference, outside, gone)
+    captures = _captures(motion, body, reference, outside, away)
     captures = jnp.logical_or(captures, rests & rows.made & ~rebounds)
     capture_time = rows.deepest_time[jnp.argmax(captures)]
     energies = _energies(motion, body, reference, outside, passing)

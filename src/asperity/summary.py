@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from asperity.regimes import LAW_NAMES
 from asperity.shares import share_texts
-from asperity.verdict import verdict
+from asperity.verdict import unjudged, verdict
 
 if TYPE_CHECKING:
     from asperity.result import Curve, Result
@@ -123,8 +123,11 @@ def brief(result: Result, *, published: bool | None = None) -> str:
 
 def _ended(result: Result) -> str:
     """The answer in a sentence where there is one, and how the motion ended."""
-    answer = f"The body {verdict(result)}. " if result.outcome.ok else ""
-    return f"{answer}{result.outcome.message}"
+    if not result.outcome.ok:
+        return result.outcome.message
+    answer = verdict(result)
+    told = answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
+    return f"{told}. {result.outcome.message}"
 
 
 def brief_curve(curve: Curve) -> str:

@@ -126,7 +126,9 @@ def gas_warnings(case: Case, central: float, motion: Motion) -> list[str]:
         *_compressed(case, gas, thinnest, motion),
     ]
     if not float(motion.impacts.apex[0]) > float(motion.impacts.deepest[0]):
-        out.append("the gas film damps the fall so strongly that the body creeps to rest")
+        held = case.launch.gravity > 0.0
+        end = "creeps to rest" if held else "never touches"
+        out.append(f"the gas film damps the fall so strongly that the body {end}")
     return out
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from .case import Case
 from .case.build import Problem
 from .contact import Contact
+from .domain import domain_warnings
 from .errors import InputError
 from .impact import Motion
 from .impact.sampling import sample
@@ -23,6 +24,7 @@ from .regimes import (
     LAW_NAMES,
     Regime,
     choose_adhesion,
+    missed,
     tabor_number,
 )
 from .surroundings import gas_warnings, liquid_warnings
@@ -93,7 +95,7 @@ def warnings_of(
         *liquid_warnings(case, regime),
         *gas_warnings(case, at_depth.central, motion),
         *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
-        *_shape(case, motion),
+        *domain_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
         *_ledger(problem, motion),
     ]
 
@@ -170,9 +172,11 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
     if rough is None:
         return []
     out = []
-    touching = at_depth.touching
-    if touching < FEW:
-        scatter = 100.0 / np.sqrt(touching) if touching > 0.0 else np.inf
+    touching = max(at_depth.touching, 0.0)
+    if touching < 1.0:
+        out.append(_hardly_one(touching))
+    elif touching < FEW:
+        scatter = 100.0 / np.sqrt(touching)
         out.append(
             f"only {touching:.2g} asperities are expected to touch at closest approach: the "
             f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
@@ -185,6 +189,14 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
             "approach: neighbours interact, which the sum over single asperities leaves out"
         )
     return out
+
+
+def _hardly_one(touching: float) -> str:
+    """What a mean of fewer than one touching asperity means."""
+    return (
+        f"only {touching:.2g} asperities are expected to touch at closest approach: "
+        f"{missed(touching)}, and the numbers are means over many bodies, which none of them shows"
+    )
 
 
 def _publication(case: Case) -> list[str]:
@@ -255,16 +267,6 @@ def slow_menisci(
     return [
         f"menisci take {time:.3g} s to form and the first contact lasts {held[-1] - held[0]:.3g} "
         "s: few form, and more energy may go into those few than if all had formed at once"
-    ]
-
-
-def _shape(case: Case, motion: Motion) -> list[str]:
-    depth = -float(motion.impacts.deepest[0])
-    if depth <= 0.02 * case.body.radius:
-        return []
-    return [
-        f"the body sinks in by {100 * depth / case.body.radius:.0f} % of its radius: paraboloid "
-        "and half-space are approximations for small indentations"
     ]
 
 

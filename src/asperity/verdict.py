@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.errors import Outcome
+from asperity.regimes import missed
 
 if TYPE_CHECKING:
     from asperity.result import Result
@@ -34,10 +35,19 @@ def verdict(result: Result) -> str:
     result : Result
         The result.
     """
+    if unjudged(result):
+        touching = result.regime["touching_asperities"]
+        return (
+            f"no verdict: {touching:.2g} asperities are expected to touch at closest approach, so "
+            f"{missed(touching)}; the numbers are means over many bodies"
+        )
     if not result.measures["rebound_height"]:
         return "touched nothing before the run ended"
-    parts = [part for part in (_first(result.measures), _ending(result)) if part]
-    return "; ".join(part for part in (" and ".join(parts), _taken(result.ledger)) if part)
+    parts = [_first(result.measures), _ending(result)]
+    if result.outcome is Outcome.STOPPED:
+        parts = [_first(result.measures) if not _untouched(result) else "", _stopped(result)]
+    told = " and ".join(part for part in parts if part)
+    return "; ".join(part for part in (told, _taken(result.ledger)) if part)
 
 
 def _first(measures: dict[str, Any]) -> str:
@@ -48,6 +58,36 @@ def _first(measures: dict[str, Any]) -> str:
     if kept is None:
         return ""
     return f"leaves the first impact with e = {kept:.{3 if kept < 0.9995 else 6}g}"
+
+
+def unjudged(result: Result) -> bool:
+    """Whether fewer than one asperity is expected to touch, so that no single body does as told.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    """
+    touching = result.regime.get("touching_asperities")
+    if result.outcome is Outcome.FAILED or _untouched(result):
+        return False
+    return touching is not None and touching < 1.0
+
+
+def _untouched(result: Result) -> bool:
+    """Whether the gas film stopped the body on its first way in."""
+    if result.outcome is not Outcome.STOPPED:
+        return False
+    apexes, deepest = (result.events[f"{name}_separation"] for name in ("apex", "deepest"))
+    return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
+
+
+def _stopped(result: Result) -> str:
+    """Where the gas film stopped the body."""
+    place = f"{result.events['apex_separation'][-1] * 1e9:.4g} nm"
+    if _untouched(result):
+        return f"is stopped by the gas film at {place} before it touched"
+    return f"is stopped by the gas film at {place} on its way out"
 
 
 def _ending(result: Result) -> str:

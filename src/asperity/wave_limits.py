@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from math import sqrt
 
-import numpy as np
-
 from .case import Case
 from .case.build import Problem
+from .domain import contact_radius
 from .impact import Motion
 from .radiation import shear_speed
 
@@ -18,7 +17,6 @@ SPHERE_MODE = 2.64
 """Lowest spheroidal mode of a sphere [c_s/R] at a Poisson's ratio of 0.25. Lamb (1882)."""
 
 _QUASI_STATIC = 0.25  # of that mode: a sphere that is shaken more slowly hardly rings
-_EDGE = 3.0  # rms heights: how far out asperities touch
 
 
 def wave_warnings(
@@ -62,14 +60,9 @@ def _strong(problem: Problem, motion: Motion, energy: float) -> list[str]:
 
 def _wide(case: Case, problem: Problem, elastic: float, central: float, rate: float) -> list[str]:
     """A contact that is not small beside the waves."""
-    solid, radius = case.counterface_solid, case.body.radius
+    solid = case.counterface_solid
     speed = float(shear_speed(solid.youngs_modulus, solid.poisson, solid.density))
-    hertz = float(np.cbrt(0.75 * elastic * radius / problem.modulus))
-    rough, half = case.asperities, hertz
-    if rough is not None:
-        rise = max(rough.mean_height + _EDGE * rough.rms_height - central, 0.0)
-        bulk = 0.0 if case.counterface.deformation == "rigid" else hertz
-        half = max(sqrt(2.0 * radius * rise), bulk)
+    half = contact_radius(case, problem, elastic, central)
     # Waves from a Hertz pressure: 1 - (k a)^2/5 of those from its point force.
     error = (rate * half / speed) ** 2 / 5.0
     if error <= SMALL:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ._jax import jax, jnp
 from .case import Case
+from .case.bodies import named
 from .case.plasticity import Plasticity
 from .case.yielding import plastic_contact
 from .errors import InputError
@@ -43,7 +44,7 @@ def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[
 def yielded(case: Case, modulus: float, central: float) -> list[str]:
     """Lines on the share of touching asperities that is beyond yield, and how far they are.
 
-    And on what is taken to yield, where that is not known.
+    And on what is taken to yield, or cannot be judged, where that is not known.
 
     Parameters
     ----------
@@ -55,7 +56,9 @@ def yielded(case: Case, modulus: float, central: float) -> list[str]:
         Separation at the axis at closest approach [m].
     """
     beyond = _beyond(case, modulus, central)
-    return [*beyond, *_taken(case)] if beyond or case.plasticity_model != "none" else []
+    if beyond or case.plasticity_model != "none":
+        return [*beyond, *_taken(case)]
+    return _not_judged(case)
 
 
 def _beyond(case: Case, modulus: float, central: float) -> list[str]:
@@ -94,6 +97,25 @@ def _counted(
 
 
 _tails = Program(_counted, AT_ONCE)
+
+
+def _not_judged(case: Case) -> list[str]:
+    """A line where the strength of a solid is not known, and nothing else says so."""
+    solids = {named(solid): solid for solid in (case.body_solid, case.counterface_solid)}
+    known = {
+        name: solid.hardness is not None or solid.yield_strength is not None
+        for name, solid in solids.items()
+    }
+    if all(known.values()):
+        return []
+    unknown = " and ".join(name for name, knows in known.items() if not knows)
+    if any(known.values()):
+        judge = next(name for name, knows in known.items() if knows)
+        return [
+            f"yielding was judged by {judge} alone: no hardness or yield strength of {unknown} is "
+            "known"
+        ]
+    return [f"yielding not judged: no hardness or yield strength of {unknown} is known"]
 
 
 def _taken(case: Case) -> list[str]:

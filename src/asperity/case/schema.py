@@ -12,6 +12,7 @@ from asperity import materials as catalogue
 from asperity.case import problems, writing
 from asperity.case.asperities import Asperities, asperities_of
 from asperity.case.bodies import Body, Counterface, Material
+from asperity.case.domain import refuse_asperities, refuse_outside
 from asperity.case.forces import Adhesion, Capillary
 from asperity.case.gas import Gas
 from asperity.case.plasticity import Plasticity, Yielding, yielding_of
@@ -101,6 +102,7 @@ class Case(Table):
             )
             self.plasticity.refuse_under(self.counterface, self.roughness)
             _ = self.yielding  # which refuses what has no strength
+        refuse_outside(self)
         return self
 
     def _late_liquid(self) -> None:
@@ -267,9 +269,13 @@ class Case(Table):
         Raises
         ------
         InputError
-            If a file cannot be used.
+            If a file cannot be used, or they are as large as the body.
         """
-        return None if self.roughness is None else asperities_of(self.roughness)
+        if self.roughness is None:
+            return None
+        rough = asperities_of(self.roughness)
+        refuse_asperities(self.body.radius, rough)
+        return rough
 
     @property
     def liquid(self) -> catalogue.Liquid | None:

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._jax import jax, jnp
 from ..laws.base import Real
 from ..program import kept
-from .drag import SHARES, Stretch, course_on, turning_place
+from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
 from .history import Body
 from .phase import Turn, Work, kinetic_along, time_over, work_along
 from .table import RISE, Pieces
 
+STILL = 1e-9
+"""Share of a body's energy at its release: a force that could not give it so much moves it no more
+once it has stopped."""
+
 _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
+_CUTS, _RATIO = 12, 4.0  # of the way by the film's gaps: how many, each so much wider
+_SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thins without end
 
 
 class Gone(NamedTuple):
@@ -46,6 +54,8 @@ class Passage(NamedTuple):
     followed
         Whether it turned because it was pushed back: speeds that a drag changes within a
         thousandth of a piece are too much for its points, and it seems to turn too early.
+    stopped
+        Whether the film alone stopped it: where nothing pushes it on or back.
     """
 
     turn: Turn
@@ -56,6 +66,39 @@ class Passage(NamedTuple):
     heats: jax.Array
     crept: jax.Array
     followed: jax.Array
+    stopped: jax.Array
+
+
+def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
+    """Pieces, wide ones cut where the film thins by a factor, and which one each is a part of.
+
+    A film's drag goes as one over the gap, which no polynomial follows over decades.
+
+    Parameters
+    ----------
+    body
+        The body; without a film nothing is cut.
+    pieces
+        The polynomials ahead of it.
+    """
+    count = pieces.low.shape[0]
+    if body.film is None:
+        return pieces, jnp.arange(count)
+    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
+    ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
+    widest = jnp.max(ends)
+    narrow = jnp.maximum(body.film.closest, _SPAN * jnp.abs(widest))
+    cuts = jax.lax.stop_gradient(narrow * _RATIO ** np.arange(_CUTS))
+    cuts = jnp.clip(cuts, jnp.min(ends), widest)
+    here = jnp.clip(jnp.searchsorted(ahead * pieces.leave, ahead * cuts), 0, count - 1)
+    near = jnp.minimum(pieces.enter, pieces.leave)[here]
+    far = jnp.maximum(pieces.enter, pieces.leave)[here]
+    cuts = jnp.where(far > _RATIO * jnp.maximum(near, narrow), cuts, pieces.leave[here])
+    places = jnp.sort(ahead * jnp.concatenate([ends, cuts]))
+    middles = 0.5 * (places[1:] + places[:-1])
+    part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
+    low, high, _, _, values = (leaf[part] for leaf in pieces)
+    return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
 
 
 def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
@@ -80,6 +123,8 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     piece = Stretch.of(work, gone.piece)
     found = jnp.logical_not(gone.going)
     stop = turning_place(body, piece, gone.kinetic)
+    stopped = found & _left_alone(body, piece, stop)
+    stop = jnp.where(stopped, _spent(body, piece, gone.kinetic, stop), stop)
     course = course_on(body, piece, gone.kinetic, stop)
     turn = Turn(
         piece=gone.piece,
@@ -90,8 +135,8 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     )
     duration = gone.time + jnp.where(found, course.duration, 0.0)
     lost = gone.heat + jnp.where(found, course.lost, 0.0)
-    followed = jnp.logical_not(found) | _pushed_back(piece, stop, body.weight)
-    return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed)
+    followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.weight)
+    return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
 
 def _over(
@@ -116,6 +161,29 @@ def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Arr
     """Whether contact and weight push a body back at a place of a piece."""
     push = piece.push(place, weight)
     return piece.ahead * push <= _PUSHED * (jnp.abs(push + weight) + weight)
+
+
+def _left_alone(body: Body, piece: Stretch, place: jax.Array) -> jax.Array:
+    """Whether nothing moves a body that the film has stopped at a place of a piece."""
+    if body.film is None:
+        return jnp.asarray(False)
+    push = jnp.abs(piece.push(place, body.weight)) * jnp.abs(body.release)
+    return (body.weight == 0.0) & (push <= STILL * body.kinetic)
+
+
+def _spent(body: Body, piece: Stretch, kinetic: jax.Array, place: jax.Array) -> jax.Array:
+    """Where on a piece, entered with a kinetic energy [J], the film has taken all momentum [m].
+
+    By Newton's method from a place near by. Energies, which are squares of momenta, tell a place
+    to half as many digits.
+    """
+    momentum = jnp.sqrt(2.0 * body.mass * jnp.maximum(kinetic, 0.0))
+    for _ in range(2):
+        places = piece.enter + (place - piece.enter) * SHARES
+        drag = piece.drags(body, jnp.append(places, place), jnp.ones(POINTS + 1))[0]
+        taken = jnp.abs(place - piece.enter) * whole_of(drag[:-1])
+        place = place + piece.ahead * (momentum - taken) / drag[-1]
+    return place
 
 
 def fall_to_rest(
@@ -148,7 +216,7 @@ def fall_to_rest(
     course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
     # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
     still = slow_at(body, course.kinetic, turn.fastest, (resting, goal))
-    crept = crept & (still | jnp.logical_not(whole.followed))
+    crept = crept & (still | jnp.logical_not(whole.followed)) & jnp.logical_not(whole.stopped)
     stop = Turn(here, goal, jnp.asarray(True), turn.fastest, jnp.zeros(()))
     lost = whole.heats[here] + course.lost
     ends = (stop, whole.times[here] + course.duration, lost.at[0].add(course.kinetic))
@@ -220,6 +288,7 @@ def kinetic_at(
     body: Body, pieces: Pieces, kinetic: jax.Array, parting: jax.Array, place: jax.Array
 ) -> jax.Array:
     """Kinetic energy [J] with which a body passes a place [m] of a phase."""
+    pieces, _ = resolved(body, pieces)
     return pass_through(body, cut(pieces, parting, place), kinetic).turn.kinetic
 
 

@@ -20,7 +20,7 @@ from ..polynomials import NODES
 from .collocation import Here
 from .datum import Datum
 from .history import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
-from .legs import CREPT, FAILED, LEFT, TURNED, Course, Ended, Leg, Place, Samples, leg
+from .legs import CREPT, FAILED, LEFT, STOPPED, TURNED, Course, Ended, Leg, Place, Samples, leg
 from .motion import LEAST_LOSS
 from .stepping import Frame
 from .table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, quantities, read_row
@@ -167,12 +167,14 @@ def _outcome(stage: _Stage, done: list[_Impact]) -> Outcome | None:
     cycle = np.sum(last.rise.place.lost - last.start.lost)
     # Menisci that are still on their way will change the cycles to come.
     waits = float(last.start.here.threshold - last.rise.place.here.threshold)
+    late = last.rise.place.time >= limits.time
     repeats = abs(waits) <= LEAST_LOSS * stage.course.frame.reach
     rules = (
         (FAILED in (last.fall.fate, last.rise.fate), Outcome.FAILED),
         (last.fall.fate == CREPT, Outcome.REST),
+        (STOPPED in (last.fall.fate, last.rise.fate) and not late, Outcome.STOPPED),
         (last.rise.fate == LEFT, Outcome.ESCAPED),
-        (last.rise.place.time >= limits.time, Outcome.TIME_LIMIT),
+        (late, Outcome.TIME_LIMIT),
         (height < limits.rest * first, Outcome.REST),
         (repeats and cycle < LEAST_LOSS * done[0].fall.fastest, Outcome.OSCILLATING),
         (len(done) >= limits.impacts, Outcome.MAX_IMPACTS),

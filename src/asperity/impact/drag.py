@@ -47,6 +47,11 @@ _FINE = np.polynomial.legendre.legvander(2.0 * _FINE_PLACES - 1.0, POINTS - 1) @
 )
 
 
+def whole_of(values: jax.Array) -> jax.Array:
+    """Mean over a piece of what has these values at SHARES of it."""
+    return jnp.dot(_WHOLE, _PACE * values)
+
+
 class Course(NamedTuple):
     """One piece, or the part of it that is passed.
 
@@ -166,7 +171,8 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     """Solution u of u^2 + (the integral of drag u) = share, and whether it is one.
 
     Direct iteration converges faster than any power where the drag is weak; Newton's method
-    takes over where it is strong.
+    takes over where it is strong. Where nothing but the drag acts, u falls by half its integral:
+    they begin there where it is closer, since they do not find a body that the drag stops.
     """
 
     def goes_on(carry: Any) -> jax.Array:
@@ -185,13 +191,20 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
         after = jnp.maximum(u - move, 0.1 * u)
         return after, jnp.max(jnp.abs(after - u)), count - 1
 
-    start = jnp.sqrt(jnp.maximum(share, 0.0))
-    u, _, _ = jax.lax.while_loop(goes_on, iterate, (start, jnp.asarray(jnp.inf), _DIRECT))
-    unsolved = jnp.max(jnp.abs(_missed(u, share, drag))) > _CLOSE * POINTS
+    def off(u: jax.Array) -> jax.Array:
+        return jnp.max(jnp.abs(_missed(u, share, drag)))
+
+    free = jnp.sqrt(jnp.maximum(share, 0.0))
+    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (_UNTIL @ drag)
+    coasts = jnp.all(coasting > 0.0) & (off(coasting) < off(free))
+    start = jnp.where(coasts, coasting, free)
+    turns = jnp.where(off(start) <= _CLOSE * POINTS, 0, _DIRECT)
+    u, _, _ = jax.lax.while_loop(goes_on, iterate, (start, jnp.asarray(jnp.inf), turns))
+    unsolved = off(u) > _CLOSE * POINTS
     u = jnp.where(unsolved, start + 1e-6, u)
     change = jnp.where(unsolved, jnp.inf, 0.0)
     u, change, _ = jax.lax.while_loop(goes_on, newton, (u, change, _STEPS))
-    close = (change <= 1e-9 * jnp.max(u)) & (jnp.max(jnp.abs(_missed(u, share, drag))) < 1e-9)
+    close = (change <= 1e-9 * jnp.max(u)) & (off(u) < 1e-9)
     return u, close
 
 

@@ -25,6 +25,7 @@ ENDS = (
     Outcome.TIME_LIMIT,
     Outcome.MAX_IMPACTS,
     Outcome.FAILED,
+    Outcome.STOPPED,
 )
 """Outcomes in the order of their codes in :class:`Progress`."""
 

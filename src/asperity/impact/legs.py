@@ -12,15 +12,18 @@ from ..contact.base import Contact
 from ..contact.late import LateContact
 from ..program import Program
 from .collocation import NODES_IN_TIME, Here
-from .damping import slow_at
+from .damping import STILL, slow_at
 from .datum import Datum
 from .stepping import BOND, MARK, SWITCH, TURN, Frame, Taken, take
-from .table import quantities
+from .table import FORCE, quantities
 
 TURNED, LEFT, CREPT, FAILED = "turned", "left", "crept", "failed"
-"""How a leg ends: by a turn, at the end of the table, at rest without a turn, not at all."""
+STOPPED = "stopped"
+"""How a leg ends: by a turn, at the end of the table, at rest without a turn, not at all, or where
+the film alone stops the body."""
 
 _MOST_STEPS = 10_000
+_SLOW = 1e-7  # of the speed at the release: the film has stopped a body that is slower
 _SPENT = 1e-9  # of the energy with which a body came close to rest: with less it creeps
 
 
@@ -79,7 +82,7 @@ class Leg(NamedTuple):
     place
         Its end.
     fate
-        TURNED, LEFT, CREPT or FAILED.
+        TURNED, LEFT, CREPT, FAILED or STOPPED.
     fastest
         Largest kinetic energy [J].
     pull_work
@@ -156,6 +159,8 @@ def leg(course: Course, place: Place, sign: int) -> Leg:
             near = way
         if near is not None and _creeps(course, near, way):
             return _at_rest(course, near)
+        if not way.fate and _stands(frame, way):
+            return _at_rest(course, way)._replace(fate=STOPPED)
     return way
 
 
@@ -245,6 +250,16 @@ def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, n
 
 def _kinetic(frame: Frame, place: Place) -> float:
     return 0.5 * float(frame.body.mass) * float(place.here.speed) ** 2
+
+
+def _stands(frame: Frame, way: Leg) -> bool:
+    """Whether the film has stopped a body where nothing moves it; see :data:`STILL`."""
+    body = frame.body
+    if body.film is None or float(body.weight) > 0.0:
+        return False
+    released = float(body.kinetic)
+    push = abs(float(way.samples[-1].rows[-1, FORCE]) * float(body.release))
+    return _kinetic(frame, way.place) <= _SLOW**2 * released and push <= STILL * released
 
 
 def _creeps(course: Course, near: Leg, way: Leg) -> bool:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..contact.base import Contact, Held
 from ..errors import Outcome, Tolerance
-from .damping import fall_to_rest
+from .damping import fall_to_rest, resolved
 from .datum import Datum, find_datum
 from .history import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
 from .phase import (
@@ -173,6 +173,7 @@ class _Leg(NamedTuple):
     pull_work: jax.Array
     crept: jax.Array
     followed: jax.Array
+    stopped: jax.Array
     leaving: jax.Array
 
 
@@ -188,7 +189,7 @@ def _leg(
 
     ``rest`` is the equilibrium, and the separation that counts as there [m].
     """
-    crept, followed = jnp.asarray(False), jnp.asarray(True)
+    fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
     branch = contact.branch_of(progress.memory, parting)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
@@ -197,11 +198,12 @@ def _leg(
         turn, heat = find_turn(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
-        way = join(table, branch, inner, progress.place, parting)
+        way, part = resolved(body, join(table, branch, inner, progress.place, parting))
         goal = jnp.where(parting, jnp.inf, rest[1])
         passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
-        turn, heat = in_order(ahead, passage.turn), passage.lost
-        crept, followed = passage.crept, passage.followed
+        turn = passage.turn._replace(piece=part[passage.turn.piece])
+        turn, heat = in_order(ahead, turn), passage.lost
+        fate = passage.crept, passage.followed, passage.stopped
         time = progress.time + passage.duration
     row = row_at(ahead, turn)
     layout = quantities(contact)
@@ -220,12 +222,23 @@ def _leg(
         memory=contact.turned(progress.memory, turn.place, held), place=turn.place,
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
-    row = row[: layout.components.stop]
     leg = _Leg(
-        turn, phase, row, lost, time, bonds, -pull_work(ahead, turn), crept, followed,
-        jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
+        turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
+        *fate, jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
     )  # fmt: skip
     return after, leg
+
+
+def _no_rise(fall: tuple[Progress, _Leg], rise: tuple[Progress, _Leg]) -> tuple[Progress, _Leg]:
+    """A way up that is none where the film stopped the body on its way down."""
+    after, here = fall
+    stay = here._replace(
+        phase=rise[1].phase._replace(stop=rise[1].phase.start), pull_work=jnp.zeros(())
+    )
+    kept = jax.tree_util.tree_map(
+        lambda a, b: jnp.where(here.stopped, a, b), (after, stay), rise
+    )  # fmt: skip
+    return cast("tuple[Progress, _Leg]", kept)
 
 
 def _impact(
@@ -241,24 +254,29 @@ def _impact(
     resting = datum.equilibrium
     rest = resting, resting + limits.rest * (body.release - resting)
 
-    def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, _Leg]:
-        return _leg(contact, body, table, rest, progress, parting)
+    def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
+        after, way = _leg(contact, body, table, rest, progress, parting)
+        return after, (after, way)
 
     # One body of code for both directions: half to compile.
-    end, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
-    fall, rise = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
-    mechanical = both.turn.kinetic + body.weight * both.turn.place + both.row[:, STORED]
-    closure = jnp.max(jnp.abs(mechanical + jnp.sum(both.lost, axis=1) - origin))
+    _, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
+    down, up = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
+    up = up if body.film is None else _no_rise(down, up)
+    fall, (end, rise) = down[1], up
+    legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
+    mechanical = legs.turn.kinetic + body.weight * legs.turn.place + legs.row[:, STORED]
+    closure = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
     height = end.place - datum.equilibrium
     first = jnp.where(progress.made == 0, height, progress.first)
     energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
     risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
-    sound = fall.turn.found & jnp.all(both.followed) & jnp.isfinite(mechanical[1])
+    sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
     outcome = _outcome(
         (
             (jnp.logical_not(sound), Outcome.FAILED),
             (fall.crept, Outcome.REST),
+            ((fall.stopped | rise.stopped) & (rise.time < limits.time), Outcome.STOPPED),
             # Flattened tips may pull at once by more than what they press.
             (jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen), Outcome.REST),
             (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),

@@ -10,7 +10,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..polynomials import chebyshev_sum, local
 from ..program import Program
-from .damping import cut, follow
+from .damping import cut, follow, resolved
 from .history import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
 from .table import CENTRAL, RATE, RISE, Pieces, Table, join, read_row
@@ -115,7 +115,7 @@ def _draw_one(
     """Time, separation, speed, rows, heat, drag and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, parting)
     if body.damped:
-        return _draw_damped(body, pieces, phase, parting)
+        return _draw_damped(body, resolved(body, pieces)[0], phase, parting)
     work = work_along(pieces, phase.kinetic, body.weight)
     ahead = jnp.where(parting, 1.0, -1.0)
     path = _path(pieces, phase, places)

@@ -16,7 +16,7 @@ from .parameters import (
     plasticity_index,
     tabor_number,
 )
-from .verdicts import FEW, Situation, Verdict, verdicts
+from .verdicts import FEW, Situation, Verdict, missed, verdicts
 
 __all__ = [
     "BORDER_FACTOR",
@@ -36,6 +36,7 @@ __all__ = [
     "choose_adhesion",
     "hertz_load",
     "load_parameter",
+    "missed",
     "plasticity_index",
     "region",
     "regions",

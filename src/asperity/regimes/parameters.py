@@ -31,6 +31,8 @@ class Regime(NamedTuple):
         "flooded".
     wetting_reason
         The number and the rule that say so.
+    touching_asperities
+        How many are expected to touch at closest approach; None for a smooth body.
     """
 
     tabor_number: float | None
@@ -41,6 +43,7 @@ class Regime(NamedTuple):
     adhesion_reason: str | None = None
     wetting: str = "dry"
     wetting_reason: str = "there is no liquid"
+    touching_asperities: float | None = None
 
 
 def tabor_number(radius: float, work: float, modulus: float, spacing: float) -> float:

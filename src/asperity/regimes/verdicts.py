@@ -78,6 +78,19 @@ class Situation(NamedTuple):
     yields: bool = False
 
 
+def missed(touching: float) -> str:
+    """What it means that fewer than one asperity is expected to touch.
+
+    Parameters
+    ----------
+    touching
+        Expected number, below 1: by Poisson's law a share exp(-touching) of bodies touches none.
+    """
+    if touching < 0.5:
+        return "most single bodies touch none and a few touch one"
+    return "about half of single bodies touch none and the others one or two"
+
+
 def verdicts(situation: Situation) -> dict[str, Verdict]:
     """A verdict on each number, by the number's name."""
     regime = situation.regime
@@ -170,6 +183,8 @@ def _touching(situation: Situation) -> Verdict:
     value = situation.touching
     if not situation.rough:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
+    if value < 1.0:
+        return Verdict(value, "1", f"below 1: {missed(value)}; only means over many are told")
     if value < FEW:
         return Verdict(value, "1", f"below {FEW:g}: single impacts scatter about the mean")
     return Verdict(value, "1", f"expected at closest approach; {FEW:g} or more make a mean")

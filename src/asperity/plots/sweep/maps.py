@@ -34,6 +34,7 @@ _TINTS = {
     "escaped": colour("motion"),
     "time_limit": colour("gas"),
     "max_impacts": colour("capillary"),
+    "stopped": colour("kinetic"),
 }
 """Colours of codes by their meaning."""
 

@@ -18,6 +18,7 @@ OUTCOMES: tuple[Outcome, ...] = (
     Outcome.TIME_LIMIT,
     Outcome.MAX_IMPACTS,
     Outcome.FAILED,
+    Outcome.STOPPED,
 )
 """How a case ended, in the order of the codes in the column ``outcome``."""
 
