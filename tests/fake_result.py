@@ -163,6 +163,9 @@ def loading(*, case: Case | None = None, name: str = "published-exact") -> Curve
         components_parting={"elastic": elastic, "adhesion": nothing, "capillary": bridge},
         deepest=44e-9,
         pull_off=float(-(elastic + bridge).min()),
+        pull_off_separation=float(separation[np.argmin(elastic + bridge)]),
         work_of_separation=2.1e-16,
+        preload=float(elastic.max()),
         loss=float(-np.trapezoid(bridge, -separation)),
+        warnings=["About 0.07 asperities touch at closest approach."],
     )

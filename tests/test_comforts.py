@@ -131,7 +131,7 @@ def test_the_real_steps_are_compilation_curves_motion_and_measures(place: Path):
     steps = re.findall(r"^asperity: (.*?) +[\d.]+ m?s$", ran.stderr, re.MULTILINE)
     assert steps == [
         "loading", "tracing", "compilation", "force curves", "compilation", "motion, impact 11",
-        "measures", "record and pictures", "files",
+        "measures", "critical velocity", "record and pictures", "files",
     ]  # fmt: skip
     told = re.compile(r"programs: (\d+) traced .*, (\d+) found")
     traced, kept = map(int, told.findall(ran.stderr)[0])

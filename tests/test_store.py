@@ -233,11 +233,11 @@ def change(file: Path, **values: object) -> None:
 
 
 def test_a_newer_schema_is_refused(path: Path):
-    change(manifest_of(path), schema=2)
-    with pytest.raises(InputError, match="`schema` must be 1; got 2 - a newer asperity"):
+    change(manifest_of(path), schema=4)
+    with pytest.raises(InputError, match="`schema` must be 2; got 4 - a newer asperity"):
         Store.open(path)
     change(path / "zarr.json", schema=3)
-    with pytest.raises(InputError, match="`schema` must be 1; got 3 - a newer asperity"):
+    with pytest.raises(InputError, match="`schema` must be 2; got 3 - a newer asperity"):
         Store.open(path)
 
 

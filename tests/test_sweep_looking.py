@@ -132,7 +132,7 @@ def drop_array(store: Path) -> None:
 
 def make_newer(store: Path) -> None:
     about = json.loads((store / "zarr.json").read_text())
-    about["attributes"]["schema"] = 2
+    about["attributes"]["schema"] = 3
     (store / "zarr.json").write_text(json.dumps(about))
 
 
@@ -141,7 +141,7 @@ def make_newer(store: Path) -> None:
     [
         (damage_chunk, "restitution.*--repair"),
         (drop_array, "restitution.*--repair"),
-        (make_newer, "schema.*got 2"),
+        (make_newer, "schema.*got 3"),
     ],
 )
 def test_a_harmed_store_is_refused_with_what_to_do(
@@ -709,7 +709,7 @@ def linear_curve() -> Curve:
     approach, parting = push * gone, (push - PULL) * gone
     return Curve(
         asperity.load("published"), "spring", separation, separation, approach, parting, {}, {},
-        float(separation[0]), PULL, 0.0, 1e-15,
+        float(separation[0]), PULL, float(separation[0]), 0.0, None, 1e-15, [],
     )  # fmt: skip
 
 

@@ -1,0 +1,109 @@
+"""The critical velocity: below it the first impact captures."""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import asperity
+from asperity.case import load_file
+from asperity.errors import InputError
+from asperity.impact.critical import FirstImpacts, capture_edges
+from test_pull_off import MODULUS, RADIUS, UNIT, W, jkr, smooth
+
+MASS = 2500.0 * 4.0 / 3.0 * pi * RADIUS**3
+
+
+def cycle_loss():
+    """What a JKR contact loses over in and out, for w = R = E* = 1: 7.092196."""
+    first, last = (2.0 * pi) ** (1.0 / 3.0), (pi / 8.0) ** (1.0 / 3.0)
+    return quad(lambda a: jkr(a)[0] * (2.0 * a - sqrt(0.5 * pi / a)), last, first)[0] * -1.0
+
+
+CRITICAL = sqrt(2.0 * abs(cycle_loss()) * UNIT / MASS)
+
+
+@pytest.mark.parametrize("speed", ["0.1 m/s", "0.6 m/s", "5 m/s"])
+def test_a_jkr_sphere_is_captured_below_what_its_cycle_loses(speed):
+    measures = asperity.solve(smooth("jkr", speed)).measures
+    closed = 1.84018 * (W**5 / (RADIUS**5 * 2500.0**3 * MODULUS**2)) ** (1.0 / 6.0)
+    assert pytest.approx(closed, rel=3e-6) == CRITICAL
+    assert measures["critical_velocity"] == pytest.approx(CRITICAL, rel=1e-8)
+    assert measures["capture_edges"] == [measures["critical_velocity"]]
+    assert measures["critical_velocity_note"] is None
+    assert measures["captured"] == (float(speed.split()[0]) < CRITICAL)
+
+
+def test_the_speed_of_approach_is_the_launch_and_attraction_makes_a_larger_one():
+    measures = asperity.solve(smooth("jkr", "0.7 m/s")).measures
+    assert measures["impact_speed"] == pytest.approx(0.7, rel=1e-12)
+    assert measures["maximum_speed"] == pytest.approx(1.284 * 0.7, rel=0.03)
+
+
+def test_without_a_loss_every_speed_rebounds_and_that_is_said():
+    measures = asperity.solve(smooth("dmt")).measures
+    assert measures["critical_velocity"] is None
+    assert measures["capture_edges"] == []
+    assert measures["critical_velocity_note"] == "every speed rebounds: nothing takes energy"
+
+
+def test_restitution_follows_the_critical_velocity_of_jkr():
+    curve = asperity.restitution_curve(smooth("jkr"), points=12)
+    expected = np.sqrt(np.maximum(1.0 - (CRITICAL / curve.speed) ** 2, 0.0))
+    np.testing.assert_allclose(curve.restitution, expected, atol=1e-7)
+    np.testing.assert_array_equal(curve.captured, curve.speed < CRITICAL)
+    assert curve.critical_velocity == pytest.approx(CRITICAL, rel=1e-8)
+    assert curve.speed[0] == pytest.approx(0.1 * CRITICAL)
+    assert "critical velocity" in curve.summary()
+
+
+def test_a_rough_wet_body_just_above_its_critical_velocity_leaves_and_just_below_does_not():
+    case = load_file("examples/wet-drop.toml")
+    critical = asperity.solve(case).measures["critical_velocity"]
+    curve = asperity.restitution_curve(case, critical * np.array([0.9, 0.95, 1.02, 1.1]))
+    assert curve.captured.tolist() == [True, True, False, False]
+    assert curve.critical_velocity == pytest.approx(critical, rel=1e-6)
+    assert 0.0 < curve.restitution[2] < curve.restitution[3]
+
+
+def model(captured, excess):
+    """First impacts whose energy left is a function of their speed, of one body of 2 kg."""
+
+    def launch(cases, speeds):
+        return FirstImpacts.of(speeds, captured(speeds), excess(speeds), 2.0)
+
+    return launch
+
+
+def test_several_intervals_of_capture_give_all_edges():
+    """Energy left, v^2 less what is lost, changes sign at 1, 3 and 10."""
+
+    def left(v):
+        return (v - 1.0) * (v - 3.0) * (v - 10.0)
+
+    known = model(lambda v: left(v) < 0.0, left)
+    unknown = model(lambda v: left(v) < 0.0, lambda v: np.full(v.shape, np.nan))
+    for launch in (known, unknown):
+        (edges,) = capture_edges(launch, np.array([0.5]), np.array([2.0]))
+        assert edges.speeds == pytest.approx((1.0, 3.0, 10.0), rel=1e-10)
+        assert edges.lowest
+
+
+def test_speeds_that_cannot_be_computed_are_passed_over():
+    def launch(cases, speeds):
+        found = FirstImpacts.of(speeds, speeds < 1.0, speeds**2 - 1.0, 2.0)
+        return found._replace(speed=np.where(speeds > 3.0, np.nan, found.speed))
+
+    (edges,) = capture_edges(launch, np.array([0.5]), np.array([2.0]))
+    assert edges.speeds == pytest.approx((1.0,), rel=1e-10)
+    assert edges.tried[1] <= 3.0
+    nothing = model(lambda v: v < 0.0, lambda v: v)
+    (edges,) = capture_edges(nothing, np.array([0.5]), np.array([2.0]))
+    assert (edges.speeds, edges.lowest) == ((), False)
+
+
+@pytest.mark.parametrize("speeds", [[], [0.0, 1.0], [-1.0], [float("nan")], [float("inf")]])
+def test_speeds_that_are_none_are_refused(speeds):
+    with pytest.raises(InputError, match="`speeds` must be positive and finite"):
+        asperity.restitution_curve(smooth("jkr"), np.array(speeds))
