@@ -33,12 +33,16 @@ _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
 class Flight(NamedTuple):
-    """A motion that was flown, the contact it was flown with, and how it ended."""
+    """A motion that was flown, the contact it was flown with, and how it ended.
+
+    The body has the release that was found, where the case gives a speed alone.
+    """
 
     motion: Motion
     contact: Contact
     outcome: Outcome
     trajectory: Trajectory | None = None
+    body: Body | None = None
 
 
 def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
@@ -113,6 +117,7 @@ def result_of(
     most
         Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
     """
+    problem = problem._replace(body=flight.body or problem.body)
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
     measures = _padded(flight, body)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ._jax import jax
+from ._jax import jax, jnp
 from .case import Case
 from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
@@ -24,6 +24,7 @@ from .impact.delayed import fly as fly_late
 from .impact.foreseen import foreseen
 from .impact.history import ENDS, FLYING
 from .impact.legs import Ended
+from .impact.release import TRIES, at_release, farther, negligible_force
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row
 from .program import AT_ONCE, Program, signature
@@ -90,13 +91,12 @@ def flown(
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
     limits = Limits.of(case.tolerance)
-    contact, table, datum = _prepared(
-        problem, case.numerics.tolerance, limits, tell, drawn=True, many=many
-    )
-    _check_release(problem, table, many=many)
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=True, many=many)
     if problem.late is None and problem.creep is None:
-        return _fly(problem.body, contact, table, datum, limits, tell, stop)
-    return _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+        flight = _fly(problem.body, contact, table, datum, limits, tell, stop)
+    else:
+        flight = _fly_stepped(problem, contact, (table, datum), limits, tell, stop)
+    return flight._replace(body=problem.body)
 
 
 def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
@@ -115,8 +115,7 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
         As :func:`solve`.
     """
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=False)
-    _check_release(problem, table)
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=False)
     body = problem.body
     tell(0.3, "first impact")
     first, origin = _start(contact, body, table)
@@ -125,6 +124,28 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
     )
     impacts = jax.tree_util.tree_map(np.asarray, rows)
     return contact, Motion(impacts, progress, table, datum, origin)
+
+
+def _released(
+    case: Case, problem: Problem, limits: Limits, tell: Report, *, drawn: bool, many: bool = False
+) -> tuple[Problem, tuple[Contact, Table, Datum]]:
+    """A problem whose body is released outside contact, and its curves.
+
+    Where the case gives a speed alone, the release lies as far out as its forces ask for.
+    """
+    for _ in range(TRIES):
+        prepared = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=drawn, many=many)
+        if case.impact.release_gap is not None:
+            break
+        body, table = problem.body, prepared[1]
+        force, power, largest = (np.asarray(x) for x in _at_release(table, body))
+        limit = negligible_force(np.asarray(body.weight), largest)
+        if force <= limit:
+            break
+        release = farther(np.asarray(body.release), force, power, limit)
+        problem = problem._replace(body=dataclasses.replace(body, release=jnp.asarray(release)))
+    _check_release(problem, prepared[1], many=many)
+    return problem, prepared
 
 
 def _prepared(
@@ -220,6 +241,7 @@ def _at_once(contact: Contact, body: Body) -> int:
 _prepare = Program(prepare)
 _prepare_at_once = Program(prepare, AT_ONCE)
 _start = Program(start, AT_ONCE)
+_at_release = Program(at_release, AT_ONCE)
 _fly_some = Program(fly)
 
 
@@ -229,7 +251,7 @@ def _check_release(problem: Problem, table: Table, *, many: bool = False) -> Non
     release, weight = float(body.release), float(body.mass) * float(body.gravity)
     force = abs(float(read_row(table, 0, release)[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
-    limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest
+    limit = float(negligible_force(np.asarray(weight), np.asarray(largest)))
     if force <= limit:
         return
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"

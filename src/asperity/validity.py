@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .accuracy import fall_warnings
 from .case import Case
 from .case.build import Problem
 from .contact import Contact
@@ -94,6 +95,7 @@ def warnings_of(
         *gas_warnings(case, at_depth.central, motion),
         *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
         *_shape(case, motion),
+        *fall_warnings(case, problem, motion),
         *_ledger(problem, motion),
     ]
 

@@ -18,7 +18,7 @@ from ..shapes import Sphere
 from .base import Contact, Held, State, Way
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
-from .rigid import FAR, RigidContact, rough_panels
+from .rigid import RigidContact, rough_panels
 from .settling import Rest, resting, rise_of, settle
 
 _ALIKE = 3.0  # rms heights between reversals whose ways are interpolated, at most
@@ -167,7 +167,7 @@ class ElasticContact(Contact):
         The ends of the panels come first: there the size of the mesh is found, which is linear
         in between. Beyond the reach of the forces the body is as good as rigid.
         """
-        near = places.shape[0] - FAR
+        near = places.shape[0] - self.rigid.far
         down = places[:near].ravel()[::-1]
         frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
         sizes, rests = descend(*frozen)
@@ -182,7 +182,7 @@ class ElasticContact(Contact):
         )
         thresholds = tuple(b[-1] for b in memory.thresholds)
         outer = self.rigid.branch(ends, places[near:], thresholds)
-        still = jnp.zeros((FAR, places.shape[1], *inner.field.shape[2:]))
+        still = jnp.zeros((self.rigid.far, places.shape[1], *inner.field.shape[2:]))
         outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
 
