@@ -14,14 +14,14 @@ from .contact import Contact
 from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import Datum, end_of_contact
-from .impact.sampling import Series, sample, until
+from .impact.sampling import Series, ascending, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, quantities
 from .impact.trajectory import Trajectory
 from .measures import Measures, measure
 from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
-from .validity import AtDepth, check_surface, slow_menisci, warnings_of
+from .validity import CLOSED, AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
 
@@ -84,7 +84,7 @@ def _sampled(
         impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
     if stepped is not None:
         kept = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
-        return kept.series, _by_name(contact, body, kept.lost)
+        return kept.series, _by_name(contact, body, ascending(kept.lost, _known(motion)))
     series = until(sample(body, motion.table, impacts), limit)
     return series, _losses_along(contact, motion, body, series)
 
@@ -293,7 +293,14 @@ def _losses_along(
     laws = len(contact.mechanisms)
     lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
     lost[:, laws:] += series.heat
-    return _by_name(contact, body, lost)
+    return _by_name(contact, body, ascending(lost, _known(motion)))
+
+
+def _known(motion: Motion) -> float:
+    """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
+    impacts = motion.impacts
+    closure = np.max(np.where(impacts.made, impacts.closure, 0.0))
+    return float(max(2.0 * closure, CLOSED * impacts.fastest[0]))
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:

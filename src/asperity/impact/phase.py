@@ -13,8 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from ..polynomials import antiderivative, chebyshev_sum, local
-from .table import DRIVE, RATE, RISE, Pieces, Table
+from ..polynomials import NODES, antiderivative, chebyshev_sum, local
+from .table import DRIVE, FORCE, RATE, RISE, Pieces, Table
+
+_RISE_TOO = np.concatenate([[0.0], RISE, [1.0]])  # with both ends
+_BOTH = np.array([0, -1])
+_SLOW = 0.01  # of the energy that a piece adds: entered with more, it is summed to 1e-9
+_ALTERNATE = (-1.0) ** np.arange(NODES)  # Chebyshev polynomials at the lower end
 
 
 class Work(NamedTuple):
@@ -158,50 +163,108 @@ def _work_at(table: Table, branch: jax.Array, panel: jax.Array, place: jax.Array
 
 def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     """Time [s] from the start of a phase to its turn."""
-    table, inner = ahead.table, ahead.inner
-    panel = turn.piece - ahead.pieces
-    reached = panel >= 0
+    total = _time_of_whole(ahead, turn, mass) + _time_of_parts(ahead, turn, mass)
+    return total + _time_before(ahead, turn, mass) if ahead.pieces else total
 
-    def until(place: jax.Array) -> jax.Array:
-        near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
-        return jnp.where(ahead.parting, near, far)
 
-    # Panels passed as a whole, whose work is known at all places of the quadrature.
+def _until(ahead: Ahead, turn: Turn, place: jax.Array) -> jax.Array:
+    near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
+    return jnp.where(ahead.parting, near, far)
+
+
+def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On panels passed as a whole, whose work is known at all places of the quadrature."""
+    table, panel = ahead.table, turn.piece - ahead.pieces
     index = np.arange(table.ends.shape[0] - 1)
     low, high = jnp.minimum(panel, ahead.panel), jnp.maximum(panel, ahead.panel)
-    whole = reached & (low < index) & (index < high)
-    energies = ahead.outer(table.works.nodes[ahead.branch], table.nodes)
-    total = _time_over(jnp.diff(table.ends), whole, energies, mass)
-    # The panel in which the branch begins, and the one in which the body turns.
+    whole = (panel >= 0) & (low < index) & (index < high)
+    nodes, looks = table.works.nodes[ahead.branch], table.works.looks[ahead.branch]
+    first, last = (
+        ahead.outer(looks[:, k], places)
+        for k, places in ((0, table.ends[:-1]), (-1, table.ends[1:]))
+    )
+    force = table.values[ahead.branch, :, :, FORCE]
+    forces = jnp.sum(force * _ALTERNATE, axis=1), jnp.sum(force, axis=1)
+    ends = _Ends(first, last, *forces, ahead.inner.weight)
+    energies = ahead.outer(nodes, table.nodes)
+    return _time_over(jnp.diff(table.ends), whole, energies, mass, ends)
+
+
+def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On the panel in which the branch begins, and on the one in which the body turns."""
+    table, panel = ahead.table, turn.piece - ahead.pieces
     panels = jnp.stack([ahead.panel, panel])
     low, high = table.ends[panels], table.ends[panels + 1]
     near, far = jnp.where(ahead.parting, high[0], low[0]), jnp.where(ahead.parting, low[1], high[1])
     first = jnp.stack([ahead.begin, far])
-    last = jnp.stack([until(near), turn.place])
+    last = jnp.stack([_until(ahead, turn, near), turn.place])
     span = last - first
     integral = table.works.integral[ahead.branch, panels, :, 0]
     start = local(low, high, first)[:, None]
-    x = start + (local(low, high, last)[:, None] - start) * RISE
-    way = (first - ahead.begin)[:, None] + span[:, None] * RISE
+    x = start + (local(low, high, last)[:, None] - start) * _RISE_TOO
+    way = (first - ahead.begin)[:, None] + span[:, None] * _RISE_TOO
     energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
-    used = jnp.stack([reached, jnp.logical_and(reached, panel != ahead.panel)])
-    total = total + _time_over(jnp.abs(span), used, energies, mass)
-    if not ahead.pieces:
-        return total
-    p = inner.pieces
-    enter = until(p.enter)
-    span = until(p.leave) - enter
-    energies = kinetic_along(inner, enter[:, None] + span[:, None] * RISE)
-    return total + _time_over(jnp.abs(span), span != 0.0, energies, mass)
+    force = table.values[ahead.branch, panels, :, FORCE]
+    ends = _Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
+    used = (panel >= 0) & jnp.stack([jnp.asarray(True), panel != ahead.panel])
+    return _time_over(span, used, energies[:, 1:-1], mass, ends)
+
+
+def _time_before(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On the pieces before the branch."""
+    inner, p = ahead.inner, ahead.inner.pieces
+    enter = _until(ahead, turn, p.enter)
+    span = _until(ahead, turn, p.leave) - enter
+    places = enter[:, None] + span[:, None] * _RISE_TOO
+    energies = kinetic_along(inner, places)
+    x = local(p.low[:, None], p.high[:, None], places[:, _BOTH])
+    force = chebyshev_sum(p.values[..., FORCE].T[:, :, None], x)
+    ends = _Ends.of(energies, force, inner.weight)
+    return _time_over(span, span != 0.0, energies[:, 1:-1], mass, ends)
+
+
+class _Ends(NamedTuple):
+    """Kinetic energy [J] and contact force [N] where pieces begin and end, and the weight [N]."""
+
+    first: jax.Array
+    last: jax.Array
+    first_force: jax.Array
+    last_force: jax.Array
+    weight: jax.Array
+
+    @classmethod
+    def of(cls, energies: jax.Array, forces: jax.Array, weight: jax.Array) -> _Ends:
+        """From columns of which the outermost are the ends."""
+        return cls(energies[:, 0], energies[:, -1], forces[:, 0], forces[:, -1], weight)
+
+    def gains(self, span: jax.Array) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] that each end's force would give over the whole piece, away from that end."""
+        return (self.first_force - self.weight) * span, (self.weight - self.last_force) * span
 
 
 def _time_over(
-    length: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array
+    span: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array, ends: _Ends
 ) -> jax.Array:
-    """Time [s] over pieces with kinetic energies [J] at the places RISE of each."""
+    """Time [s] over pieces with kinetic energies [J] at the places RISE of each.
+
+    A body at rest just before a piece, or just after it, makes the slowness too steep at that end
+    for the quadrature. What the quadrature misses of it is added, for an energy that grows from
+    there as by the force at the end.
+    """
     squares = jnp.where(energies > 0.0, 2.0 / mass * energies, jnp.inf)  # of the speeds
     slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
-    return jnp.sum(jnp.where(used, slowness * length, 0.0))
+    for energy, gain in zip((ends.first, ends.last), ends.gains(span), strict=True):
+        slowness = slowness + _missed(energy, gain) * jnp.sqrt(0.5 * mass)
+    return jnp.sum(jnp.where(used, slowness * jnp.abs(span), 0.0))
+
+
+def _missed(energy: jax.Array, gain: jax.Array) -> jax.Array:
+    """What the quadrature misses of the integral of (energy + gain y)^-1/2 over y from 0 to 1."""
+    slow = (energy > 0.0) & (energy < _SLOW * gain)
+    safe, by = jnp.where(slow, energy, 1.0), jnp.where(slow, gain, 1.0)
+    exact = 2.0 / (jnp.sqrt(safe + by) + jnp.sqrt(safe))
+    found = jnp.sum(RATE * jax.lax.rsqrt(safe[:, None] + by[:, None] * RISE), axis=1)
+    return jnp.where(slow, exact - found, 0.0)
 
 
 def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:
