@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from .case import Case
 from .case.build import Problem
+from .contact import ElasticContact
+from .contact.ring_error import ring_error
 from .impact import Motion
+from .impact.table import SIZE, quantities, read_row
+
+CLOSED = 1e-6
+"""Share of the impact energy to which a ledger that can be trusted closes."""
 
 HASTENED = 0.02
 """Share of the kinetic energy given that a fall may add without a word: 1 % of the speed."""
@@ -30,4 +36,31 @@ def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     return [
         f"forces reach so far that the body is released at {fall / weight * 1e6:.3g} um, and "
         f"falling from there adds {added:.2g} % to its speed: give `release_gap`, or no gravity"
+    ]
+
+
+def ring_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
+    """A line where too few rings resolve the bulk's deformation at closest approach.
+
+    More than the tolerance asks for, or than a ledger's balance where that is less strict.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    motion
+        The motion; without its curves nothing is said.
+    """
+    contact, table = problem.contact, motion.table
+    if not isinstance(contact, ElasticContact) or table is None:
+        return []
+    deepest = float(motion.impacts.deepest[0])
+    row = read_row(table, 0, deepest)
+    off = ring_error(contact, deepest, float(row[SIZE]), row[quantities(contact).field])
+    allowed = max(case.numerics.tolerance, CLOSED)
+    if not off > allowed:
+        return []
+    return [
+        f"{contact.rings} rings leave an estimated error of {off:.1g} in the force at closest "
+        f"approach, above {allowed:.0e}: raise `numerics.rings`"
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import regimes
 from ._jax import jax
+from .accuracy import CLOSED
 from .case import Case
 from .case.build import Problem
 from .contact import Contact
@@ -21,7 +22,7 @@ from .measures import Measures, measure
 from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
-from .validity import CLOSED, AtDepth, check_surface, slow_menisci, warnings_of
+from .validity import AtDepth, check_surface, slow_menisci, warnings_of
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
 

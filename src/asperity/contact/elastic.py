@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 
 from .._jax import jax, jnp
-from ..halfspace import ring_mesh
+from ..halfspace import ring_mesh, rings_of_mesh
 from ..interface import Memory as Thresholds
 from ..laws.base import Real, quantity
 from ..layers import Surfaces
@@ -58,7 +58,8 @@ class ElasticContact(Contact):
     modulus
         Contact modulus E* [Pa] of the bulk.
     rings
-        Number of rings (static). The force converges with a high order in it.
+        Number of rings (static); the next multiple of 8 is taken. The force converges with a high
+        order in it.
     resolved
         As for :class:`RigidContact`; of several pieces the last one is where the rings that
         lag behind reach the branch.
@@ -87,7 +88,7 @@ class ElasticContact(Contact):
         self.interface = interface
         self.shape = shape
         self.modulus = modulus
-        self.rings = rings
+        self.rings = rings_of_mesh(rings)
         self.resolved = resolved or resolution(interface, deforms=True)
 
     @property
