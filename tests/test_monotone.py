@@ -7,8 +7,8 @@ import pytest
 
 import asperity
 from asperity.case.reading import load_file
-from asperity.impact.phase import _missed
 from asperity.impact.sampling import ascending
+from asperity.impact.slowness import missed_time
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 BONDS = {
@@ -58,9 +58,10 @@ def test_a_fall_lasts_as_long_as_its_speeds_say():
     """Between samples that are close the speed changes evenly: dt = 2 dd / (v + v')."""
     result = asperity.solve(load_file(EXAMPLES / "glass-bead.toml"))
     first, then = result.events["apex_time"][0], result.events["deepest_time"][1]
-    fall = np.flatnonzero((result.time >= first) & (result.time <= then * (1.0 + 1e-12)))
+    inside = (result.time >= first * (1.0 - 1e-12)) & (result.time <= then * (1.0 + 1e-12))
+    fall = np.flatnonzero(inside)
     place, speed = result.separation[fall], result.speed[fall]
-    steps = 2.0 * np.diff(place)[:-1] / (speed[1:] + speed[:-1])[:-1]
+    steps = 2.0 * np.diff(place) / (speed[1:] + speed[:-1])
     assert then - first == pytest.approx(np.sum(steps), rel=1e-5)
 
 
@@ -70,7 +71,7 @@ def test_the_time_of_a_body_that_was_just_at_rest_is_that_of_its_even_accelerati
 
     for energy in (0.0, 1e-12, 1e-8, 1e-6, 1e-4, 1e-3, 0.02, 0.3):
         found = np.sum(RATE / np.sqrt(energy + RISE))
-        missed = float(_missed(np.array([energy]), np.array([1.0]))[0])
+        missed = float(missed_time(np.array([energy]), np.array([1.0]))[0])
         exact = 2.0 / (np.sqrt(1.0 + energy) + np.sqrt(energy))
         assert found + missed == pytest.approx(exact, rel=1e-9)
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..polynomials import NODES, antiderivative, chebyshev_sum, local
-from .table import DRIVE, FORCE, RATE, RISE, Pieces, Table
+from .slowness import Ends, time_over
+from .table import DRIVE, FORCE, RISE, Pieces, Table
 
 _RISE_TOO = np.concatenate([[0.0], RISE, [1.0]])  # with both ends
 _BOTH = np.array([0, -1])
-_SLOW = 0.01  # of the energy that a piece adds: entered with more, it is summed to 1e-9
 _ALTERNATE = (-1.0) ** np.arange(NODES)  # Chebyshev polynomials at the lower end
 
 
@@ -185,9 +185,9 @@ def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     )
     force = table.values[ahead.branch, :, :, FORCE]
     forces = jnp.sum(force * _ALTERNATE, axis=1), jnp.sum(force, axis=1)
-    ends = _Ends(first, last, *forces, ahead.inner.weight)
+    ends = Ends(first, last, *forces, ahead.inner.weight)
     energies = ahead.outer(nodes, table.nodes)
-    return _time_over(jnp.diff(table.ends), whole, energies, mass, ends)
+    return time_over(jnp.diff(table.ends), whole, energies, mass, ends)
 
 
 def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
@@ -204,10 +204,11 @@ def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     x = start + (local(low, high, last)[:, None] - start) * _RISE_TOO
     way = (first - ahead.begin)[:, None] + span[:, None] * _RISE_TOO
     energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
+    energies = _resting(turn, last, energies.at[0, 0].set(ahead.inner.kinetic[-1]))
     force = table.values[ahead.branch, panels, :, FORCE]
-    ends = _Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
+    ends = Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
     used = (panel >= 0) & jnp.stack([jnp.asarray(True), panel != ahead.panel])
-    return _time_over(span, used, energies[:, 1:-1], mass, ends)
+    return time_over(span, used, energies[:, 1:-1], mass, ends)
 
 
 def _time_before(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
@@ -216,55 +217,17 @@ def _time_before(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     enter = _until(ahead, turn, p.enter)
     span = _until(ahead, turn, p.leave) - enter
     places = enter[:, None] + span[:, None] * _RISE_TOO
-    energies = kinetic_along(inner, places)
+    energies = _resting(turn, enter + span, kinetic_along(inner, places))
     x = local(p.low[:, None], p.high[:, None], places[:, _BOTH])
     force = chebyshev_sum(p.values[..., FORCE].T[:, :, None], x)
-    ends = _Ends.of(energies, force, inner.weight)
-    return _time_over(span, span != 0.0, energies[:, 1:-1], mass, ends)
+    ends = Ends.of(energies, force, inner.weight)
+    return time_over(span, span != 0.0, energies[:, 1:-1], mass, ends)
 
 
-class _Ends(NamedTuple):
-    """Kinetic energy [J] and contact force [N] where pieces begin and end, and the weight [N]."""
-
-    first: jax.Array
-    last: jax.Array
-    first_force: jax.Array
-    last_force: jax.Array
-    weight: jax.Array
-
-    @classmethod
-    def of(cls, energies: jax.Array, forces: jax.Array, weight: jax.Array) -> _Ends:
-        """From columns of which the outermost are the ends."""
-        return cls(energies[:, 0], energies[:, -1], forces[:, 0], forces[:, -1], weight)
-
-    def gains(self, span: jax.Array) -> tuple[jax.Array, jax.Array]:
-        """Energy [J] that each end's force would give over the whole piece, away from that end."""
-        return (self.first_force - self.weight) * span, (self.weight - self.last_force) * span
-
-
-def _time_over(
-    span: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array, ends: _Ends
-) -> jax.Array:
-    """Time [s] over pieces with kinetic energies [J] at the places RISE of each.
-
-    A body at rest just before a piece, or just after it, makes the slowness too steep at that end
-    for the quadrature. What the quadrature misses of it is added, for an energy that grows from
-    there as by the force at the end.
-    """
-    squares = jnp.where(energies > 0.0, 2.0 / mass * energies, jnp.inf)  # of the speeds
-    slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
-    for energy, gain in zip((ends.first, ends.last), ends.gains(span), strict=True):
-        slowness = slowness + _missed(energy, gain) * jnp.sqrt(0.5 * mass)
-    return jnp.sum(jnp.where(used, slowness * jnp.abs(span), 0.0))
-
-
-def _missed(energy: jax.Array, gain: jax.Array) -> jax.Array:
-    """What the quadrature misses of the integral of (energy + gain y)^-1/2 over y from 0 to 1."""
-    slow = (energy > 0.0) & (energy < _SLOW * gain)
-    safe, by = jnp.where(slow, energy, 1.0), jnp.where(slow, gain, 1.0)
-    exact = 2.0 / (jnp.sqrt(safe + by) + jnp.sqrt(safe))
-    found = jnp.sum(RATE * jax.lax.rsqrt(safe[:, None] + by[:, None] * RISE), axis=1)
-    return jnp.where(slow, exact - found, 0.0)
+def _resting(turn: Turn, last: jax.Array, energies: jax.Array) -> jax.Array:
+    """The energies of pieces, the last of each 0 where the body turns there: not its rounding."""
+    still = turn.found & (last == turn.place)
+    return energies.at[:, -1].set(jnp.where(still, 0.0, energies[:, -1]))
 
 
 def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:
