@@ -35,7 +35,7 @@ def flown():
 def test_impact_speed_is_that_of_free_fall_to_where_forces_begin(flown):
     _, found = flown
     fall = 200e-9 - float(found.reference)
-    assert float(found.impact_speed) == pytest.approx(sqrt(2.0 * G * fall), rel=1e-6)
+    assert float(found.impact_speed) == pytest.approx(sqrt(2.0 * 9.81 * fall), rel=1e-6)
 
 
 def test_the_largest_speed_is_that_at_the_static_equilibrium(flown):

@@ -8,13 +8,14 @@ import numpy as np
 
 from . import regimes
 from ._jax import jax
+from .accuracy import CLOSED
 from .case import Case
 from .case.build import Problem
 from .contact import Contact
 from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import Datum, end_of_contact
-from .impact.sampling import Series, sample, until
+from .impact.sampling import Series, ascending, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, Table, quantities
 from .impact.trajectory import Trajectory
 from .laws.base import as_float64
@@ -34,12 +35,16 @@ _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
 class Flight(NamedTuple):
-    """A motion that was flown, the contact it was flown with, and how it ended."""
+    """A motion that was flown, the contact it was flown with, and how it ended.
+
+    The body has the release that was found, where the case gives a speed alone.
+    """
 
     motion: Motion
     contact: Contact
     outcome: Outcome
     trajectory: Trajectory | None = None
+    body: Body | None = None
 
 
 def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
@@ -63,7 +68,7 @@ def contact_end(table: Table, peak: float) -> float:
 
 def measured(flight: Flight, body: Body) -> Measures:
     """Measures over a power of two of rows, seldom more than the first: one compilation."""
-    motion = flight.motion
+    motion, body = flight.motion, flight.body or body
     rows = motion.impacts.made.shape[0]
     size = max(_least_rows(body), 1 << (rows - 1).bit_length())
 
@@ -106,7 +111,7 @@ def _sampled(
         impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
     if stepped is not None:
         kept = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
-        return kept.series, _by_name(contact, body, kept.lost)
+        return kept.series, _by_name(contact, body, ascending(kept.lost, _known(motion)))
     series = until(sample(body, motion.table, impacts), limit)
     return series, _losses_along(contact, motion, body, series)
 
@@ -139,6 +144,7 @@ def result_of(
     most
         Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
     """
+    problem = problem._replace(body=flight.body or problem.body)
     motion, body = flight.motion, problem.body
     made = int(np.sum(motion.impacts.made))
     measures = measured(flight, body)
@@ -314,7 +320,14 @@ def _losses_along(
     laws = len(contact.mechanisms)
     lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
     lost[:, laws:] += series.heat
-    return _by_name(contact, body, lost)
+    return _by_name(contact, body, ascending(lost, _known(motion)))
+
+
+def _known(motion: Motion) -> float:
+    """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
+    impacts = motion.impacts
+    closure = np.max(np.where(impacts.made, impacts.closure, 0.0))
+    return float(max(2.0 * closure, CLOSED * impacts.fastest[0]))
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ._jax import jax
+from ._jax import jax, jnp
 from .case import Case
 from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
@@ -24,6 +24,7 @@ from .impact.delayed import fly as fly_late
 from .impact.foreseen import foreseen
 from .impact.history import ENDS, FLYING
 from .impact.legs import Ended
+from .impact.release import TRIES, at_release, farther, negligible_force
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row
 from .program import AT_ONCE, Program, signature
@@ -90,10 +91,7 @@ def flown(
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
     limits = Limits.of(case.tolerance)
-    contact, table, datum = _prepared(
-        problem, case.numerics.tolerance, limits, tell, drawn=True, many=many
-    )
-    _check_release(problem, table, many=many)
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=True, many=many)
     return fly_prepared(problem, contact, (table, datum), limits, tell, stop)
 
 
@@ -107,8 +105,10 @@ def fly_prepared(
 ) -> Flight:
     """The motion of a body whose force curves are there already; see :func:`flown`."""
     if problem.late is None and problem.creep is None:
-        return _fly(problem.body, contact, *curves, limits, tell, stop)
-    return _fly_stepped(problem, contact, curves, limits, tell, stop)
+        flight = _fly(problem.body, contact, *curves, limits, tell, stop)
+    else:
+        flight = _fly_stepped(problem, contact, curves, limits, tell, stop)
+    return flight._replace(body=problem.body)
 
 
 def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Datum]:
@@ -124,9 +124,7 @@ def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table
     return _preparing(contact, many)(contact, body, many)
 
 
-def first_impact(
-    case: Case, problem: Problem, tell: Report = silently, *, checked: bool = True
-) -> tuple[Contact, Motion]:
+def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
     """The contact with its curves, and the motion as far as the first impact.
 
     Parameters
@@ -135,8 +133,6 @@ def first_impact(
         A case, and what was built from it.
     tell
         As ``progress`` of :func:`solve`.
-    checked
-        Whether a release within contact is refused.
 
     Raises
     ------
@@ -144,9 +140,7 @@ def first_impact(
         As :func:`solve`.
     """
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    contact, table, datum = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=False)
-    if checked:
-        _check_release(problem, table)
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=False)
     body = problem.body
     tell(0.3, "first impact")
     first, origin = _start(contact, body, table)
@@ -155,6 +149,31 @@ def first_impact(
     )
     impacts = jax.tree_util.tree_map(np.asarray, rows)
     return contact, Motion(impacts, progress, table, datum, origin)
+
+
+def _released(
+    case: Case, problem: Problem, limits: Limits, tell: Report, *, drawn: bool, many: bool = False
+) -> tuple[Problem, tuple[Contact, Table, Datum]]:
+    """A problem whose body is released outside contact, and its curves.
+
+    Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
+    without an [impact] table is not released by its user.
+    """
+    chosen = case.impact is not None and case.impact.release_gap is None
+    for _ in range(TRIES):
+        curves = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=drawn, many=many)
+        if not chosen:
+            break
+        body, table = problem.body, curves[1]
+        force, power, largest = (np.asarray(x) for x in _at_release(table, body))
+        limit = negligible_force(np.asarray(body.weight), largest, chosen=True)
+        if force <= limit:
+            break
+        release = farther(np.asarray(body.release), force, power, limit)
+        problem = problem._replace(body=dataclasses.replace(body, release=jnp.asarray(release)))
+    if case.impact is not None:
+        _check_release(problem, curves[1], chosen=chosen, many=many)
+    return problem, curves
 
 
 def _prepared(
@@ -250,16 +269,17 @@ def _at_once(contact: Contact, body: Body) -> int:
 _prepare = Program(prepare)
 _prepare_at_once = Program(prepare, AT_ONCE)
 _start = Program(start, AT_ONCE)
+_at_release = Program(at_release, AT_ONCE)
 _fly_some = Program(fly)
 
 
-def _check_release(problem: Problem, table: Table, *, many: bool = False) -> None:
+def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) -> None:
     """A release within contact is refused: it would not be a fall."""
     body = problem.body
     release, weight = float(body.release), float(body.mass) * float(body.gravity)
     force = abs(float(read_row(table, 0, release)[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
-    limit = 1e-3 * weight if weight > 0.0 else 1e-6 * largest
+    limit = float(negligible_force(np.asarray(weight), np.asarray(largest), chosen=chosen))
     if force <= limit:
         return
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"

@@ -188,7 +188,7 @@ def curve(
 
 def _curve_of(case: Case, name: str, problem: Problem, tell: Report) -> Curve:
     """The curve of what was built from a case."""
-    contact, motion = first_impact(case, problem, tell, checked=case.impact is not None)
+    contact, motion = first_impact(case, problem, tell)
     warnings = assessment_of(case, name, problem, contact, motion).warnings
     tell(0.6, "unloading")
     drawn = trace(contact, motion.table, motion.impacts)

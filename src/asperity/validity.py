@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .accuracy import CLOSED, fall_warnings, ring_warnings
 from .case import Case
 from .case.build import Problem
-from .contact import Contact
+from .contact import Contact, ElasticContact
 from .domain import domain_warnings
 from .errors import InputError
 from .impact import Motion
@@ -36,9 +37,6 @@ APART = 1e-6
 
 CLASSED = 5e-3
 """Relative error of bonds' work from which classes of tip radius are too few."""
-
-CLOSED = 1e-6
-"""Share of the impact energy to which a ledger that can be trusted closes."""
 
 
 class AtDepth(NamedTuple):
@@ -96,6 +94,8 @@ def warnings_of(
         *gas_warnings(case, at_depth.central, motion),
         *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
         *domain_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
+        *fall_warnings(case, problem, motion),
+        *ring_warnings(case, problem, motion),
         *_ledger(problem, motion),
     ]
 
@@ -272,6 +272,8 @@ def slow_menisci(
 
 def _ledger(problem: Problem, motion: Motion) -> list[str]:
     what = "way between the branches" if problem.creep is None else "creeping contact"
+    if isinstance(problem.contact, ElasticContact) and problem.creep is None:
+        what += f" or the deformation on {problem.contact.rings} rings"
     rows = motion.impacts
     off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
     if off <= CLOSED:

@@ -60,7 +60,10 @@ if TYPE_CHECKING:
     from .schema import Case
 
 CLEARANCE = 1e-9
-"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap."""
+"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap.
+
+A first place: a force that goes on beyond its reach has the body released further out.
+"""
 
 
 class Problem(NamedTuple):

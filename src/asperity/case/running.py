@@ -65,7 +65,10 @@ class Numerics(Table):
         "1", "Largest number of impacts.", 200, default=_NUMERICS.max_impacts
     )
     rings: Annotated[int, Number("[16, 400]", whole=True)] = entry(
-        "1", "Rings that resolve the conjunction.", 80, default=_NUMERICS.rings
+        "1",
+        "Rings that resolve the conjunction; the next multiple of 8 is taken.",
+        80,
+        default=_NUMERICS.rings,
     )
 
 

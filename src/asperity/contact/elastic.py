@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 
 from .._jax import jax, jnp
-from ..halfspace import ring_mesh
+from ..halfspace import ring_mesh, rings_of_mesh
 from ..interface import Memory as Thresholds
 from ..laws.base import Real, quantity
 from ..layers import Surfaces
@@ -18,7 +18,7 @@ from ..shapes import Sphere
 from .base import Contact, Held, State, Way
 from .following import descend, first_size, fitted, retrace
 from .resolution import Resolution, resolution
-from .rigid import FAR, RigidContact, rough_panels
+from .rigid import RigidContact, rough_panels
 from .settling import Rest, resting, rise_of, settle
 
 _ALIKE = 3.0  # rms heights between reversals whose ways are interpolated, at most
@@ -58,7 +58,8 @@ class ElasticContact(Contact):
     modulus
         Contact modulus E* [Pa] of the bulk.
     rings
-        Number of rings (static). The force converges with a high order in it.
+        Number of rings (static); the next multiple of 8 is taken. The force converges with a high
+        order in it.
     resolved
         As for :class:`RigidContact`; of several pieces the last one is where the rings that
         lag behind reach the branch.
@@ -87,7 +88,7 @@ class ElasticContact(Contact):
         self.interface = interface
         self.shape = shape
         self.modulus = modulus
-        self.rings = rings
+        self.rings = rings_of_mesh(rings)
         self.resolved = resolved or resolution(interface, deforms=True)
 
     @property
@@ -167,7 +168,7 @@ class ElasticContact(Contact):
         The ends of the panels come first: there the size of the mesh is found, which is linear
         in between. Beyond the reach of the forces the body is as good as rigid.
         """
-        near = places.shape[0] - FAR
+        near = places.shape[0] - self.rigid.far
         down = places[:near].ravel()[::-1]
         frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
         sizes, rests = descend(*frozen)
@@ -182,7 +183,7 @@ class ElasticContact(Contact):
         )
         thresholds = tuple(b[-1] for b in memory.thresholds)
         outer = self.rigid.branch(ends, places[near:], thresholds)
-        still = jnp.zeros((FAR, places.shape[1], *inner.field.shape[2:]))
+        still = jnp.zeros((self.rigid.far, places.shape[1], *inner.field.shape[2:]))
         outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
 

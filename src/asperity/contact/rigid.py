@@ -24,8 +24,8 @@ Left = tuple[Thresholds, jax.Array, Any]
 
 Yielding = PlasticInterface | Layers
 
-FAR = 2
-"""Panels beyond the reach of the forces, in geometric progression."""
+_FAR = 2  # panels beyond the reach of the forces, in geometric progression
+_FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
 
 
 class RigidContact(Contact):
@@ -88,6 +88,11 @@ class RigidContact(Contact):
         finer = now._replace(panels=factor * now.panels, shared=factor * now.shared)
         return dataclasses.replace(self, resolved=finer)
 
+    @property
+    def far(self) -> int:
+        """Panels beyond the reach of the forces. Without values."""
+        return _FAR if self.interface.only_bonded else _FAR_TAIL
+
     def fresh(self) -> Thresholds:
         return self.interface.fresh()
 
@@ -125,7 +130,7 @@ class RigidContact(Contact):
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
         """Places of one panel share their quadrature; far out only where all forces have ended."""
-        count = places.shape[0] - (0 if self.interface.only_bonded else FAR)
+        count = places.shape[0] - (0 if self.interface.only_bonded else self.far)
         states = [self._states(Near(True, self.resolved.shared), places[:count], memory)]
         if count < places.shape[0]:
             states.append(super().branch(ends, places[count:], memory))
@@ -227,7 +232,7 @@ _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.
 
 
 def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: int) -> jax.Array:
-    """Ends of ``count`` panels over the reach of a rough contact, and of FAR beyond it.
+    """Ends of ``count`` panels over the reach of a rough contact, and of those beyond it.
 
     Even over a few rms around 0 and in proportion to |d| far from it.
     """
@@ -236,5 +241,6 @@ def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: 
     ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(top / scale), count + 1)
     near = (scale * jnp.sinh(ends)).at[0].set(low).at[-1].set(top)
     ratio = jnp.maximum(high / jnp.where(top > 0.0, top, high), 1.0)
-    far = jnp.where(top < high, top * ratio ** (np.arange(1.0, FAR + 1.0) / FAR), high)
+    steps = np.arange(1.0, contact.far + 1.0) / contact.far
+    far = jnp.where(top < high, top * ratio**steps, high)
     return jnp.concatenate([near, far.at[-1].set(high)])

@@ -90,7 +90,7 @@ def _displacement(contact: Rough, size: jax.Array, pressure: jax.Array, rings: i
     return size / contact.modulus * (compliance(rings) @ pressure)
 
 
-def _pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.Array, jax.Array]:
+def pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Pressure and its slope at separations h [m]."""
 
     def pressure(h: jax.Array) -> jax.Array:
@@ -123,7 +123,7 @@ def settle(
         return jnp.logical_not(now.enough) & (now.steps < _STEPS)
 
     def step(now: _Step) -> _Step:
-        pressure, slope = _pressed(contact, thresholds, now.h)
+        pressure, slope = pressed(contact, thresholds, now.h)
         right = now.h - safe - _displacement(contact, size, pressure, rings)
         move = nearly_solved(compliance(rings), size / contact.modulus * slope, right)
         change = jnp.max(jnp.abs(move) / (rms + jnp.abs(now.h)))
@@ -150,7 +150,7 @@ def rates(
 ) -> jax.Array:
     """Rate of the separation of rings that have settled per rigid separation, approximately."""
     h = separation + rise_of(contact, size, rings) + lift
-    slope = _pressed(contact, thresholds, h)[1]
+    slope = pressed(contact, thresholds, h)[1]
     return dense_solve(_matrix(contact, size, slope, rings), jnp.ones_like(h))
 
 
@@ -180,7 +180,7 @@ def resting(
 def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array, jax.Array]:
     contact, separation, thresholds, size, lift = primals
     h = separation + rise_of(contact, size, rings) + lift
-    _, slope = _pressed(contact, thresholds, h)
+    _, slope = pressed(contact, thresholds, h)
     matrix = _matrix(contact, size, slope, rings)
 
     def pushed(contact: Rough, separation: jax.Array, thresholds: Thresholds) -> jax.Array:

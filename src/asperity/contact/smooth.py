@@ -11,7 +11,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..laws.base import Law, terms
 from .base import Contact, State
-from .ways import first_out_of_reach
+from .ways import first_out_of_reach, panels_around
 
 Flags = jax.Array
 
@@ -113,17 +113,14 @@ class SmoothContact(Contact):
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        """The kinks of all laws, with ladders of panels that narrow towards each."""
+        """The kinks of all laws, with panels that narrow to each."""
         kinks = {
             id(k): jnp.asarray(k, float)
             for law in terms(self.law)
             for k in (*law.kinks, *self._ends(law))
         }
-        rungs = _RUNGS * self.refinement
-        ladder = jnp.maximum(high, -low) * _RATIO ** (-np.arange(0.0, rungs) / self.refinement)
         kink = jnp.stack([jnp.zeros(()), *kinks.values()])
-        ends = [kink, (kink[:, None] - ladder).ravel(), (kink[:, None] + ladder).ravel()]
-        return jnp.sort(jnp.clip(jnp.concatenate([*ends, low[None], high[None]]), low, high))
+        return panels_around(kink, low, high, self.refinement)
 
     @staticmethod
     def _ends(law: Law) -> tuple[jax.Array | float, ...]:
@@ -135,5 +132,3 @@ class SmoothContact(Contact):
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has
-_RUNGS = 36  # panels on each side of a kink
-_RATIO = 3.0  # of their lengths

@@ -14,7 +14,7 @@ from ..laws.base import Law, Sum, terms
 from ..laws.jkr import Jkr
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
 from .base import Contact, State
-from .ways import first_out_of_reach
+from .ways import first_out_of_reach, panels_around
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""
@@ -205,12 +205,8 @@ class SmoothPlasticContact(Contact):
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """All kinks, before and after the first impact, with panels that narrow to each."""
-        rungs = _RUNGS * self.refinement
-        ladder = jnp.maximum(high, -low) * _RATIO ** (-np.arange(0.0, rungs) / self.refinement)
-        kink = self._kinks()
         turn = low if self.left is None else self.left[1] - _BELOW * jnp.abs(self.left[1])
-        ends = [turn[None], kink, *((kink[:, None] + way * ladder).ravel() for way in (-1.0, 1.0))]
-        return jnp.sort(jnp.clip(jnp.concatenate([*ends, low[None], high[None]]), low, high))
+        return panels_around(self._kinks(), low, high, self.refinement, (turn,))
 
     @property
     def reach(self) -> jax.Array:
@@ -270,8 +266,6 @@ def _gaps(laws: tuple[Law, ...]) -> list[jax.Array | float]:
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has
-_RUNGS = 36  # panels on each side of a kink
-_RATIO = 3.0  # of their lengths
 # Of the turn: a panel ends so far below it, where the curve that it leaves on begins. An end in
 # the very place would have the body turn in the rounding of its energy.
 _BELOW = 1e-9

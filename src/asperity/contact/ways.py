@@ -8,6 +8,10 @@ import numpy as np
 
 from .._jax import jax, jnp
 
+_RUNGS = 36  # panels on each side of a kink
+_RATIO = 3.0  # of their lengths
+_NARROWEST = 1e-13  # of the separation: a thousand times its rounding
+
 
 def way_points(nodes: int) -> np.ndarray:
     """Chebyshev points on a piece, as fractions of the way along it."""
@@ -23,6 +27,47 @@ def pieces_to(
     marks = jnp.clip(marks, *within)
     marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
     return jnp.concatenate([start[None], marks])[:-1], marks
+
+
+def panels_around(
+    kinks: jax.Array, low: jax.Array, high: jax.Array, refinement: int, ends: tuple[Any, ...] = ()
+) -> jax.Array:
+    """Ends of panels that narrow to each kink from both sides, between ``low`` and ``high`` [m].
+
+    Parameters
+    ----------
+    kinks
+        Separations [m] at which a curve is not smooth, shape (kinks,); each is an end.
+    low, high
+        Outermost ends [m].
+    refinement
+        Factor on the number of panels.
+    ends
+        Further ends [m], kept as they are.
+
+    Returns
+    -------
+    Ascending ends [m]. A panel is empty, or at least ``_NARROWEST`` of its separation wide: the
+    separations in a narrower one are rounded by more than its width, and its polynomial would be
+    read far outside.
+    """
+    rungs = np.arange(0.0, _RUNGS * refinement)
+    ladder = jnp.maximum(high, -low) * _RATIO ** (-rungs / refinement)
+    steps = jnp.concatenate([(kinks[:, None] + way * ladder).ravel() for way in (-1.0, 1.0)])
+    outer = jnp.stack([low, high])
+    inner = _apart(jnp.concatenate([kinks, *(end[None] for end in ends)]), outer)
+    given = jnp.concatenate([inner, outer])
+    return jnp.sort(jnp.concatenate([_apart(steps, given), given]))
+
+
+def _apart(places: jax.Array, given: jax.Array) -> jax.Array:
+    """Places within the given ones; the first of these stands for each that is too close."""
+    places = jnp.clip(places, jnp.min(given), jnp.max(given))
+    least = _NARROWEST * jnp.abs(places)
+    near = jnp.min(jnp.abs(places[:, None] - given), axis=1) < least
+    places = jnp.sort(jnp.where(near, given[0], places))
+    close = jnp.diff(places, prepend=-jnp.inf) < _NARROWEST * jnp.abs(places)
+    return jnp.where(close, given[0], places)
 
 
 def first_out_of_reach(

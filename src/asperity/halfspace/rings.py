@@ -15,6 +15,7 @@ contact.
 from __future__ import annotations
 
 from functools import cache
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -48,10 +49,15 @@ class Rings(NamedTuple):
     axis: np.ndarray
 
 
+def rings_of_mesh(rings: int) -> int:
+    """Rings of the mesh that has at least so many: an equal number on each of its 8 panels."""
+    return PANEL_COUNT * max(1, ceil(rings / PANEL_COUNT))
+
+
 @cache
 def ring_mesh(rings: int) -> Rings:
-    """The mesh with about ``rings`` rings: an equal number on each of its 8 panels."""
-    order = max(1, round(rings / PANEL_COUNT))
+    """The mesh with at least ``rings`` rings, as :func:`rings_of_mesh` counts them."""
+    order = rings_of_mesh(rings) // PANEL_COUNT
     node, weight = np.polynomial.legendre.leggauss(order)
     low, high = _PANELS[:-1, None], _PANELS[1:, None]
     radius = (0.5 * (low + high) + 0.5 * (high - low) * node).ravel()
@@ -61,6 +67,15 @@ def ring_mesh(rings: int) -> Rings:
     axis = np.zeros_like(radius)
     axis[:order] = _lagrange(radius[:order] ** 2, np.zeros(1))[:, 0]
     return Rings(radius, area, matrix, end, axis)
+
+
+def finer_rings(rings: int, more: int) -> np.ndarray:
+    """From values at the rings of one mesh to those at another's, shape (more, rings)."""
+    node, fine = (
+        np.polynomial.legendre.leggauss(rings_of_mesh(count) // PANEL_COUNT)[0]
+        for count in (rings, more)
+    )
+    return np.kron(np.eye(PANEL_COUNT), _lagrange(node, fine).T)
 
 
 def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:

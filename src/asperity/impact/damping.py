@@ -11,8 +11,8 @@ from ..laws.base import Real
 from ..program import kept
 from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
 from .history import Body
-from .phase import Turn, Work, kinetic_along, time_over, work_along
-from .table import RISE, Pieces
+from .phase import Turn, Work, time_along, work_along
+from .table import Pieces
 
 STILL = 1e-9
 """Share of a body's energy at its release: a force that could not give it so much moves it no more
@@ -299,8 +299,5 @@ def time_to(
     passed = cut(pieces, jnp.asarray(parting), place)
     if body.damped:
         return pass_through(body, passed, kinetic).duration
-    way = (passed.leave - passed.enter)[:, None]
-    energies = kinetic_along(
-        work_along(passed, kinetic, body.weight), passed.enter[:, None] + way * RISE
-    )
-    return time_over(jnp.abs(way[:, 0]), way[:, 0] != 0.0, energies, body.mass)
+    work = work_along(passed, kinetic, body.weight)
+    return time_along(work, (passed.enter, passed.leave), body.mass)

@@ -8,13 +8,19 @@ over the panels of that branch, whose work is tabulated once for all phases.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
-from ..polynomials import antiderivative, chebyshev_sum, local
-from .table import DRIVE, RATE, RISE, STORED, Pieces, Table
+from ..polynomials import NODES, antiderivative, chebyshev_sum, local
+from .slowness import Ends, time_over
+from .table import DRIVE, FORCE, RISE, STORED, Pieces, Table
+
+_RISE_TOO = np.concatenate([[0.0], RISE, [1.0]])  # with both ends
+_BOTH = np.array([0, -1])
+_ALTERNATE = (-1.0) ** np.arange(NODES)  # Chebyshev polynomials at the lower end
 
 
 class Work(NamedTuple):
@@ -158,50 +164,94 @@ def _work_at(table: Table, branch: jax.Array, panel: jax.Array, place: jax.Array
 
 def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     """Time [s] from the start of a phase to its turn."""
-    table, inner = ahead.table, ahead.inner
-    panel = turn.piece - ahead.pieces
-    reached = panel >= 0
+    total = _time_of_whole(ahead, turn, mass) + _time_of_parts(ahead, turn, mass)
+    return total + _time_before(ahead, turn, mass) if ahead.pieces else total
 
-    def until(place: jax.Array) -> jax.Array:
-        near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
-        return jnp.where(ahead.parting, near, far)
 
-    # Panels passed as a whole, whose work is known at all places of the quadrature.
+def _until(ahead: Ahead, turn: Turn, place: jax.Array) -> jax.Array:
+    near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
+    return jnp.where(ahead.parting, near, far)
+
+
+def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On panels passed as a whole, whose work is known at all places of the quadrature."""
+    table, panel = ahead.table, turn.piece - ahead.pieces
     index = np.arange(table.ends.shape[0] - 1)
     low, high = jnp.minimum(panel, ahead.panel), jnp.maximum(panel, ahead.panel)
-    whole = reached & (low < index) & (index < high)
-    energies = ahead.outer(table.works.nodes[ahead.branch], table.nodes)
-    total = time_over(jnp.diff(table.ends), whole, energies, mass)
-    # The panel in which the branch begins, and the one in which the body turns.
+    whole = (panel >= 0) & (low < index) & (index < high)
+    nodes, looks = table.works.nodes[ahead.branch], table.works.looks[ahead.branch]
+    first, last = (
+        ahead.outer(looks[:, k], places)
+        for k, places in ((0, table.ends[:-1]), (-1, table.ends[1:]))
+    )
+    force = table.values[ahead.branch, :, :, FORCE]
+    forces = jnp.sum(force * _ALTERNATE, axis=1), jnp.sum(force, axis=1)
+    ends = Ends(first, last, *forces, ahead.inner.weight)
+    energies = ahead.outer(nodes, table.nodes)
+    return time_over(jnp.diff(table.ends), whole, energies, mass, ends)
+
+
+def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On the panel in which the branch begins, and on the one in which the body turns."""
+    table, panel = ahead.table, turn.piece - ahead.pieces
     panels = jnp.stack([ahead.panel, panel])
     low, high = table.ends[panels], table.ends[panels + 1]
     near, far = jnp.where(ahead.parting, high[0], low[0]), jnp.where(ahead.parting, low[1], high[1])
     first = jnp.stack([ahead.begin, far])
-    last = jnp.stack([until(near), turn.place])
+    last = jnp.stack([_until(ahead, turn, near), turn.place])
     span = last - first
     integral = table.works.integral[ahead.branch, panels, :, 0]
     start = local(low, high, first)[:, None]
-    x = start + (local(low, high, last)[:, None] - start) * RISE
-    way = (first - ahead.begin)[:, None] + span[:, None] * RISE
+    x = start + (local(low, high, last)[:, None] - start) * _RISE_TOO
+    way = (first - ahead.begin)[:, None] + span[:, None] * _RISE_TOO
     energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
-    used = jnp.stack([reached, jnp.logical_and(reached, panel != ahead.panel)])
-    total = total + time_over(jnp.abs(span), used, energies, mass)
-    if not ahead.pieces:
-        return total
-    p = inner.pieces
-    enter = until(p.enter)
-    span = until(p.leave) - enter
-    energies = kinetic_along(inner, enter[:, None] + span[:, None] * RISE)
-    return total + time_over(jnp.abs(span), span != 0.0, energies, mass)
+    energies = _resting(turn, last, energies.at[0, 0].set(ahead.inner.kinetic[-1]))
+    force = table.values[ahead.branch, panels, :, FORCE]
+    ends = Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
+    used = (panel >= 0) & jnp.stack([jnp.asarray(True), panel != ahead.panel])
+    return time_over(span, used, energies[:, 1:-1], mass, ends)
 
 
-def time_over(
-    length: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array
+def _time_before(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+    """On the pieces before the branch."""
+    p = ahead.inner.pieces
+    ends = _until(ahead, turn, p.enter), _until(ahead, turn, p.leave)
+    return time_along(ahead.inner, ends, mass, lambda last, e: _resting(turn, last, e))
+
+
+def time_along(
+    work: Work,
+    ends: tuple[jax.Array, jax.Array],
+    mass: jax.Array,
+    resting: Callable[[jax.Array, jax.Array], jax.Array] = lambda last, energies: energies,
 ) -> jax.Array:
-    """Time [s] over pieces with kinetic energies [J] at the places RISE of each."""
-    squares = jnp.where(energies > 0.0, 2.0 / mass * energies, jnp.inf)  # of the speeds
-    slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
-    return jnp.sum(jnp.where(used, slowness * length, 0.0))
+    """Time [s] over pieces between two places of each [m].
+
+    Parameters
+    ----------
+    work
+        The pieces, with the kinetic energy along them.
+    ends
+        Where the body enters and leaves each.
+    mass
+        Mass [kg].
+    resting
+        Sets the energies at places of the pieces to 0 where the body turns at the last.
+    """
+    p, (enter, leave) = work.pieces, ends
+    span = leave - enter
+    places = enter[:, None] + span[:, None] * _RISE_TOO
+    energies = resting(leave, kinetic_along(work, places))
+    x = local(p.low[:, None], p.high[:, None], places[:, _BOTH])
+    force = chebyshev_sum(p.values[..., FORCE].T[:, :, None], x)
+    at_ends = Ends.of(energies, force, work.weight)
+    return time_over(span, span != 0.0, energies[:, 1:-1], mass, at_ends)
+
+
+def _resting(turn: Turn, last: jax.Array, energies: jax.Array) -> jax.Array:
+    """The energies of pieces, the last of each 0 where the body turns there: not its rounding."""
+    still = turn.found & (last == turn.place)
+    return energies.at[:, -1].set(jnp.where(still, 0.0, energies[:, -1]))
 
 
 def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:

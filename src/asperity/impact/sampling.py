@@ -16,6 +16,7 @@ from .phase import Work, kinetic_along, work_along
 from .table import CENTRAL, RATE, RISE, Pieces, Table, join, read_row
 
 _BATCH = 16  # phases a compiled call
+_AGREE = 1e-6  # of its duration: to this two quadratures of a phase agree
 _SAMPLES = 40  # on a phase, and again on its part in contact
 
 
@@ -53,8 +54,11 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         chosen = np.minimum(np.arange(first, first + _BATCH), made - 1)
         rows = jax.tree_util.tree_map(partial(_rows, chosen), impacts)
         drawn = [
-            _draw(body, table, phase, jax.device_put(np.asarray(parting)), places)
-            for phase, parting in ((rows.fall, False), (rows.rise, True))
+            _draw(body, table, phase, ended, jax.device_put(np.asarray(parting)), places)
+            for phase, ended, parting in (
+                (rows.fall, rows.deepest_time, False),
+                (rows.rise, rows.apex_time, True),
+            )
         ]
         count = min(_BATCH, made - first)
         parts.append([np.stack(pair, axis=1)[:count] for pair in zip(*drawn, strict=True)])
@@ -79,10 +83,11 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
 
 def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
     """Compile what :func:`sample` needs, for arguments or their shapes, in a thread."""
-    phase = jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype), impacts.fall
+    phase, ended = jax.tree_util.tree_map(
+        lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype),
+        (impacts.fall, impacts.deepest_time),
     )
-    _draw.ahead(body, table, phase, np.asarray(False), _places(table))
+    _draw.ahead(body, table, phase, ended, np.asarray(False), _places(table))
 
 
 def _places(table: Table) -> int:
@@ -101,16 +106,19 @@ def until(series: Series, limit: float) -> Series:
 
 
 def _draw_all(
-    body: Body, table: Table, phases: Phase, parting: jax.Array, places: int
+    body: Body, table: Table, phases: Phase, ended: jax.Array, parting: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
-    return jax.vmap(lambda phase: _draw_one(body, table, phase, parting, places))(phases)
+    def one(phase: Phase, end: jax.Array) -> tuple[jax.Array, ...]:
+        return _draw_one(body, table, phase, end, parting, places)
+
+    return jax.vmap(one)(phases, ended)
 
 
 _draw = Program(_draw_all)
 
 
 def _draw_one(
-    body: Body, table: Table, phase: Phase, parting: jax.Array, places: int
+    body: Body, table: Table, phase: Phase, ended: jax.Array, parting: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
     """Time, separation, speed, rows, heat, drag and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, parting)
@@ -119,10 +127,10 @@ def _draw_one(
     work = work_along(pieces, phase.kinetic, body.weight)
     ahead = jnp.where(parting, 1.0, -1.0)
     path = _path(pieces, phase, places)
-    along = jnp.sort(ahead * (path - phase.start))
-    ends = phase.start + ahead * along
+    along = jnp.sort(ahead * path)
+    ends = ahead * along
     spans = jnp.diff(ends)
-    index = jnp.searchsorted(ahead * (pieces.leave - phase.start), 0.5 * (along[1:] + along[:-1]))
+    index = jnp.searchsorted(ahead * pieces.leave, 0.5 * (along[1:] + along[:-1]))
     index = jnp.clip(index, 0, pieces.low.shape[0] - 1)
     here = Work(
         Pieces(*(leaf[index] for leaf in pieces)),
@@ -134,6 +142,7 @@ def _draw_one(
     moving = jnp.logical_and(energy > 0.0, (spans != 0.0)[:, None])
     speed = jnp.sqrt(jnp.where(moving, 2.0 * energy / body.mass, 1.0))
     taken = jnp.sum(jnp.where(moving, RATE / speed, 0.0), axis=1) * jnp.abs(spans)
+    taken = taken * _to_end(jnp.sum(taken), ended - phase.begun)
     kinetic = jnp.maximum(kinetic_along(here, ends[1:, None])[:, 0], 0.0)
     # A place is rounded by its distance from the start, which a narrow panel may not allow.
     x = jnp.clip(local(here.pieces.low, here.pieces.high, ends[1:]), -1.0, 1.0)
@@ -147,6 +156,27 @@ def _draw_one(
         jnp.zeros((spans.size, 0)),
         spans != 0.0,
     )
+
+
+def _to_end(sum_: jax.Array, duration: jax.Array) -> jax.Array:
+    """Factor that ends the times of a phase where it was found to end, if these agree."""
+    ratio = duration / jnp.where(sum_ > 0.0, sum_, 1.0)
+    return jnp.where(jnp.abs(ratio - 1.0) < _AGREE, ratio, 1.0)
+
+
+def ascending(lost: np.ndarray, least: float) -> np.ndarray:
+    """Losses that never fall, where they fall by no more than ``least``: the curves' own error.
+
+    Parameters
+    ----------
+    lost
+        Energy lost since the release [J], shape (samples, names).
+    least
+        Energy [J] to which they are known; a name that falls by more is left as it is.
+    """
+    highest = np.maximum.accumulate(lost, axis=0)
+    exact = np.max(highest - lost, axis=0, initial=0.0) <= least
+    return np.where(exact, highest, lost)
 
 
 def _draw_damped(

@@ -219,7 +219,7 @@ def _tabulated(
 def _read_again(table: Table, places: jax.Array) -> jax.Array:
     """Coefficients of the first branch of a table on panels with these nodes, within its own."""
     panel = jax.vmap(table.panel_at)(jnp.mean(places, axis=1))
-    x = local(table.ends[panel, None], table.ends[panel + 1, None], places)
+    x = jnp.clip(local(table.ends[panel, None], table.ends[panel + 1, None], places), -1.0, 1.0)
     coefficients = jnp.moveaxis(table.values[0, panel], 1, 0)
     rows = chebyshev_sum(coefficients[:, :, None, :], x[..., None])
     return fit(rows)

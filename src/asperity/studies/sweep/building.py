@@ -69,12 +69,15 @@ class Group(NamedTuple):
         Relative error allowed to each one's force curves [-].
     cases
         Each case with what was built of it, where they were built one by one; else empty.
+    launched
+        Whether speeds alone are given, and the release is to be found.
     """
 
     rows: np.ndarray
     flown: Flown
     tolerance: np.ndarray
     cases: tuple[tuple[Case, Problem], ...] = ()
+    launched: bool = False
 
 
 class Built(NamedTuple):
@@ -170,7 +173,9 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     alone = [_flown(each, build(each, _UNRESOLVED)) for each in both]
     flown = _spread(ends, alone, rows.size)
     tolerance = np.broadcast_to(np.asarray(case.tolerance.relative, float), rows.shape)
-    return Group(rows, flown, tolerance), problem.late is not None or problem.creep is not None
+    launched = case.launch.release_gap is None
+    group = Group(rows, flown, tolerance, launched=launched)
+    return group, problem.late is not None or problem.creep is not None
 
 
 def _spread(flown: Flown, alone: list[Flown], count: int) -> Flown:
@@ -214,7 +219,8 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
             continue
         flown = jax.tree_util.tree_map(_raised, _flown(case, problem), is_leaf=_is_array)
         tolerance = np.asarray([case.tolerance.relative])
-        group = Group(np.asarray([row]), flown, tolerance, ((case, problem),))
+        launched = case.launch.release_gap is None
+        group = Group(np.asarray([row]), flown, tolerance, ((case, problem),), launched)
         out.groups.append(_coarser(group))
 
 
@@ -283,7 +289,7 @@ def _fits(found: Resolution, kind: Resolution) -> bool:
 def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:
     take: Callable[[Any], Any] = lambda leaf: leaf[places] if _is_array(leaf) else leaf  # noqa: E731
     flown = jax.tree_util.tree_map(take, group.flown)
-    part = Group(group.rows[places], flown, group.tolerance[places])
+    part = Group(group.rows[places], flown, group.tolerance[places], launched=group.launched)
     return _resolved(part, kind)
 
 
@@ -300,7 +306,7 @@ def _alike(groups: list[Group]) -> list[list[Group]]:
     for group in groups:
         leaves, structure = jax.tree_util.tree_flatten(group.flown)
         shapes = tuple(leaf.shape[1:] if _is_array(leaf) else (leaf,) for leaf in leaves)
-        kinds.setdefault((structure, shapes), []).append(group)
+        kinds.setdefault((structure, shapes, group.launched), []).append(group)
     return list(kinds.values())
 
 
@@ -317,4 +323,4 @@ def _joined(groups: list[Group]) -> Group:
     tolerance = np.concatenate([group.tolerance for group in groups])
     whole = all(group.cases for group in groups)
     cases = tuple(case for group in groups for case in group.cases) if whole else ()
-    return Group(rows, flown, tolerance, cases)
+    return Group(rows, flown, tolerance, cases, groups[0].launched)

@@ -51,12 +51,12 @@ def _of_some(group: Group, flight: Flight, some: np.ndarray, clock: Clock) -> np
             body=body, time_limit=np.full(index.size, np.inf), impacts=np.ones(index.size, int)
         )
         allowed = np.full(index.size, _ERROR)
-        made = fly_group(Group(np.arange(index.size), flown, allowed), clock, launched=True)
+        made = fly_group(Group(np.arange(index.size), flown, allowed), clock, checked=False)
         return _first_impacts(made, mass[index], weight[index])
 
     past = flight.history
     leaving, lost = past["leaving"][some, 0], np.sum(past["lost"][some, 0], axis=1)
-    lost = np.where(np.isfinite(leaving), flight.origin[some] - leaving, lost)
+    lost = np.where(np.isfinite(leaving), flight.release[some] - leaving, lost)
     edges = capture_edges(launch, *speeds_about(past["fastest"][some, 0], lost, mass))
     return np.array([each.speeds[0] if each.speeds else np.nan for each in edges])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -11,6 +12,7 @@ from asperity._jax import jax
 from asperity.errors import Outcome
 from asperity.impact import Impacts
 from asperity.impact.history import ENDS, FLYING
+from asperity.impact.release import TRIES, farther, negligible_force
 from asperity.measures import Measures
 from asperity.studies.sweep import lanes
 from asperity.studies.sweep.building import Flown, Group
@@ -32,8 +34,6 @@ class Flight(NamedTuple):
         Number of impacts.
     end_time
         Time of the last apex [s].
-    origin
-        Mechanical energy at the release [J].
     lost
         Energy lost in all, by mechanism [J].
     history
@@ -44,17 +44,19 @@ class Flight(NamedTuple):
         :class:`asperity.validity.AtDepth` of the first impact, shape (cases, 3).
     reasons
         Why a case failed, by its place in the group.
+    release
+        Mechanical energy at the release [J].
     """
 
     outcome: np.ndarray
     made: np.ndarray
     end_time: np.ndarray
-    origin: np.ndarray
     lost: np.ndarray
     history: dict[str, np.ndarray]
     measures: dict[str, np.ndarray]
     at_depth: np.ndarray
     reasons: dict[int, str]
+    release: np.ndarray
 
 
 class _Lanes(NamedTuple):
@@ -65,7 +67,7 @@ class _Lanes(NamedTuple):
     begun: Begun
 
 
-def fly_group(group: Group, clock: Clock, *, launched: bool = False) -> Flight:
+def fly_group(group: Group, clock: Clock, *, checked: bool = True) -> Flight:
     """Fly all cases of a group.
 
     Parameters
@@ -74,13 +76,13 @@ def fly_group(group: Group, clock: Clock, *, launched: bool = False) -> Flight:
         The cases.
     clock
         Told of the time in compiled code.
-    launched
-        Whether they are launched where forces begin, not released by the user: that is not
-        checked, and nothing finer is compiled for them.
+    checked
+        Whether they must be released outside contact. Nothing finer is compiled for others, which
+        are launched where forces begin.
     """
-    flying = _Flying(group, clock, launched=launched)
+    flying = _Flying(group, clock, checked=checked)
     places = np.arange(group.rows.size)
-    refinements = _REFINEMENTS[:1] if launched else _REFINEMENTS
+    refinements = _REFINEMENTS if checked else _REFINEMENTS[:1]
     for factor in refinements:
         places = flying.begin(places, factor, last=factor == refinements[-1])
         if not places.size:
@@ -101,9 +103,10 @@ def compile_ahead(groups: list[Group]) -> None:
 class _Flying:
     """Cases on their way."""
 
-    def __init__(self, group: Group, clock: Clock, *, launched: bool) -> None:
-        self.group, self.clock, self.launched = group, clock, launched
+    def __init__(self, group: Group, clock: Clock, *, checked: bool) -> None:
+        self.group, self.clock, self.checked = group, clock, checked
         count = group.rows.size
+        self.tries = np.zeros(count, int)
         self.width = lanes.width(group.flown, count)
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
@@ -115,9 +118,20 @@ class _Flying:
 
     def begin(self, places: np.ndarray, factor: int, *, last: bool) -> np.ndarray:
         """Fly these cases with so many times the panels; those that need more yet."""
+        coarse = []
+        while places.size:
+            coarser, places = self._begin(places, factor, last=last)
+            coarse.append(coarser)
+        return np.concatenate(coarse) if coarse else places
+
+    def _begin(
+        self, places: np.ndarray, factor: int, *, last: bool
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same; of the others, those that need a release further out."""
         flown = self.group.flown
         contact = flown.contact.refined(factor) if factor > 1 else flown.contact
         flown = flown._replace(contact=contact)
+        moved = []
         wanted = np.maximum(self.group.tolerance, contact.blur)
         coarse, pool = [], []
         for some in _slices(places, self.width):
@@ -131,12 +145,35 @@ class _Flying:
             else:
                 coarse.append(some[rough])
             some = np.where(fine, some, -1)
+            inside = self._move_out(some, here, checks)
+            moved.append(some[inside])
+            some = np.where(inside, -1, some)
             some = np.where(self._sound(some, here, checks), some, -1)
             self.at_depth[some[some >= 0]] = np.asarray(checks.at_depth)[some >= 0]
             self._keep(some, begun, rows)
             pool.append(self._on(_Lanes(some, here, begun)))
         self._finish([lane for lane in pool if lane is not None])
-        return np.concatenate(coarse) if coarse else np.zeros(0, int)
+        none = np.zeros(0, int)
+        return np.concatenate([none, *coarse]), np.concatenate([none, *moved])
+
+    def _move_out(self, places: np.ndarray, here: Flown, checks: Checks) -> np.ndarray:
+        """Whether each case is begun anew, from a release further out, where none was given."""
+        if not self.group.launched:
+            return np.zeros(places.shape, bool)
+        force, power = np.asarray(checks.at_release), np.asarray(checks.power)
+        limit = negligible_force(
+            np.asarray(here.body.weight), np.asarray(checks.largest), chosen=True
+        )
+        again = (force > limit) & (places >= 0) & (self.tries[places] < TRIES - 1)
+        at = places[again]
+        self.tries[at] += 1
+        further = farther(np.asarray(here.body.release), force, power, limit)
+        flown = self.group.flown
+        release = np.array(flown.body.release)
+        release[at] = further[again]
+        body = dataclasses.replace(flown.body, release=release)
+        self.group = self.group._replace(flown=flown._replace(body=body))
+        return again
 
     def _finish(self, pool: list[_Lanes]) -> None:
         """Fly what is left of several calls in fewer."""
@@ -209,8 +246,8 @@ class _Flying:
         body = here.body
         force, release = np.asarray(checks.at_release), np.asarray(body.release)
         weight = np.asarray(body.weight)
-        limit = np.where(weight > 0.0, 1e-3 * weight, 1e-6 * np.asarray(checks.largest))
-        inside = ~(force <= limit) & (not self.launched)
+        limit = negligible_force(weight, np.asarray(checks.largest), chosen=self.group.launched)
+        inside = ~(force <= limit) & self.checked
         residual = np.asarray(checks.residual)
         unsolved = ~(residual <= _RESIDUAL)
         for lane in np.flatnonzero((inside | unsolved) & (places >= 0)).tolist():
@@ -237,12 +274,11 @@ class _Flying:
         measures = self._measured(flown)
         ends: Any = (None,) * 4
         count = self.made.size
-        lost = np.zeros((count, 0))
+        lost, release = np.zeros((count, 0)), np.full(count, np.nan)
         outcome, end_time = self.outcome, np.full(count, np.nan)
-        origin = np.full(count, np.nan)
         if self._ends is not None:
             ends = jax.tree_util.tree_unflatten(self._shape, self._ends)
-            origin, progress = np.where(self.made > 0, ends[1], np.nan), ends[2]
+            release, progress = np.where(self.made > 0, ends[1], np.nan), ends[2]
             outcome = np.where(self.made > 0, progress.outcome, self.outcome)
             end_time = np.where(self.made > 0, progress.time, np.nan)
             lost = progress.lost
@@ -250,8 +286,8 @@ class _Flying:
         for place in flown[outcome[flown] == failed].tolist():
             self.reasons[place] = "the motion left the tabulated separations"
         return Flight(
-            outcome, self.made, end_time, origin, lost, self.history, measures, self.at_depth,
-            self.reasons,
+            outcome, self.made, end_time, lost, self.history, measures, self.at_depth,
+            self.reasons, release,
         )  # fmt: skip
 
     def _measured(self, places: np.ndarray) -> dict[str, np.ndarray]:

@@ -13,6 +13,7 @@ from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.impact import Body, Impacts, Limits, Motion, Progress, Table, fly, prepare, start
 from asperity.impact.datum import Datum
+from asperity.impact.release import at_release
 from asperity.impact.table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
 from asperity.measures import (
     FirstContact,
@@ -62,8 +63,9 @@ class Checks(NamedTuple):
     ----------
     error, residual
         Relative errors of the interpolation and of the contact's equilibrium.
-    at_release, largest
-        Force at the release, and the largest in the table [N].
+    at_release, power, largest
+        Force at the release [N], by which power of the distance it falls there [-], and the
+        largest in the table [N].
     at_depth
         :class:`asperity.validity.AtDepth` of the first impact.
     """
@@ -71,6 +73,7 @@ class Checks(NamedTuple):
     error: jax.Array
     residual: jax.Array
     at_release: jax.Array
+    power: jax.Array
     largest: jax.Array
     at_depth: jax.Array
 
@@ -86,13 +89,12 @@ def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
         contact, body = flown.contact, flown.body
         table, datum = prepare(contact, body, True)
         progress, origin = start(contact, body, table)
-        force = jnp.abs(outer_row(table, 0, body.release)[FORCE])
-        largest = jnp.max(jnp.abs(table.values[..., 0, FORCE]))
+        force, power, largest = at_release(table, body)
         begun = Begun(table, datum, origin, progress, None)
         progress, impacts = _flight(flown, begun)
         deepest = outer_row(table, 0, impacts.deepest[0])
         at_depth = jnp.stack([deepest[TOUCHING], deepest[FORCE] - deepest[PULL], deepest[CENTRAL]])
-        checks = Checks(table.error, table.residual, force, largest, at_depth)
+        checks = Checks(table.error, table.residual, force, power, largest, at_depth)
         begun = begun._replace(progress=progress, first=first_contact(table, impacts, body))
         return begun, checks, _slim(body, begun, impacts)
 

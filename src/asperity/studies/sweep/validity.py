@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from asperity.case import Case
 from asperity.case.build import Problem
 from asperity.conversion import regime_of
@@ -30,5 +28,6 @@ def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> lis
     rows: Any = {name: array[place] for name, array in flight.history.items()}
     rows.pop("passing_in", None), rows.pop("passing_out", None)
     none: Any = None
-    motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, np.nan)  # type: ignore[arg-type]
+    release: Any = flight.release[place]
+    motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
     return warnings_of(case, problem, regime_of(case, problem, at_depth), at_depth, motion)

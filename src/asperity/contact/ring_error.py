@@ -1,0 +1,63 @@
+"""What the number of rings leaves of error in a force, by one step on a finer mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .._jax import jnp
+from ..halfspace import PANEL_COUNT, finer_rings, ring_mesh
+from ..program import AT_ONCE, Program
+from .elastic import ElasticContact
+from .settling import pressed
+
+
+def ring_error(contact: ElasticContact, separation: float, size: float, lift: np.ndarray) -> float:
+    """Estimated relative error that the number of rings makes in the force.
+
+    The pressure on each panel is a polynomial through its rings. On a mesh with two rings more on
+    each panel it is read between them, and one step of Newton's method leads from there to the
+    equilibrium of the finer mesh: the change of the load is the error, but for that of the finer
+    mesh.
+
+    Parameters
+    ----------
+    contact
+        The contact.
+    separation
+        Rigid separation [m], on a first approach.
+    size
+        Length [m] of the mesh.
+    lift
+        Displacement [m] of its rings and of its end in equilibrium, shape (rings + 1,).
+
+    Returns
+    -------
+    The error [-]; 0 where nothing presses.
+    """
+    mesh, modulus = ring_mesh(contact.rings), float(contact.modulus)
+    more = contact.rings + 2 * PANEL_COUNT
+    fine, between = ring_mesh(more), finer_rings(contact.rings, more)
+    if not size > 0.0:
+        return 0.0
+    pressure, _ = _at(contact, separation, size * mesh.radius, lift[:-1])
+    known = between @ pressure
+    compliance = size / modulus * fine.compliance
+    found, slope = _at(contact, separation, size * fine.radius, compliance @ known)
+    off = found - known
+    matrix = np.eye(more) - compliance * slope
+    change = off + slope * np.linalg.solve(matrix, compliance @ off)
+    load = float(fine.area @ np.abs(known))
+    return float(abs(fine.area @ change)) / load if load > 0.0 else 0.0
+
+
+def _at(
+    contact: ElasticContact, separation: float, radius: np.ndarray, lift: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure [Pa] and its slope [Pa/m] on rings that never touched before."""
+    h = separation + np.asarray(contact.shape.rise(jnp.asarray(radius))) + lift
+    thresholds = contact.interface.fresh(jnp.asarray(h))
+    pressure, slope = _pressure(contact, thresholds, jnp.asarray(h))
+    return np.asarray(pressure), np.asarray(slope)
+
+
+_pressure = Program(pressed, AT_ONCE)
