@@ -79,7 +79,7 @@ def test_a_film_without_slip_stops_a_body_at_the_gap_of_the_closed_form(changes,
     assert place == pytest.approx(expected, rel=1e-9)
     assert apex == place
     assert verdict(result) == (
-        f"stopped by the gas film at {place * 1e9:.4g} nm before it touched; the gas film takes "
+        f"is stopped by the gas film at {place * 1e9:.4g} nm before it touched; the gas film takes "
         "all of the energy lost"
     )
     assert "The gas film stopped the body" in result.summary()
