@@ -50,8 +50,8 @@ def changed(text: str, **changes: Any) -> asperity.Case:
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [
-        ("roughness.asperity_radius", "5 um", "an asperity as large as the body is not a bump"),
-        ("roughness.asperity_radius", "22 um", "an asperity as large as the body is not a bump"),
+        ("roughness.asperity_radius", "5.1 um", "an asperity larger than the body is not a bump"),
+        ("roughness.asperity_radius", "22 um", "an asperity larger than the body is not a bump"),
         ("roughness.rms_height", "2.5 um", "smaller than 0.5 of the body's radius"),
         ("body.radius", "1e-15 m", "is no continuum"),
         ("body.radius", "0.99 nm", "is no continuum"),
