@@ -33,6 +33,12 @@ def call(*arguments: str) -> Any:
     return CliRunner().invoke(app, list(arguments), env={"COLUMNS": "80"})
 
 
+def assert_refused(ran: Any, words: str) -> None:
+    assert ran.exit_code == 2, ran.output
+    assert ran.output.count("\n") == 1, ran.output
+    assert words in ran.output
+
+
 def test_restitution_is_a_table_a_picture_and_json(place: Path):
     ran = call("restitution", "drop.toml", "--points", "7")
     assert ran.exit_code == 0, ran.output
@@ -61,10 +67,7 @@ def test_speeds_are_as_asked_and_json_writes_no_files(place: Path):
 
 @pytest.mark.parametrize("speeds", ["1 m/s", "2 m/s, 1 m/s", "0 m/s, 1 m/s", "1 m, 2 m", "a, b"])
 def test_speeds_that_are_none_are_refused_in_one_line(speeds: str):
-    ran = call("restitution", "drop.toml", "--speeds", speeds)
-    error = ran.exception
-    assert isinstance(error, asperity.InputError)
-    assert "--speeds" in str(error)
+    assert_refused(call("restitution", "drop.toml", "--speeds", speeds), "--speeds")
 
 
 def test_a_case_without_an_impact_has_a_curve_and_no_motion(place: Path):
@@ -79,9 +82,7 @@ def test_a_case_without_an_impact_has_a_curve_and_no_motion(place: Path):
     assert found["deepest"] == pytest.approx(-3e-9, rel=1e-9)
     assert found["pull_off"] == pytest.approx(curve.pull_off, rel=1e-9)
     for command in ("run", "curve", "regime", "restitution"):
-        error = call(command, "still.toml", "--json").exception
-        assert isinstance(error, asperity.InputError)
-        assert "[impact] table must be given" in str(error)
+        assert_refused(call(command, "still.toml", "--json"), "[impact] table must be given")
 
 
 @pytest.mark.parametrize(
@@ -93,9 +94,7 @@ def test_a_case_without_an_impact_has_a_curve_and_no_motion(place: Path):
     ],
 )
 def test_a_load_that_is_none_is_refused(options: tuple[str, ...], words: str):
-    error = call("curve", "drop.toml", *options).exception
-    assert isinstance(error, asperity.InputError)
-    assert words in str(error)
+    assert_refused(call("curve", "drop.toml", *options), words)
 
 
 def test_a_curve_says_its_warnings_in_the_terminal_and_in_json(place: Path):

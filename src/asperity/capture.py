@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .case.build import CLEARANCE, Problem
-from .conversion import Flight, measured
+from .conversion import Flight, contact_end, measured
 from .errors import SimulationError, Tolerance
 from .flying import fly_prepared, prepared, silently
 from .impact import Limits
 from .impact.critical import Edges, FirstImpacts, capture_edges, speeds_about
+from .measures import least_peak
 from .summary import amount
 
 _ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
@@ -79,7 +80,7 @@ class Launcher:
         finer: tuple[int, ...] = (),
         stop: threading.Event | None = None,
     ) -> None:
-        body = dataclasses.replace(problem.body, release=_launched_from(flight, problem))
+        body = dataclasses.replace(problem.body, release=_launched_from(flight, problem, many=many))
         self._problem, self._many, self._stop = problem._replace(body=body), many, stop
         self._contacts = [flight.contact, *(flight.contact.refined(n) for n in finer)]
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
@@ -99,7 +100,8 @@ class Launcher:
         problem = self._problem._replace(body=body)
         for contact in self._contacts:
             curves = prepared(contact, body, many=self._many)
-            if float(curves[0].error) <= _ERROR and float(curves[0].residual) <= _ERROR:
+            allowed = max(_ERROR, contact.blur)
+            if float(curves[0].error) <= allowed and float(curves[0].residual) <= _ERROR:
                 break
         else:
             return _UNKNOWN
@@ -149,16 +151,22 @@ class Launcher:
         return found
 
 
-def _launched_from(flight: Flight, problem: Problem) -> float:
+def _launched_from(flight: Flight, problem: Problem, *, many: bool) -> float:
     """A separation [m] just outside the end of contact of even the gentlest impact.
 
-    It is where any force ends for a contact that yields, whose curves are those after one impact,
-    and in gas, which may stop a body where it carries less than its weight.
+    It is where any force ends for a contact that yields, whose curves are those after one impact.
     """
-    reach = float(flight.contact.reach)
-    if flight.contact.yields or problem.body.film is not None:
+    reach, body = float(flight.contact.reach), flight.body or problem.body
+    if flight.contact.yields:
         return reach + CLEARANCE
-    return min(reach, float(measured(flight, problem.body).outset)) + CLEARANCE
+    measures = measured(flight, body)
+    outset = float(measures.outset)
+    if outset >= float(body.release):  # its curves do not tell of what lies beyond
+        further = dataclasses.replace(body, release=reach + CLEARANCE)
+        force = abs(float(flight.motion.impacts.force[0]))
+        least = least_peak(body, measures.pull_off, force)
+        outset = contact_end(prepared(flight.contact, further, many=many)[0], float(least))
+    return min(reach, outset) + CLEARANCE
 
 
 def critical_measures(edges: Edges | None) -> dict[str, Any]:

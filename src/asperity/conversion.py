@@ -16,14 +16,21 @@ from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import Datum, end_of_contact
 from .impact.sampling import Series, ascending, sample, until
-from .impact.table import CENTRAL, FORCE, STORED, Table, quantities
+from .impact.table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from .impact.trajectory import Trajectory
 from .laws.base import as_float64
 from .measures import FirstContact, Measures, least_peak, measure
 from .program import AT_ONCE, Program
 from .result import Result
 from .trace import losses
-from .validity import AtDepth, check_surface, slow_menisci, warnings_of
+from .validity import (
+    AtDepth,
+    check_surface,
+    pull_warnings,
+    release_warnings,
+    slow_menisci,
+    warnings_of,
+)
 from .wetness import Wetting, wetting_regime
 from .yielding import kept_elastic
 
@@ -87,7 +94,8 @@ def measured(flight: Flight, body: Body) -> Measures:
 
 def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> FirstContact:
     """The first contact of a motion that was stepped in time."""
-    pulled, series = trajectory.unloading(), trajectory.series
+    bonds = Quantities(motion.impacts.bonds.shape[1], 0).bonds
+    pulled, series = trajectory.unloading(bonds), trajectory.series
     peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
     end = contact_end(motion.table, peak)
     held = float(motion.impacts.apex[0]) < end
@@ -170,6 +178,8 @@ def result_of(
         surface=None if case.asperities is None else case.asperities.facts,
         warnings=[
             *warnings_of(case, problem, regime, at_depth, motion),
+            *pull_warnings(case, float(measures.pull_off), float(measures.held_at_pull_off)),
+            *release_warnings(float(measures.reference)),
             *slow_menisci(problem, motion, flight.trajectory),
             *kept_elastic(case, float(np.asarray(measures.restitution)[0]), elastic),
         ],
@@ -361,7 +371,7 @@ def _plain(measures: Measures, made: int) -> dict[str, Any]:
     """Measures as plain numbers and lists, None where one does not apply."""
     out: dict[str, Any] = {}
     for name, value in measures._asdict().items():
-        if name in ("reference", "outset"):
+        if name in ("reference", "outset", "held_at_pull_off"):
             continue
         array = np.asarray(value)
         if array.ndim == 0:

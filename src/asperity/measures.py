@@ -21,6 +21,7 @@ from .laws.base import Real
 from .program import kept
 
 _LEAST = 1e-6  # of the force of one impact: none is gentler
+_IN_GAS = 1e-3  # of the weight, which gas leaves a contact to carry at a turn
 
 
 @kept
@@ -71,6 +72,8 @@ class Measures(NamedTuple):
     reference
         Separation [m] at which energies in and out are compared: the end of contact, or
         NaN where the body is released within it and the static equilibrium is taken.
+    held_at_pull_off
+        Expected number of asperities that touch or are bonded at pull-off.
     outset
         Separation [m] beyond which even the gentlest impact meets no force: in that the weight or
         the pull-off force is the largest.
@@ -94,6 +97,7 @@ class Measures(NamedTuple):
     work_of_separation: jax.Array
     preload: jax.Array
     reference: jax.Array
+    held_at_pull_off: jax.Array
     outset: jax.Array
 
 
@@ -193,6 +197,7 @@ def measure(
         work_of_separation=pulled.work,
         preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
         reference=jnp.where(outside, reference, jnp.nan),
+        held_at_pull_off=pulled.held,
         outset=first.outset,
     )
 
@@ -218,8 +223,12 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
 
 
 def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
-    """Largest force of the gentlest impact [N]: the weight or the pull-off force."""
-    return jnp.maximum(jnp.maximum(body.weight, pull_off), _LEAST * peak)
+    """Largest force of the gentlest impact [N]: the weight or the pull-off force.
+
+    Gas may stop a body where it carries far less than its weight.
+    """
+    carried = body.weight if body.film is None else _IN_GAS * body.weight
+    return jnp.maximum(jnp.maximum(carried, pull_off), _LEAST * peak)
 
 
 def _ahead(table: Table, phase: Phase, *, parting: bool) -> Pieces:

@@ -17,6 +17,7 @@ from .impact import Limits
 from .loading import turning_at
 from .result import Curve, Result
 from .trace import trace
+from .validity import pull_warnings
 
 
 def solve(
@@ -99,7 +100,7 @@ def explore(
         raise SimulationError(_failure(case), result)
     if flight.trajectory is not None:  # the curve is that of menisci that have the time to form
         return result, _curve_of(case, name, problem, lambda _, text: tell(0.95, text))
-    drawn = trace(flight.contact, flight.motion.table, flight.motion.impacts)
+    drawn, _ = trace(flight.contact, flight.motion.table, flight.motion.impacts)
     tell(1.0, "done")
     return result, Curve(case, name, **drawn, warnings=result.warnings)
 
@@ -191,7 +192,8 @@ def _curve_of(case: Case, name: str, problem: Problem, tell: Report) -> Curve:
     contact, motion = first_impact(case, problem, tell)
     warnings = assessment_of(case, name, problem, contact, motion).warnings
     tell(0.6, "unloading")
-    drawn = trace(contact, motion.table, motion.impacts)
+    drawn, held = trace(contact, motion.table, motion.impacts)
+    warnings += pull_warnings(case, drawn["pull_off"], held)
     tell(1.0, "done")
     return Curve(case, name, **drawn, warnings=warnings)
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from asperity.result import Curve, Result
 
 WIDTH = 80
+_ROUNDING = 1e-15  # m: a separation below it is 0
 FEW = 5
 """How many impacts a terminal shows."""
 
@@ -165,7 +166,8 @@ def _pull(found: Mapping[str, Any]) -> list[tuple[str, str]]:
         after = f"  (after {amount(found['preload'], 'N')})"
     where = ""
     if found.get("pull_off_separation") is not None:
-        where = f" at {amount(found['pull_off_separation'], 'm')}"
+        place = found["pull_off_separation"]
+        where = f" at {amount(place if abs(place) > _ROUNDING else 0.0, 'm')}"
     return [
         ("pull-off force", amount(found.get("pull_off"), "N") + where + after),
         ("work of separation", amount(found.get("work_of_separation"), "J") + after),

@@ -24,7 +24,7 @@ class _Piece(NamedTuple):
     values: np.ndarray
 
 
-def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
+def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, Any], float]:
     """Both branches from where the forces begin to the depth of the first impact.
 
     Parameters
@@ -38,7 +38,8 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
 
     Returns
     -------
-    The arrays and numbers of :class:`asperity.result.Curve`.
+    The arrays and numbers of :class:`asperity.result.Curve`, and the expected number of asperities
+    that hold at pull-off.
     """
     deepest, pulled = float(impacts.deepest[0]), first_unloading(table, impacts)
     reach = float(contact.reach)
@@ -49,7 +50,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
     out = parting[:, FORCE]
     layout = quantities(contact)
     names = contact.components
-    return {
+    found = {
         "rigid_separation": places,
         "central_separation": approach[:, CENTRAL],
         "force_approach": approach[:, FORCE],
@@ -63,6 +64,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> dict[str, Any]:
         "work_of_separation": float(pulled.work),
         "loss": _loss(contact, approach[:, layout.bonds], parting[:, layout.bonds]),
     }
+    return found, float(pulled.held)
 
 
 def _branch(table: Table, branch: int) -> list[_Piece]:

@@ -199,6 +199,36 @@ def _hardly_one(touching: float) -> str:
     )
 
 
+def pull_warnings(case: Case, pull_off: float, held: float) -> list[str]:
+    """A line where fewer than one asperity is expected to hold at pull-off.
+
+    Parameters
+    ----------
+    case
+        The case.
+    pull_off
+        Pull-off force [N].
+    held
+        Expected number of asperities that touch or are bonded there.
+    """
+    if case.asperities is None or not pull_off > 0.0 or held >= 1.0:
+        return []
+    return [
+        f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "
+        "of separation are means over many bodies, most of which nothing holds"
+    ]
+
+
+def release_warnings(reference: float) -> list[str]:
+    """A line where a body is released within the end of contact, which is then no ``reference``."""
+    if np.isfinite(reference):
+        return []
+    return [
+        "the body is released within the end of contact, where the force is 1e-6 of its peak: "
+        "restitution and capture are judged from the static equilibrium"
+    ]
+
+
 def _publication(case: Case) -> list[str]:
     assumed = case.publication
     if assumed is None:

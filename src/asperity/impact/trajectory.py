@@ -14,7 +14,7 @@ from .history import Body
 from .legs import Leg, Samples
 from .sampling import Series
 from .stepping import KNOTS, TO_SERIES
-from .table import CENTRAL, FORCE
+from .table import CENTRAL, FORCE, TOUCHING
 from .unloading import Unloading
 
 
@@ -90,10 +90,11 @@ class Trajectory(NamedTuple):
             found.append(roots[0] if roots.size else along.time[k + 1])
         return float(found[1] - found[0])
 
-    def unloading(self) -> Unloading:
+    def unloading(self, bonds: slice) -> Unloading:
         """The tension on the first way out, as it was met: it depends on load and rate.
 
-        Between samples force, speed and separation are Akima's polynomials of time.
+        Between samples force, speed and separation are Akima's polynomials of time. ``bonds`` are
+        the columns of the bonds.
         """
         from scipy.interpolate import Akima1DInterpolator
 
@@ -103,7 +104,7 @@ class Trajectory(NamedTuple):
         points = points[first]
         force = self.series.rows[points, FORCE]
         if time.size < 2 or not np.min(force) < 0.0:
-            return _unloading(0.0, np.nan, 0.0, False)
+            return _unloading(0.0, np.nan, 0.0, 0.0, False)
         along = Akima1DInterpolator(time, force)
         power = Akima1DInterpolator(time, force * self.series.speed[points]).antiderivative()
         rates = along.derivative().roots(extrapolate=False)
@@ -113,7 +114,9 @@ class Trajectory(NamedTuple):
         begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
         place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
         work = float(np.max(power(begins)) - power(time[-1]))
-        return _unloading(-float(along(lowest)), float(place), work, True)
+        rows = self.series.rows[points[np.argmin(np.abs(time - lowest))]]
+        held = float(max(rows[TOUCHING], np.max(rows[bonds], initial=0.0)))
+        return _unloading(-float(along(lowest)), float(place), work, held, True)
 
     def _kinetic(self, k: int, place: float, mass: float) -> float:
         """Kinetic energy [J] between two samples, by the polynomials of their step."""
@@ -128,7 +131,10 @@ class Trajectory(NamedTuple):
         return float(0.5 * mass * legval(x, speed) ** 2)
 
 
-def _unloading(pull_off: float, separation: float, work: float, depends: bool) -> Unloading:
+def _unloading(
+    pull_off: float, separation: float, work: float, held: float, depends: bool
+) -> Unloading:
     return Unloading(
-        as_float64(pull_off), as_float64(separation), as_float64(work), jnp.asarray(depends)
-    )
+        as_float64(pull_off), as_float64(separation), as_float64(work), as_float64(held),
+        jnp.asarray(depends),
+    )  # fmt: skip

@@ -10,7 +10,7 @@ from .._jax import jax, jnp
 from ..polynomials import ANTIDERIVATIVE, DERIVATIVE, chebyshev_sum, local
 from ..program import kept
 from .history import Phase
-from .table import FORCE, STORED, Pieces, Table, join
+from .table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, join
 
 _SHARES = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 25)))
 _NEWTON = 8  # steps from the nearest of these shares of a piece
@@ -28,6 +28,8 @@ class Unloading(NamedTuple):
         Rigid separation at which it occurs [m]; NaN where nothing pulls.
     work
         Work against the tension [J], from the separation of zero force to infinity.
+    held
+        Expected number of asperities that touch or are bonded there.
     depends
         Whether they depend on the load before: unloading reaches the major branch, which is the
         same after any load, only beyond the separation of zero force; or the contact has yielded.
@@ -36,6 +38,7 @@ class Unloading(NamedTuple):
     pull_off: jax.Array
     separation: jax.Array
     work: jax.Array
+    held: jax.Array
     depends: jax.Array
 
 
@@ -73,6 +76,7 @@ def unloading(table: Table, rise: Phase) -> Unloading:
         pull_off=jnp.maximum(tension, 0.0),
         separation=jnp.where(pulls, curve.place(curve.force, lowest), jnp.nan),
         work=jnp.where(pulls, work, 0.0),
+        held=curve.held(lowest, Quantities(rise.bonds.shape[0], 0)),
         depends=jnp.logical_and(pulls, depends),
     )
 
@@ -134,6 +138,14 @@ class _Curve(NamedTuple):
     def place(self, value: jax.Array, places: jax.Array) -> jax.Array:
         """The place [m] of the least value."""
         return places[jnp.argmin(self._values(value, places))]
+
+    def held(self, places: jax.Array, layout: Quantities) -> jax.Array:
+        """Asperities that touch or are bonded where the force is least."""
+        pieces, k = self.pieces, jnp.argmin(self._values(self.force, places))
+        x = local(pieces.low[k], pieces.high[k], places[k])
+        row = chebyshev_sum(pieces.values[k], x[None])
+        bonds = jnp.max(row[layout.bonds], initial=0.0)
+        return jnp.maximum(row[TOUCHING], bonds)
 
     def _values(self, value: jax.Array, places: jax.Array) -> jax.Array:
         return jnp.where(self.used, chebyshev_sum(value, self._local(places)), jnp.inf)

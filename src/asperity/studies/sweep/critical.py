@@ -50,7 +50,7 @@ def _of_some(group: Group, flight: Flight, some: np.ndarray, clock: Clock) -> np
         flown = flown._replace(
             body=body, time_limit=np.full(index.size, np.inf), impacts=np.ones(index.size, int)
         )
-        allowed = np.full(index.size, _ERROR)
+        allowed = np.full(index.size, max(_ERROR, flown.contact.blur))
         made = fly_group(Group(np.arange(index.size), flown, allowed), clock, checked=False)
         return _first_impacts(made, mass[index], weight[index])
 
@@ -64,9 +64,10 @@ def _of_some(group: Group, flight: Flight, some: np.ndarray, clock: Clock) -> np
 def _launched_from(cases: Flown, outset: np.ndarray) -> np.ndarray:
     """As for one case, :mod:`asperity.capture`: just outside where forces end [m]."""
     reach = np.asarray(jax.vmap(lambda flown: jnp.asarray(flown.contact.reach))(cases))
-    if not cases.contact.yields and cases.body.film is None:
-        reach = np.minimum(reach, outset)
-    return reach + CLEARANCE
+    if cases.contact.yields:
+        return reach + CLEARANCE
+    known = outset < np.asarray(cases.body.release)
+    return np.where(known, np.minimum(reach, outset), reach) + CLEARANCE
 
 
 def _first_impacts(made: Flight, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
