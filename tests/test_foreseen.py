@@ -78,7 +78,7 @@ def test_so_are_those_of_the_published_sums():
 
 def test_a_motion_is_compiled_once_for_the_shapes_that_were_foreseen():
     case = builtin("published-exact").replace({**RIGID, "numerics.max_impacts": 1})
-    before = len(flying._fly_some._held)
+    before = set(flying._fly_some._held)
     asperity.solve(case)
     asperity.solve(case.replace({"roughness.rms_height": "10.6 nm"}))
-    assert len(flying._fly_some._held) == before + 1
+    assert len(set(flying._fly_some._held) - before) == 1

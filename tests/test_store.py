@@ -80,7 +80,7 @@ def test_a_chunk_has_the_bytes_that_zarr_writes(path: Path, tmp_path: Path):
 
 def test_a_store_describes_itself(path: Path):
     group = zarr.open_group(path, mode="r")
-    assert group.attrs["schema"] == 1
+    assert group.attrs["schema"] == 2
     assert group.attrs["study"] == STUDY.canonical
     assert group.attrs["fingerprint"] == STUDY.fingerprint
     assert group["restitution"].metadata.dimension_names == ("case", "impact")

@@ -29,7 +29,7 @@ def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     kinetic, weight = float(problem.body.kinetic), float(problem.body.weight)
     if case.impact is None or case.impact.release_gap is not None or not weight > 0.0:
         return []
-    fall = float(motion.release) - kinetic
+    fall = max(float(motion.release) - kinetic, weight * float(problem.body.release))
     if fall <= HASTENED * kinetic:
         return []
     added = 100.0 * ((1.0 + fall / kinetic) ** 0.5 - 1.0)

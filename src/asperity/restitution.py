@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 POINTS = 61
-"""Speeds that are computed where none are given."""
+"""Speeds that are computed where none are given, besides some close to the edges of capture."""
+_NEAR = np.array([1e-4, 1e-3, 1e-2, 3e-2])  # relative: speeds on both sides of each edge
 _FINER = (4,)  # times as many panels where fast impacts ask for them
 _BELOW, _ABOVE = 0.1, 100.0  # from and to how many critical velocities it is drawn
 
@@ -240,5 +241,6 @@ def _decades(edges: list[float], own: float, points: int) -> np.ndarray:
     """Speeds [m/s] over decades: about the edges of capture, and about the case's own."""
     low, high = (edges[0], edges[-1]) if edges else (own, own)
     first, last = min(_BELOW * low, own), max(_ABOVE * high, own)
-    speeds: np.ndarray = np.geomspace(first, last, points)
-    return speeds
+    # Where capture begins or ends restitution falls to 0 as a root does.
+    near = np.outer(edges, 1.0 + np.concatenate([-_NEAR, _NEAR])).ravel()
+    return np.unique(np.concatenate([np.geomspace(first, last, points), near]))

@@ -17,12 +17,14 @@ from .._jax import jax, jnp
 from ..polynomials import DERIVATIVE, chebyshev_sum, local
 from .history import Body
 from .phase import Work
+from .slowness import NEAR, missed_time
 from .table import CENTRAL
 
 POINTS = 24
 _CLOSE = 1e-13  # relative change of the speeds that is small enough
 _DIRECT = 20  # steps of direct iteration, before Newton's
 _STEPS = 40
+_TURNED = 1e-8  # of the energy of a piece: more than a turning place is off by
 _SEARCH = 80  # steps towards a turning point, at most
 
 _GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
@@ -158,12 +160,38 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
         speed=unit * u,
         time=jnp.asarray(_UNTIL) @ pace,
         heat=heat,
-        duration=_WHOLE @ pace,
+        duration=_WHOLE @ pace + _missed_time(body, piece, (kinetic, left), most * u**2, stop),
         lost=jnp.where(empty, 0.0, lost),
         kinetic=jnp.where(empty, kinetic, left),
         passed=empty | (solved & (left > 0.0)),
         fastest=jnp.where(empty, kinetic, jnp.max(_FINE @ (most * u**2))),
     )
+
+
+def _missed_time(
+    body: Body,
+    piece: Stretch,
+    ends: tuple[jax.Array, jax.Array],
+    energies: jax.Array,
+    stop: jax.Array,
+) -> jax.Array:
+    """Time [s] that the quadrature misses where the body is nearly at rest at either end.
+
+    ``ends`` are its kinetic energies there, ``energies`` those at SHARES [J]. What is left at the
+    end counts from a part of the energy on that no turning place is off by.
+    """
+    span = stop - piece.enter
+    total = jnp.zeros(())
+    for energy, place, towards, beside, least in (
+        (ends[0], piece.enter, 1.0, energies[NEAR], 0.0),
+        (ends[1], stop, -1.0, energies[-1 - NEAR], _TURNED),
+    ):
+        gain = towards * piece.push(place, body.weight) * span
+        grown = energy + gain * SHARES[NEAR]
+        counts = (jnp.abs(beside - grown) < 0.1 * grown) & (energy > least * gain)
+        missed = missed_time(energy, gain, SHARES, _WHOLE * _PACE)
+        total = total + jnp.where(counts, missed, 0.0)
+    return total * jnp.abs(span) * jnp.sqrt(0.5 * body.mass)
 
 
 @jax.custom_jvp

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._jax import jax, jnp
 from .table import RATE, RISE
 
-_NEAR = 3  # node of the quadrature up to which the energy must grow as at the end: 0.1 % on
+NEAR = 3
+"""Node of a quadrature up to which the energy must grow as at the end: 0.1 % of a piece on."""
+
+_ROUNDING = 1e-13  # of that energy: less may be none
 _SLOW = 0.01  # of the energy that a piece adds: entered with more, it is summed to 1e-9
 
 
@@ -39,18 +44,23 @@ def time_over(
     """
     squares = jnp.where(energies > 0.0, 2.0 / mass * energies, jnp.inf)  # of the speeds
     slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
-    near = energies[:, _NEAR], energies[:, -1 - _NEAR]
+    near = energies[:, NEAR], energies[:, -1 - NEAR]
     for energy, gain, beside in zip((ends.first, ends.last), ends.gains(span), near, strict=True):
-        grown = energy + gain * RISE[_NEAR]
+        grown = energy + gain * RISE[NEAR]
         missed = jnp.where(jnp.abs(beside - grown) < 0.1 * grown, missed_time(energy, gain), 0.0)
         slowness = slowness + missed * jnp.sqrt(0.5 * mass)
     return jnp.sum(jnp.where(used, slowness * jnp.abs(span), 0.0))
 
 
-def missed_time(energy: jax.Array, gain: jax.Array) -> jax.Array:
-    """What the quadrature misses of the integral of (energy + gain y)^-1/2 over y from 0 to 1."""
-    slow = (energy > 0.0) & (energy < _SLOW * gain)
+def missed_time(
+    energy: jax.Array,
+    gain: jax.Array,
+    places: np.ndarray = RISE,
+    weights: np.ndarray = RATE,
+) -> jax.Array:
+    """What a quadrature misses of the integral of (energy + gain y)^-1/2 over y from 0 to 1."""
+    slow = (energy > _ROUNDING * gain) & (energy < _SLOW * gain)
     safe, by = jnp.where(slow, energy, 1.0), jnp.where(slow, gain, 1.0)
     exact = 2.0 / (jnp.sqrt(safe + by) + jnp.sqrt(safe))
-    found = jnp.sum(RATE * jax.lax.rsqrt(safe[:, None] + by[:, None] * RISE), axis=1)
+    found = jnp.sum(weights * jax.lax.rsqrt(safe[..., None] + by[..., None] * places), axis=-1)
     return jnp.where(slow, exact - found, 0.0)

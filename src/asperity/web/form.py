@@ -46,7 +46,7 @@ def form() -> list[dict[str, Any]]:
             {
                 "name": name,
                 "help": inspect.getdoc(tables[0]) or "",
-                "needed": field.is_required(),
+                "needed": field.is_required() or name == "impact",  # the page shows motions
                 "named": get_origin(field.annotation) is dict,
                 "keys": [_key(key, inner) for key, inner in ordered(tables[0]).items()],
             }

@@ -110,6 +110,10 @@ DESCRIPTION: dict[str, Any] = {
                 **_any("application/x-ndjson"),
             },
         ),
+        "/api/critical": _asking(
+            "The critical velocity of a case.",
+            _json({"type": "object"}, "It, all edges of capture, and a note."),
+        ),
         "/api/files/{name}": _asking(
             "A file of a case's results.",
             {"description": "The file.", "content": {kind: {} for kind in {*FILES.values()}}},
