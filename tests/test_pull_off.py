@@ -77,6 +77,14 @@ def test_maugis_pull_off_lies_between_the_limits_and_has_no_speed():
     assert 1.5 < found[0] / (pi * W * RADIUS) < 2.0
 
 
+def test_nothing_pulls_where_nothing_adheres():
+    """Not even the rounding of the repulsion."""
+    bare = smooth("jkr", "20 m/s").replace({"adhesion": None})
+    measures = asperity.solve(bare).measures
+    assert (measures["pull_off"], measures["work_of_separation"]) == (0.0, 0.0)
+    assert measures["pull_off_separation"] is None
+
+
 def test_a_run_measures_what_its_curve_does():
     case = smooth("jkr")
     measures, curve = asperity.solve(case).measures, asperity.curve(case)

@@ -13,6 +13,7 @@ from .history import Phase
 from .table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, join
 
 _SHARES = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 25)))
+_ROUNDING = 1e-16  # of the largest force: less tension is none
 _NEWTON = 8  # steps from the nearest of these shares of a piece
 
 
@@ -23,7 +24,8 @@ class Unloading(NamedTuple):
     Attributes
     ----------
     pull_off
-        Largest tension while unloading [N]; 0 where nothing pulls.
+        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-16 of the
+        largest force.
     separation
         Rigid separation at which it occurs [m]; NaN where nothing pulls.
     work
@@ -63,7 +65,7 @@ def unloading(table: Table, rise: Phase) -> Unloading:
     curve = _Curve.of(pieces)
     lowest = curve.extremum(curve.force, curve.slope, curve.bend)
     tension = -curve.least(curve.force, lowest)
-    pulls = tension > 0.0
+    pulls = tension > _ROUNDING * curve.largest
     beyond = -chebyshev_sum(table.values[rise.branch, -1, :, STORED], jnp.ones(()))
     begins = curve.extremum(curve.left, -curve.force, -curve.slope)
     work = beyond - curve.least(curve.left, begins)
@@ -73,7 +75,7 @@ def unloading(table: Table, rise: Phase) -> Unloading:
     if table.left:
         depends = jnp.ones_like(depends)
     return Unloading(
-        pull_off=jnp.maximum(tension, 0.0),
+        pull_off=jnp.where(pulls, tension, 0.0),
         separation=jnp.where(pulls, curve.place(curve.force, lowest), jnp.nan),
         work=jnp.where(pulls, work, 0.0),
         held=curve.held(lowest, Quantities(rise.bonds.shape[0], 0)),
@@ -110,6 +112,12 @@ class _Curve(NamedTuple):
         beyond = jnp.cumsum(gain[::-1])[::-1] - gain
         left = (-work).at[0].add(at_leave + beyond)
         return cls(pieces, left, force, slope, bend, used)
+
+    @property
+    def largest(self) -> jax.Array:
+        """Largest size of the force where pieces begin [N]."""
+        at_enter = chebyshev_sum(self.force, self._local(self.pieces.enter))
+        return jnp.max(jnp.where(self.used, jnp.abs(at_enter), 0.0))
 
     def _local(self, place: jax.Array) -> jax.Array:
         return local(self.pieces.low, self.pieces.high, place)
