@@ -243,6 +243,8 @@ def test_a_force_table_says_its_pull_and_its_loss(place: Path, monkeypatch: pyte
     assert (found["kind"], found["file"]) == ("force-table", "wall.table")
     assert found["points"] == curve.rigid_separation.size
     assert (found["pull_off"], found["loss"]) == (curve.pull_off, curve.loss)
+    assert found["warnings"] == curve.warnings
+    assert found["warnings"]
     ran = call("export", "published", "--force-table", "wall.table", "--force", "-q")
     assert (ran.exit_code, ran.output) == (0, "")
     ran = call("export", "published", "--force-table", "wall.table", "--force", "-v")
@@ -327,7 +329,7 @@ def test_long_names_stand_on_a_line_of_their_own_in_tables():
     from asperity.regimes import Place
 
     long = "a-case-with-a-name-that-is-longer-than-half-a-line"
-    law = SimpleNamespace(regime=SimpleNamespace(adhesion_law="maugis"))
+    law = SimpleNamespace(regime=SimpleNamespace(adhesion_law="maugis"), warnings=[])
     lines = _map_lines([Place("short", 0.2, 3.0), Place(long, 0.2, 3e4)], [law, law])  # type: ignore[list-item]
     assert_narrow("\n".join(lines))
     assert long in lines

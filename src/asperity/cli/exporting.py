@@ -120,5 +120,8 @@ def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Expor
     except InputError as error:
         error.file = error.file or given.file
         raise
+    for line in curve.warnings:
+        voice.note(f"asperity: warning: {line}")
     return path, {"kind": "force-table", "points": int(curve.rigid_separation.size),
-                  "pull_off": curve.pull_off, "loss": curve.loss}  # fmt: skip
+                  "pull_off": curve.pull_off, "loss": curve.loss,
+                  "warnings": curve.warnings}  # fmt: skip

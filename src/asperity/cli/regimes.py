@@ -179,7 +179,9 @@ def _map_lines(places: Sequence[Place], found: Sequence[Assessment]) -> list[str
             lines.append(place.name)
         name = place.name if len(place.name) <= wide - 2 else ""
         lines.append(f"{name:<{wide}}{numbers}{_region(place) or '-':<16}{law}")
-    return lines
+    pairs = zip(places, found, strict=True)
+    told = [f"{place.name}: {line}" for place, assessed in pairs for line in assessed.warnings]
+    return [*lines, *warning_lines(told)]
 
 
 def _map_object(
@@ -201,6 +203,7 @@ def _map_object(
                 "load_parameter": place.load,
                 "region": _region(place),
                 "adhesion_law": assessed.regime.adhesion_law,
+                "warnings": assessed.warnings,
             }
             for place, assessed in zip(places, found, strict=True)
         ],
