@@ -27,6 +27,17 @@ CASES = {
     "a jkr sphere": ("jkr-bounce", {}),
     "bonds on a half-space": ("dry-drop", BONDS),
     "gas": ("drop-in-air", {"numerics.max_impacts": 4}),
+    "gas that stops the body": (
+        "jkr-bounce",
+        {
+            "adhesion": None,
+            "gas.viscosity": "18.1 uPa s",
+            "gas.slip_length": "0 m",
+            "gas.closest_gap": "1 nm",
+            "impact.release_gap": "1 um",
+            "impact.speed": "1 mm/s",
+        },
+    ),
     "menisci that take time": (
         "wet-drop",
         {"capillary.formation_time": "1 us", "numerics.max_impacts": 4},

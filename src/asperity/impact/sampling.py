@@ -15,6 +15,7 @@ from .history import Body, Impacts, Phase
 from .phase import Work, kinetic_along, work_along
 from .table import CENTRAL, RATE, RISE, Pieces, Table, join, read_row
 
+_ROUNDING = 1e-12  # of a motion's time
 _BATCH = 16  # phases a compiled call
 _AGREE = 1e-6  # of its duration: to this two quadratures of a phase agree
 _SAMPLES = 40  # on a phase, and again on its part in contact
@@ -65,6 +66,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
     phase = np.broadcast_to(np.arange(2 * made).reshape(made, 2, 1), joined[0].shape)
     time, separation, speed = (a.ravel() for a in joined[:3])
+    time = _onwards(body, time, joined[6].ravel().astype(bool))
     values, heat, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
@@ -79,6 +81,18 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
             for a, b in zip(release, rest, strict=True)
         )
     )
+
+
+def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
+    """Times [s] without steps back by rounding; larger ones stay, for they are errors.
+
+    A body that a film stops takes for ever to do so: where nothing else acts the times of its last
+    samples are not resolved, and none is before another.
+    """
+    latest = np.maximum.accumulate(np.where(keep, np.maximum(time, 0.0), 0.0))
+    back = np.max(np.where(keep, latest - time, 0.0), initial=0.0)
+    stops = body.film is not None and not float(body.weight) > 0.0
+    return latest if stops or back <= _ROUNDING * latest[-1] else time
 
 
 def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
