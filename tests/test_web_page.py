@@ -403,6 +403,7 @@ def test_a_stale_answer_never_overwrites_a_newer_one(page):
     page.wait_for_timeout(800)  # more than the page's patience with a running question
     write(page, "body.radius", "43 um")
     settled(page)
+    expect(page.locator("#measures")).not_to_contain_text("being sought")
     said = page.locator("#measures").inner_text()
     assert page.evaluate("() => asperity.designs()[0].tables.body.radius") == "43 um"
     with contextlib.suppress(Error):  # the page has let go of it

@@ -9,7 +9,7 @@ from asperity.case.build import Problem
 from asperity.conversion import regime_of
 from asperity.impact import Impacts, Motion
 from asperity.studies.sweep.flights import Flight
-from asperity.validity import AtDepth, warnings_of
+from asperity.validity import AtDepth, pull_warnings, release_warnings, warnings_of
 
 
 def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> list[str]:
@@ -30,4 +30,12 @@ def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> lis
     none: Any = None
     release: Any = flight.release[place]
     motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
-    return warnings_of(case, problem, regime_of(case, problem, at_depth), at_depth, motion)
+    pull_off, held, reference = (
+        float(flight.measures[name][place])
+        for name in ("pull_off", "held_at_pull_off", "reference")
+    )
+    return [
+        *warnings_of(case, problem, regime_of(case, problem, at_depth), at_depth, motion),
+        *pull_warnings(case, pull_off, held),
+        *release_warnings(reference),
+    ]
