@@ -248,6 +248,14 @@ def test_a_launch_without_gravity_has_no_height_to_compare():
     assert np.isnan(axes.lines[-1].get_ydata()[0])
 
 
+def test_losses_over_more_than_a_decade_fill_their_axis():
+    axes = plots.figure(bounce(0.6, 6), "energy").axes[2]
+    drawn = np.concatenate([line.get_ydata() for line in axes.lines])
+    low, high = axes.get_ylim()
+    assert axes.get_yscale() == "log"
+    assert high / low < 3.0 * np.nanmax(drawn) / np.nanmin(drawn)
+
+
 def test_energy_shows_what_each_mechanism_took_in_each_impact():
     result = bounce(0.8, 6)
     total = sum(values for name, values in result.energies.items() if name.startswith("lost_"))

@@ -84,16 +84,12 @@ class Launcher:
         self._problem, self._many, self._stop = problem._replace(body=body), many, stop
         self._contacts = [flight.contact, *(flight.contact.refined(n) for n in finer)]
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
-        self.missed = 0
-        """Impacts that could not be computed."""
 
     def __call__(self, speed: float) -> Rebound:
         """The first impact of a body launched with a speed [m/s]."""
-        found = _UNKNOWN
-        if self._stop is None or not self._stop.is_set():
-            found = self._launched(float(speed))
-            self.missed += not np.isfinite(found.speed)
-        return found
+        if self._stop is not None and self._stop.is_set():
+            return _UNKNOWN
+        return self._launched(float(speed))
 
     def _launched(self, speed: float) -> Rebound:
         body = dataclasses.replace(self._problem.body, speed=speed)

@@ -74,8 +74,9 @@ def _losses(axes: Axes, result: Result) -> None:
         size = 2.5 if energy.size <= _MARKED else 1.5
         number = np.arange(1, energy.size + 1)
         axes.plot(number, energy / joules, "o", ms=size, mew=0.0, color=colour(name))
-    axes.set_ylim(bottom=0.0)
     style.log_axis(axes, *found.values())
+    if axes.get_yscale() == "linear":
+        axes.set_ylim(bottom=0.0)
     style.count_axis(axes, "impact")
     axes.set_ylabel(style.label("energy lost", unit))
     axes.set_title("each impact")
