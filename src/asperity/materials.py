@@ -293,22 +293,31 @@ def _solids() -> tuple[Solid, ...]:
     dense = "a sample far below the 415 GPa of dense ceramic; density: that of the ceramic"
     crystal = "mean (Voigt-Reuss-Hill) of a crystal: Wachtman et al., J. Res. NBS 64A, 213 (1960)"
     poly = "polycrystal: Hopcroft, Nix, Kenny, J. Microelectromech. Syst. 19, 229 (2010)"
+    anstis = "Vickers: Anstis et al., J. Am. Ceram. Soc. 64, 533 (1981)"
     silicone = "Sylgard 184: Johnston et al., J. Micromech. Microeng. 24, 035017 (2014), 1.32 to"
     dowling = "Dowling, Mechanical Behavior of Materials, Table 5.2"
     return (
         Solid("silica", 80e9, 0.25, 2200.0, 9e9, None, f"{sample}; {assumed}"),
-        Solid("silicon carbide", 161e9, 0.23, 3160.0, None, None, f"{sample}, {dense}"),
-        Solid("fused silica", 73e9, 0.17, 2200.0, None, None, _CALLISTER),
-        Solid("soda-lime glass", 69e9, 0.23, 2500.0, None, None, _CALLISTER),
-        Solid("sintered silicon carbide", 415e9, 0.16, 3160.0, None, None,
-              "Munro, J. Phys. Chem. Ref. Data 26, 1195 (1997)"),
-        Solid("alumina", 416e9, 0.231, 3984.0, None, None,
-              "sintered: Munro, J. Am. Ceram. Soc. 80, 1919 (1997)"),
+        Solid("silicon carbide", 161e9, 0.23, 3160.0, 24e9, None,
+              f"{sample}, {dense}, as is the hardness, {anstis} for hot-pressed NC-203; the "
+              "sample's own is not known"),
+        Solid("fused silica", 73e9, 0.17, 2200.0, 9.2e9, None,
+              f"{_CALLISTER}; hardness: middle of 8.6 to 9.8 GPa, micro hardness of quartz glass, "
+              "Heraeus, Quartz Glass for Optics, Data and Properties"),
+        Solid("soda-lime glass", 69e9, 0.23, 2500.0, 5.5e9, None,
+              f"{_CALLISTER}; hardness, {anstis}"),
+        Solid("sintered silicon carbide", 415e9, 0.16, 3160.0, 32e9, None,
+              "Munro, J. Phys. Chem. Ref. Data 26, 1195 (1997); hardness: Vickers, 5 N"),
+        Solid("alumina", 416e9, 0.231, 3984.0, 15e9, None,
+              "sintered: Munro, J. Am. Ceram. Soc. 80, 1919 (1997); hardness: Vickers, 5 N"),
         Solid("sapphire", 403e9, 0.233, 3990.0, 22.5e9, None,
               f"{crystal}; density: from its cell, 0.4758 nm by 1.2991 nm; hardness: middle of 22 "
               "to 23 GPa, Sinani et al., Bull. Russ. Acad. Sci. Phys. 73, 1380 (2009)"),
-        Solid("silicon", 160e9, 0.22, 2329.0, None, None, f"{poly}; density: {_CRC}"),
-        Solid("silicon nitride", 304e9, 0.30, 3300.0, None, None, f"hot pressed: {_CALLISTER}"),
+        Solid("silicon", 160e9, 0.22, 2329.0, 12e9, None,
+              f"{poly}; density: {_CRC}; hardness: a (100) face, by nanoindentation, Li and "
+              "Bhushan, Thin Solid Films 340, 210 (1999)"),
+        Solid("silicon nitride", 304e9, 0.30, 3300.0, 18.5e9, None,
+              f"hot pressed: {_CALLISTER}; hardness, {anstis} for NC-132"),
         Solid("steel", 207e9, 0.30, 7850.0, None, 295e6,
               f"alloy 1020, yield strength when annealed: {_CALLISTER}"),
         Solid("gold", 77e9, 0.42, 19320.0, None, 205e6,
