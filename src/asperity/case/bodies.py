@@ -45,8 +45,8 @@ class Made(Table):
     needed: ClassVar[tuple[str, ...]] = _ELASTIC
 
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
-        among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
+        default=None, among=catalogue.SOLIDS,
     )  # fmt: skip
     youngs_modulus: fields.Modulus | None = entry(
         "Pa", "Young's modulus, in place of `material`.", "80 GPa", default=None
@@ -109,8 +109,8 @@ class Body(Made):
     shape: Literal["sphere"] = entry("", "Shape of the body.", "sphere", default="sphere")
     radius: fields.Length = entry("m", "Radius of the sphere.", "50 um")
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
-        shown=True, among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
+        default=None, shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
 
 
@@ -120,12 +120,12 @@ class Counterface(Made):
     needed: ClassVar[tuple[str, ...]] = ("youngs_modulus", "poisson")
 
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silicon carbide",
-        default=None, shown=True, among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "silicon", default=None,
+        shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
     deformation: Literal["half-space", "rigid"] = entry(
         "",
         "Bulk deformation of both bodies: 'half-space' (elastic) or 'rigid' (asperities only).",
-        "half-space",
+        "rigid",
         default="half-space",
     )

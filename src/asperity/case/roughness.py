@@ -25,13 +25,13 @@ class Roughness(Table):
     """
 
     asperity_density: fields.AreaDensity | None = entry(
-        "1/m^2", "Asperities per area.", "1.69e16 1/m^2", default=None, shown=True
+        "1/m^2", "Asperities per area.", "6.3e13 1/m^2", default=None, shown=True
     )
     asperity_radius: fields.Length | None = entry(
-        "m", "Radius of the asperities' tips.", "0.25 nm", default=None, shown=True
+        "m", "Radius of the asperities' tips.", "450 nm", default=None, shown=True
     )
     rms_height: fields.Length | None = entry(
-        "m", "Standard deviation of the asperities' heights, Gaussian.", "10.5 nm",
+        "m", "Standard deviation of the asperities' heights, Gaussian.", "1.64 nm",
         default=None, shown=True,
     )  # fmt: skip
     files: Annotated[list[str], Field(min_length=1, max_length=2)] | None = entry(
