@@ -204,7 +204,7 @@ def test_init_writes_a_case_that_runs_and_never_overwrites(place: Path):
 
 
 def test_materials_are_listed_with_their_sources():
-    from asperity.materials import LIQUIDS, SOLIDS
+    from asperity.materials import ADHESION, LIQUIDS, SOLIDS
 
     text = call("materials").stdout
     for name in (*SOLIDS, *LIQUIDS):
@@ -213,7 +213,34 @@ def test_materials_are_listed_with_their_sources():
     found = strict(call("materials", "--json").stdout)
     assert set(found["solids"]) == set(SOLIDS)
     assert found["solids"]["silica"]["youngs_modulus"] == SOLIDS["silica"].youngs_modulus
+    works = found.pop("adhesion")
     assert all(entry["source"] for kind in found.values() for entry in kind.values())
+    assert [work["work"] for work in works] == [entry.work for entry in ADHESION]
+    assert all(work["source"] for work in works)
+
+
+def test_the_whole_catalogue_takes_a_line_each_and_a_named_entry_tells_its_source():
+    from asperity.materials import SOLIDS
+
+    lines = call("materials").stdout.splitlines()
+    first = next(n for n, line in enumerate(lines) if line.startswith("silica "))
+    table = lines[first : first + len(SOLIDS)]
+    assert [line[:25].strip() for line in table] == list(SOLIDS)
+    assert lines[-1].endswith("asperity materials NAME")
+    named = " ".join(call("materials", "mica", "PDMS").stdout.split())
+    assert "J. Geophys. Res. 91, 4657 (1986)" in named
+    assert "never yields: an elastomer recovers its shape" in named
+
+
+def test_works_of_adhesion_are_listed_for_either_solid_of_the_pair_and_never_assumed():
+    text = " ".join(call("materials").stdout.split())
+    assert "No case assumes one" in text
+    assert "J. Phys. Chem. 97, 12034 (1993)" in text
+    found = strict(call("materials", "silica", "--json").stdout)["adhesion"]
+    assert {tuple(work["pair"]) for work in found} == {("mica", "silica"), ("silica", "silica")}
+    only = call("materials", "diamond").stdout
+    assert "\nsapphire / diamond " in only
+    assert "Solids" not in only
 
 
 def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Path):

@@ -105,6 +105,21 @@ def test_a_metal_bead_shot_at_a_ceramic_says_that_yielding_was_not_judged():
         assert sum("yielding not judged" in line for line in found.warnings) == 1
 
 
+@pytest.mark.parametrize("other", ["PDMS", "silica"])
+@pytest.mark.parametrize("central", [NEAR, FAR])
+def test_an_elastomer_never_yields_and_leaves_nothing_to_judge(other, central):
+    """Nor is the solid that meets it said to be taken for the softer one."""
+    found = lines(between("PDMS", other), central)
+    assert not any("judged" in line or "taken" in line for line in found)
+    assert not any("taken" in line for line in lines(between("silica", "PDMS") + YIELDS, central))
+
+
+def test_beside_an_elastomer_only_the_other_solid_is_missing_a_strength():
+    assert lines(between("PDMS", "metal")) == [
+        "yielding not judged: no hardness or yield strength of metal is known"
+    ]
+
+
 def test_where_both_strengths_are_known_nothing_is_left_unsaid():
     assert lines(between("silica", "sapphire"), 2.0 * FAR) == []
 
