@@ -183,7 +183,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
     shown = page.evaluate("() => asperity.designs()[0].answer.measures.restitution[0]")
     assert shown == pytest.approx(wanted.measures["restitution"][0], rel=1e-9)
     before = picture(page, "curve")
-    page.get_by_role("slider", name="materials.my glass youngs modulus").press("PageDown")
+    page.get_by_role("slider", name="Young's modulus of my glass").press("PageDown")
     settled(page)
     assert picture(page, "curve") != before
     page.locator(field("poisson")).fill("0.7")
@@ -198,7 +198,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
 
 
 def test_a_slider_moves_by_keyboard_and_says_its_value(page):
-    slider = page.get_by_role("slider", name="roughness rms height")
+    slider = page.get_by_role("slider", name="Rms height of the asperities")
     slider.focus()
     slider.press("ArrowLeft")
     settled(page)

@@ -33,7 +33,7 @@ export class AdhesionMap {
       width: Math.max(this.figure.clientWidth - 16, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       scales: { x: { time: false, distr: 3, range: () => across }, y: { distr: 3, range: () => up } },
       series: [{}, { show: true, points: { show: false }, width: 0 }],
-      axes: [decades("elasticity parameter λ [–]", 44), decades("load parameter [–]", 62)],
+      axes: [decades("elasticity parameter λ [–]", 30), decades("load parameter [–]", 62)],
       hooks: { draw: [(plot) => this.draw(plot)] },
     }, [across, up], this.place);
   }
