@@ -17,7 +17,7 @@ COLOURS = {
     "gas": "#CC79A7",
     "waves": "#8C6D31",
     "kinetic": "#0072B2",
-    "potential": "#444444",
+    "potential": "#C8C8C8",
     "stored": "#F0E442",
     "lost_adhesion": "#D55E00",
     "lost_capillary": "#009E73",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +13,9 @@ from asperity.errors import InputError
 from asperity.web.form import form
 
 Tables = dict[str, Any]
+
+_NAMED = re.compile(r"`([a-z_]+)`")
+"""A key in a message."""
 
 _MOST_FILLED = 12
 """Keys that one choice may fill in."""
@@ -39,21 +43,23 @@ def completed(tables: Tables, before: Tables) -> Tables:
 
 
 def remedies(tables: Tables) -> list[dict[str, Any]]:
-    """For problems of a case one other value each that leaves fewer of them.
+    """For problems of a case one other value each that mends them.
 
     Returns
     -------
     A list of ``{at, key, value}``: the key that is refused, and the key and the value that mend
     it; a value of None takes the key, or the table, away.
     """
-    problems = _problems(tables)
     found = []
-    for key in dict.fromkeys(one.key for one in problems[:_MOST_MENDED] if one.key is not None):
-        for value in _others(tables, key):
+    for problem in _problems(tables)[:_MOST_MENDED]:
+        best: tuple[int, str, Any] | None = None
+        for key, value in _changes(tables, problem):
             left = _problems(_with(tables, key, value))
-            if len(left) < len(problems) and key not in {one.key for one in left}:
-                found.append({"at": key, "key": key, "value": value})
-                break
+            if problem.key in {one.key for one in left} or (best and best[0] <= len(left)):
+                continue
+            best = len(left), key, value
+        if best is not None:
+            found.append({"at": problem.key, "key": best[1], "value": best[2]})
     return found
 
 
@@ -75,14 +81,26 @@ def _filled(tables: Tables, key: str | None) -> Tables | None:
     return None if key in {one.key for one in _problems(new)} else new
 
 
-def _others(tables: Tables, key: str) -> Iterator[Any]:
-    """Other values that a key, or a table, may have: every choice, 'none' last; None for none."""
-    about, given = _keys().get(_place(key)), _given(tables, key)
+def _changes(tables: Tables, problem: InputError) -> Iterator[tuple[str, Any]]:
+    """What might mend a problem, as key and value; a value of None takes the key away.
+
+    Every other choice of the key at fault, 'none' last; to leave the key, or the table, out; a key
+    that is not there and that the message names, at its example.
+    """
+    if problem.key is None:
+        return
+    key, about = problem.key, _keys().get(_place(problem.key))
+    given = _given(tables, key)
     if about is not None:
         choices = [choice for choice in about["choices"] if choice != given]
-        yield from sorted(choices, key=lambda choice: choice == "none")
+        yield from ((key, choice) for choice in sorted(choices, key=lambda one: one == "none"))
     if given is not None and (about is None or not about["needed"]):
-        yield None
+        yield key, None
+    table = key.rpartition(".")[0]
+    for name in dict.fromkeys(_NAMED.findall(str(problem))):
+        other = _keys().get((table, name))
+        if other is not None and _given(tables, f"{table}.{name}") is None:
+            yield f"{table}.{name}", other["example"]
 
 
 @functools.cache

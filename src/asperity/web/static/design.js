@@ -16,6 +16,7 @@ export class Design {
     this.linked = false; // whether it came by a link
     this.touched = ""; // the table or the key that was chosen last
     this.kept = {}; // tables that were taken away, as they were
+    this.filled = {}; // by a table or key that was chosen, what it asked for: [path, key, value]
     this.completing = 0; // choices whose consequences are asked for
     this.tables = tables;
     this.surfaces = surfaces;
@@ -31,6 +32,11 @@ export class Design {
 
   get changed() {
     return canonical(this.tables) !== this.base;
+  }
+
+  // Whether what is shown is of an older case, and nothing newer is coming.
+  get stale() {
+    return Boolean(this.refusal) || (!this.running && this.shown < this.asked);
   }
 
   question() {
@@ -57,6 +63,14 @@ export class Design {
     const whole = inner === undefined ? table : withKey(this.tables[outer], inner, table);
     const empty = inner !== undefined && !Object.keys(whole).length;
     this.tables = withKey(this.tables, outer, empty ? undefined : whole);
+  }
+
+  // Take a table away, with what was filled in for it alone.
+  remove(path) {
+    this.kept[path] = this.table(path);
+    for (const [table, key, value] of this.filled[path] ?? []) if (this.get(table, key) === value) this.set(table, key, undefined);
+    this.filled[path] = [];
+    this.put(path, undefined);
   }
 
   // Fill in what a choice asks for, at the values of the schema's examples; the keys that were.

@@ -16,7 +16,8 @@ const element = (tag, properties = {}, ...children) => {
 export const idOf = (kind, path) => `${kind}-${encodeURIComponent(path)}`;
 
 const sentence = (words) => words.charAt(0).toUpperCase() + words.slice(1);
-const hint = (words) => element("code", { className: "key", textContent: words });
+// A key small beside its name; it may be broken at its dots.
+const hint = (words) => element("code", { className: "key" }, ...words.split(/(?<=\.)/).flatMap((part) => [part, element("wbr")]));
 
 export class Form {
   // `changed(path, key, value, since)`: value undefined takes the key away; `chosen(path, key, value)`
@@ -29,6 +30,8 @@ export class Form {
     this.tabled = tabled;
     this.fields = new Map();
     this.boxes = new Map(); // of tables
+    this.rest = { wrong: element("div", { className: "wrong", hidden: true }) }; // of what has neither
+    place.before(this.rest.wrong);
   }
 
   // Draw the form anew for a design.
@@ -178,7 +181,7 @@ export class Form {
 
   // Say at every field, and every table, what is wrong with it; `mend(remedy)` does what mends it.
   refuse({ refusal, touched }, mend) {
-    for (const { input, wrong } of [...this.fields.values(), ...this.boxes.values()]) {
+    for (const { input, wrong } of [...this.fields.values(), ...this.boxes.values(), this.rest]) {
       wrong.hidden = true;
       wrong.replaceChildren();
       input?.removeAttribute("aria-invalid");
@@ -200,11 +203,15 @@ export class Form {
     }
   }
 
-  // Mark the field, or the table, of a key.
+  // The field, or the table, of a key.
+  at(key) {
+    return this.fields.get(key) ?? this.boxes.get(key) ?? this.boxes.get(key?.split(".")[0]) ?? this.rest;
+  }
+
   mark(key, words, buttons) {
-    const place = this.fields.get(key) ?? this.boxes.get(key) ?? this.boxes.get(key?.split(".")[0]);
-    if (!place || !place.wrong.hidden) return; // of two problems of a field the first
-    place.wrong.replaceChildren(words, ...buttons);
+    const place = this.at(key);
+    if (place.input && !place.wrong.hidden) return; // of two problems of a field the first
+    place.wrong.append(element("div", {}, words, ...buttons));
     place.wrong.hidden = false;
     place.input?.setAttribute("aria-invalid", "true");
     place.input?.setAttribute("aria-describedby", place.wrong.id);
@@ -213,8 +220,8 @@ export class Form {
 
   // Show the field, or the table, of a key, and have the keyboard there.
   reveal(key) {
-    const place = this.fields.get(key) ?? this.boxes.get(key) ?? this.boxes.get(key?.split(".")[0]);
-    if (!place) return;
+    const place = this.at(key);
+    if (!place.box) return;
     opened(place.box);
     place.box.scrollIntoView({ block: "center" });
     (place.input ?? place.box.querySelector("input, summary")).focus({ preventScroll: true });

@@ -69,6 +69,7 @@ function changed(path, key, value, since) {
   current().set(path, key, value);
   if (JSON.stringify(current().tables) === before) return;
   current().touched = "";
+  say("");
   ask(current(), since);
 }
 
@@ -84,8 +85,8 @@ async function tabled(table, used) {
   const design = current();
   const before = design.tables;
   const given = Object.fromEntries(table.keys.filter((key) => key.shown && key.example !== null).map((key) => [key.key, key.example]));
-  if (!used) design.kept[table.name] = design.table(table.name);
-  design.put(table.name, used ? design.kept[table.name] ?? given : undefined);
+  if (used) design.put(table.name, design.kept[table.name] ?? given);
+  else design.remove(table.name);
   form.show(design);
   const place = by(idOf("table", table.name));
   for (let around = place; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
@@ -104,6 +105,7 @@ async function completed(design, before, touched, focus) {
     // what is missing is told by the question itself
   }
   asked(design);
+  design.filled[touched] = filled.map((key) => [...halves(key), design.get(...halves(key))]);
   if (filled.length && design === current()) {
     form.show(design);
     for (const key of filled) form.reveal(key);
@@ -128,6 +130,7 @@ function mended({ key, value }) {
 // Ask anew where what was refused is no longer what is asked for.
 function asked(design) {
   design.refusal = null;
+  say("");
   ask(design);
   said();
 }
@@ -247,6 +250,7 @@ function listen() {
   on("cancel", "click", () => {
     designs.forEach((one) => one.cancel());
     work();
+    said();
     panels.show(designs);
     say("Cancelled; the last picture stays.");
   });

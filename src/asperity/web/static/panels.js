@@ -66,7 +66,7 @@ export class Panels {
     this.rebounds(answered, group);
     ledger(answered, two);
     measures(answered, two);
-    document.querySelectorAll("#panels figure, #ledger, #numbers").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal || (!d.running && d.shown < d.asked))));
+    document.querySelectorAll("#panels figure, #ledger, #numbers").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.stale)));
   }
 
   measured(designs) {

@@ -36,7 +36,7 @@ export class Top {
     const two = designs.length > 1;
     const lines = designs.flatMap((design) => {
       const who = two ? `${design.letter}: ` : "";
-      const said = design.answer ? [[`${who}${design.answer.verdict}`, "said", design, null]] : [];
+      const said = design.answer ? [[`${who}${design.answer.verdict}`, design.stale ? "said stale" : "said", design, null]] : [];
       return [...said, ...refused(design).map(([words, key]) => [who + words, "wrong", design, key])];
     });
     const now = JSON.stringify(lines.map(([words, kind]) => [words, kind]));
@@ -66,6 +66,7 @@ export class Top {
     by("warnings-title").textContent = lines.length ? `${lines.length} warning${lines.length > 1 ? "s" : ""}: know before believing it` : "";
     by("warning-list").replaceChildren(...(lines.length ? lines : ["No warnings: the models hold here."]).map((one) => made("li", one)));
     by("warnings").classList.toggle("none", !lines.length);
+    by("warnings").classList.toggle("stale", answered.some((one) => one.stale));
     this.fold();
   }
 
@@ -109,7 +110,8 @@ function refused({ refusal }) {
   return more > 0 ? [...lines, [`and ${more} more, marked in the form`, null]] : lines;
 }
 
-function wait(text) {
+// What is waited for, in words, by what the solver tells of its progress.
+export function wait(text) {
   for (const [pattern, words] of WAITS) {
     const found = pattern.exec(text);
     if (found) return words.endsWith(" ") ? words + found[1] : words;
