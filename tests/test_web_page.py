@@ -619,7 +619,9 @@ def test_every_bad_field_is_marked_with_its_own_message(page):
         ("adhesion-range", "must be given with model = 'dmt'"),
     ):
         expect(page.locator(f"#field-{key}-wrong")).to_contain_text(words)
-        assert page.locator(f"#field-{key}").get_attribute("aria-invalid") == "true"
+        field = page.locator(f"#field-{key}")
+        assert field.get_attribute("aria-invalid") == "true"
+        assert field.evaluate("(one) => getComputedStyle(one).borderTopWidth") == "2px"
     assert page.locator("#verdicts .wrong").count() == 3
     page.locator("#verdicts .wrong button").nth(1).click()
     focused = page.evaluate("() => document.activeElement.id")
@@ -786,6 +788,9 @@ def test_on_a_telephone_the_answer_stands_above_the_form(page):
     page.locator("#to-form").click()
     expect(page.locator("#form")).to_be_in_viewport()
     expect(page.locator("#verdicts .said")).to_be_in_viewport()
+    expect(page.locator("#to-form")).to_have_text("Back to the answer")
+    page.locator("#to-form").click()
+    expect(page.locator("#motion")).to_be_in_viewport()
     reveal(page, "#more-capillary")
     tick(page, "gas")
     assert page.evaluate("() => document.documentElement.scrollWidth") <= 390

@@ -234,7 +234,12 @@ function listen() {
     replace(name, tables);
   });
   on("skip", "click", () => by("answer").focus());
-  on("to-form", "click", () => by("form").scrollIntoView());
+  let below = false; // whether the form is what is looked at
+  new IntersectionObserver(([{ isIntersecting }]) => {
+    below = isIntersecting;
+    by("to-form").textContent = below ? "Back to the answer" : "Change the case";
+  }, { rootMargin: "-40% 0px -40% 0px" }).observe(by("form"));
+  on("to-form", "click", () => (below ? scrollTo(0, 0) : by("form").scrollIntoView()));
   for (const id of ["own-case", "own-surface"]) on(id, "change", async ({ target }) => {
     await opened([...target.files], page);
     target.value = "";

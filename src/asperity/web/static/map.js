@@ -97,7 +97,8 @@ function mark(ctx, plot, at, place, letter, colour) {
   ctx.arc(clip(x, left + reach, left + width - reach), clip(y, top + reach, top + height - reach), reach, 0, 7);
   ctx.fill();
   ctx.font = `bold ${12 * devicePixelRatio}px system-ui`;
-  ctx.fillText(letter, clip(x, left + reach, left + width - 3 * reach) + 2 * reach, clip(y, top + 2 * reach, top + height - reach) + 4);
+  const side = letter === "A" ? 2 : -2; // two designs may lie on one place
+  ctx.fillText(letter, clip(x, left + 3 * reach, left + width - 3 * reach) + side * reach, clip(y, top + 2 * reach, top + height - reach) + 4);
 }
 
 function heightAt([, x, y], value) {

@@ -9,12 +9,13 @@ const MOST = 3; // problems that are told at the top; the fields tell of all
 const WAITS = [
   [/^asking/, "Asking the program"],
   [/^loading/, "Loading the program, once after its start"],
-  [/^tracing/, "Preparing the models"],
+  [/^tracing/, "Preparing these models for the first time: some seconds"],
   [/^compilation/, "Compiling for the first time with these models: some seconds"],
   [/^force curves/, "Computing the force curves"],
   [/^impact (\d+)/, "Computing the motion, impact "],
   [/^(motion|first impact)/, "Computing the motion"],
   [/^unloading/, "Computing the unloading"],
+  [/^measures/, "Computing the measures"],
 ];
 
 const by = (id) => document.getElementById(id);
