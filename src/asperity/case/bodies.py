@@ -11,7 +11,7 @@ from asperity import materials as catalogue
 from asperity.case import fields
 from asperity.case.fields import entry
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 from asperity.materials import refuse_softer_than_yield
 
 _ELASTIC = ("youngs_modulus", "poisson", "density")
@@ -72,9 +72,10 @@ class Made(Table):
         missing = [key for key in self.needed if getattr(self, key) is None]
         if self.material is None and missing:
             wanted = ", ".join(f"`{key}`" for key in self.needed)
-            raise InputError(
-                f"`material`, or all of {wanted}, must be given; got no `{missing[0]}`",
-                key=missing[0] if given else "material",
+            rule = f"`material`, or all of {wanted}, must be given; got no"
+            refuse_all(
+                InputError(f"{rule} `{key}`", key=key if given else "material")
+                for key in (missing if given else missing[:1])
             )
         refuse_softer_than_yield(self.hardness, self.yield_strength)
         return self

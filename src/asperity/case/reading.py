@@ -29,6 +29,9 @@ BUILTINS: tuple[str, ...] = tuple(
 )  # fmt: skip
 """Names of the built-in cases."""
 
+FIRST = "published-exact"
+"""Name of the built-in case that the page opens on."""
+
 _PLACE = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 

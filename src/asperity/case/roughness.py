@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from asperity.case import fields
 from asperity.case.fields import Number, entry
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 from asperity.units import lengths
 
 if TYPE_CHECKING:
@@ -109,18 +109,16 @@ class Roughness(Table):
         return self
 
     def _without_files(self) -> None:
-        for key in NUMBERS:
-            if getattr(self, key) is None:
-                raise InputError(
-                    f"`{key}` is missing; give it, or `files` of measured surfaces", key=key
-                )
-        for key in self.of_files:
-            if getattr(self, key) is not None:
-                raise InputError(
-                    f"`{key}` must be absent without `files`, which it is for; got "
-                    f"{getattr(self, key)!r}",
-                    key=key,
-                )
+        missing = [key for key in NUMBERS if getattr(self, key) is None]
+        beside = [key for key in self.of_files if getattr(self, key) is not None]
+        rule = "is missing; give it, or `files` of measured surfaces"
+        only = "must be absent without `files`, which it is for"
+        refuse_all(
+            [
+                *(InputError(f"`{key}` {rule}", key=key) for key in missing),
+                *(InputError(f"`{k}` {only}; got {getattr(self, k)!r}", key=k) for k in beside),
+            ]
+        )
 
     @property
     def preparation(self) -> Preparation:

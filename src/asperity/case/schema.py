@@ -22,7 +22,7 @@ from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
 from asperity.case.viscoelasticity import Viscoelasticity
 from asperity.case.waves import Waves
-from asperity.errors import InputError, Tolerance
+from asperity.errors import InputError, Tolerance, check_each, refuse_all
 from asperity.units import shown
 
 
@@ -72,38 +72,64 @@ class Case(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
+        check_each(
+            lambda: self._known_material("body"), lambda: self._known_material("counterface")
+        )
+        check_each(
+            self._only_what_the_publication_has,
+            self._film_between_ends,
+            self._elastic_somewhere,
+            self._bounded_liquid,
+            self._late_liquid,
+            self._waves_beside,
+            self._creep_beside,
+            self._yielding_beside,
+            lambda: refuse_outside(self),
+        )
+        return self
+
+    def _known_material(self, part: str) -> None:
+        """Refuse the name of a material that neither the case nor the catalogue has."""
         known = [*self.materials, *catalogue.SOLIDS]
-        for part in ("body", "counterface"):
-            name = getattr(self, part).material
-            if name is not None and name not in known:
-                raise InputError(
-                    "`material` must be a name of the catalogue or of a [materials.NAME] table; "
-                    f"got {shown(name)}{problems.did_you_mean(name, known)}",
-                    key=f"{part}.material",
-                )
-        if self.publication is not None:
-            self._only_what_the_publication_has()
-        self._film_between_ends()
+        name = getattr(self, part).material
+        if name is not None and name not in known:
+            raise InputError(
+                "`material` must be a name of the catalogue or of a [materials.NAME] table; "
+                f"got {shown(name)}{problems.did_you_mean(name, known)}",
+                key=f"{part}.material",
+            )
+
+    def _elastic_somewhere(self) -> None:
+        """Refuse a smooth body on a bulk that does not deform."""
         if self.roughness is None and self.counterface.deformation == "rigid":
             raise InputError(
                 "`deformation` must be 'half-space' without a [roughness] table: a smooth rigid "
                 "body has no elasticity at all; got 'rigid'",
                 key="counterface.deformation",
             )
-        self._bounded_liquid()
-        self._late_liquid()
+
+    def _waves_beside(self) -> None:
+        """Refuse what waves cannot stand beside."""
         if self.waves is not None:
             self.waves.refuse_beside(self.counterface_solid, self.capillary, self.publication)
+
+    def _creep_beside(self) -> None:
+        """Refuse what a creeping bulk cannot stand beside."""
         if self.viscoelasticity is not None:
             self.viscoelasticity.refuse_beside(self)
-        if self.plasticity is not None and self.plasticity_model != "none":
-            self.plasticity.refuse_beside(
+
+    def _yielding_beside(self) -> None:
+        """Refuse what a law of yielding cannot stand beside, and solids that have no strength."""
+        table = self.plasticity
+        if table is None or table.model == "none":
+            return
+        check_each(
+            lambda: table.refuse_beside(
                 self.adhesion, self.capillary, self.roughness, self.publication
-            )
-            self.plasticity.refuse_under(self.counterface, self.roughness)
-            _ = self.yielding  # which refuses what has no strength
-        refuse_outside(self)
-        return self
+            ),
+            lambda: table.refuse_under(self.counterface, self.roughness),
+            lambda: self.yielding,
+        )
 
     def _late_liquid(self) -> None:
         """Refuse menisci that take time on a rough half-space beside gas."""
@@ -169,6 +195,8 @@ class Case(Table):
 
     def _only_what_the_publication_has(self) -> None:
         """Refuse models that a [publication] table leaves no room for."""
+        if self.publication is None:
+            return
         if self.roughness is None:
             raise InputError(
                 "a [roughness] table must be given with [publication]; got none", key="publication"
@@ -192,15 +220,16 @@ class Case(Table):
             ("capillary.formation_time", self.capillary.formation_time, (None,)),
             ("capillary.film_thickness", self.capillary.film_thickness, (None,)),
         )
-        for key, value, allowed in wanted:
-            if value not in allowed:
-                name = key.split(".")[1]
-                rule = "absent" if allowed == (None,) else " or ".join(map(repr, allowed))
-                raise InputError(
-                    f"`{name}` must be {rule} with a [publication] table, which replaces the other "
-                    f"models; got {value!r}",
-                    key=key,
-                )
+        refuse_all(
+            InputError(
+                f"`{key.split('.')[1]}` must be "
+                f"{'absent' if allowed == (None,) else ' or '.join(map(repr, allowed))} with a "
+                f"[publication] table, which replaces the other models; got {value!r}",
+                key=key,
+            )
+            for key, value, allowed in wanted
+            if value not in allowed
+        )
 
     @property
     def body_solid(self) -> catalogue.Solid:
