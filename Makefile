@@ -11,7 +11,7 @@ COMPILE := uv pip compile pyproject.toml --universal --fork-strategy fewest --ge
 .PHONY: help run test validate bench docs lint lock wheel clean run-environment dev-environment
 
 help:
-	@echo "make run       set up, run the case published-exact, reproduce the publication"
+	@echo "make run       set up, run the case glass-bead, reproduce the publication"
 	@echo "make test      set up, then lint, types, docs and all tests but the long ones"
 	@echo "make validate  the long validation studies"
 	@echo "make bench     the benchmarks, beside a plain SciPy script"
@@ -22,7 +22,7 @@ help:
 	@echo "make clean     remove what was made, except .venv"
 
 run: run-environment
-	$(BIN)/asperity run published-exact --force
+	$(BIN)/asperity run glass-bead --force
 	$(BIN)/asperity reproduce --force
 
 # pytest last, so that its summary closes the output.

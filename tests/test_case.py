@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
 from asperity import case as case_room
-from asperity.case import BUILTINS, Body, Case, builtin, load, load_file, template
+from asperity.case import BUILTINS, FIRST, Body, Case, builtin, load, load_file, template
 from asperity.case.problems import tables_of
 from asperity.case.roughness import NUMBERS
 from asperity.errors import InputError, Tolerance
@@ -134,8 +134,8 @@ def test_a_case_is_frozen():
 # --- what is written ---------------------------------------------------------------------------
 
 
-def test_the_template_loads_and_is_the_published_case():
-    assert load(TEMPLATE) == builtin("published-exact")
+def test_the_template_loads_and_is_the_first_case():
+    assert load(TEMPLATE) == builtin(FIRST)
 
 
 def every_key(model, place=()):
@@ -175,7 +175,7 @@ def test_the_example_of_every_key_is_read(place, name, field):
         table[place[0]].pop("material")
     if place[0] == "publication":
         table["counterface"]["deformation"] = "rigid"
-    if place[0] in ("roughness", "publication"):
+    if place[0] in ("roughness", "publication") or name == "deformation":
         table["roughness"] = {
             "asperity_density": "1 1/um^2",
             "asperity_radius": "1 nm",
@@ -216,7 +216,7 @@ def test_the_schema_of_a_form_can_be_made():
 
 
 names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
-radii = st.floats(1e-7, 0.9)
+radii = st.floats(1e-6, 0.9)
 numbers = st.floats(1e-12, 0.9, allow_subnormal=False)
 
 

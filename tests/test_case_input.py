@@ -66,25 +66,25 @@ BAD = [
     ("schema = 1", "schema = 2", "`schema` must be 1, the only version that there is; got 2"),
     ("schema = 1", "schema = true", "`schema` must be 1"),
     ('shape = "sphere"', 'shape = "cylinder"', "`shape` must be 'sphere'; got 'cylinder'"),
-    ('material = "silica"', "", "body.material (line 6): `material`, or all of `youngs_modulus`, "
+    ('material = "soda-lime glass"', "", "body.material (line 6): `material`, or all of `youngs_modulus`, "
      "`poisson`, `density`, must be given"),
-    ('material = "silica"', "poisson = 0.2", "body.youngs_modulus"),
-    ('material = "silica"', 'material = "silca"', "got 'silca' - did you mean 'silica'?"),
+    ('material = "soda-lime glass"', "poisson = 0.2", "body.youngs_modulus"),
+    ('material = "soda-lime glass"', 'material = "silca"', "got 'silca' - did you mean 'silica'?"),
     ("# poisson = 0.25 ", "poisson = 0.25 ", "`poisson` and `material` exclude each other"),
     ("# poisson = 0.25 ", "poisson = 0.7 ", "body.poisson (line 11): `poisson` must lie in "
      "(-1, 0.5]; got 0.7"),
     ("# poisson = 0.25 ", "poisson = -1 ", "`poisson` must lie in (-1, 0.5]; got -1"),
     ("# poisson = 0.25 ", 'poisson = "0.25" ', "`poisson` must be a number in (-1, 0.5]"),
-    ('deformation = "half-space"', 'deformation = "rigit"', "must be one of 'half-space' or "
+    ('deformation = "rigid"', 'deformation = "rigit"', "must be one of 'half-space' or "
      "'rigid'; got 'rigit' - did you mean 'rigid'?"),
-    ('model = "dmt"', "", "adhesion.model"),
-    ('model = "dmt"', 'model = "dtm"', "`model` must be one of 'none', 'auto', 'bradley', 'dmt', "
+    ('model = "auto"', "", "adhesion.model"),
+    ('model = "auto"', 'model = "dtm"', "`model` must be one of 'none', 'auto', 'bradley', 'dmt', "
      "'maugis' or 'jkr'; got 'dtm' - did you mean 'dmt'?"),
-    ('model = "dmt"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
-    ('model = "dmt"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
-    ('model = "dmt"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
-    ('work = "30 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'dmt'"),
-    ('range = "0.2 nm"', "", "`range` must be given with model = 'dmt'"),
+    ('model = "auto"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
+    ('model = "auto"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
+    ('model = "auto"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
+    ('work = "60 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'auto'"),
+    ('range = "0.2 nm"', "", "`range` must be given with model = 'auto'"),
     ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 70): `humidity` must lie in "
      "[0, 1]; got 1.2"),
     ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',
@@ -94,10 +94,10 @@ BAD = [
      "`viscosity` must not be given beside `name`"),
     ("# [gas]", '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "50 K"',
      "gas.temperature"),
-    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "60 nm"',
-     "`closest_gap` must be smaller than `release_gap` (60 nm)"),
+    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "1 um"',
+     "`closest_gap` must be smaller than `release_gap` (1000 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
-    ("[adhesion]", "[publication]\n[adhesion]", "counterface.deformation (line 20): `deformation` "
+    ('deformation = "rigid"', 'deformation = "half-space"\n[publication]', "counterface.deformation (line 20): `deformation` "
      "must be 'rigid' with a [publication] table, which replaces the other models; got "
      "'half-space'"),
     ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1]; got -0.1"),
@@ -105,15 +105,15 @@ BAD = [
     ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1]; got '60 %'"),
     ("humidity = 0.6", "humidity = true", "`humidity` must be a number in [0, 1]; got True"),
     ("humidity = 0.6", "", "`humidity` must be given with model = 'equilibrium'"),
-    ('"73 deg"', '"120 deg"', "capillary.contact_angle (line 72): `contact_angle` must lie in "
+    ('"30 deg"', '"120 deg"', "capillary.contact_angle (line 72): `contact_angle` must lie in "
      "[0, 90) deg with menisci"),
-    ('"73 deg"', '"300 deg"', "`contact_angle` must lie in [0, 180] deg; got '300 deg'"),
-    ('"73 deg"', '"-1 deg"', "`contact_angle` must lie in [0, 180] deg; got '-1 deg'"),
+    ('"30 deg"', '"300 deg"', "`contact_angle` must lie in [0, 180] deg; got '300 deg'"),
+    ('"30 deg"', '"-1 deg"', "`contact_angle` must lie in [0, 180] deg; got '-1 deg'"),
     ('liquid = "water"', 'liquid = "watr"', "got 'watr' - did you mean 'water'?"),
     ('"20 degC"', '"200 degC"', "capillary.temperature (line 71): `temperature` must lie in "
      "[273.15 K, 373.15 K]"),
     ('"20 degC"', '"-300 degC"', "`temperature` must lie in [1, 10000] K; got '-300 degC'"),
-    ('release_gap = "60 nm"', "", "`release_gap` or `speed` must be given; got neither"),
+    ('release_gap = "1 um"', "", "`release_gap` or `speed` must be given; got neither"),
     ('"9.81 m/s^2"', '"0 m/s^2"', "the body would never fall; got 0 m/s^2"),
     ('"9.81 m/s^2"', '"-9.81 m/s^2"', "`gravity` must not be negative; got '-9.81 m/s^2'"),
     ('# speed = "0.1 m/s"', 'speed = "0 m/s"', "`speed` must be positive; got '0 m/s'"),

@@ -97,7 +97,7 @@ def test_wheel_runs_from_any_folder_without_the_repository(wheel: Path, tmp_path
         "from asperity.cli import main; sys.exit(main())"
     )
     ran = subprocess.run(
-        [sys.executable, "-c", program, str(site), "run", "published-exact", "--json"],
+        [sys.executable, "-c", program, str(site), "run", "glass-bead", "--json"],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(site)},
         capture_output=True,
@@ -213,10 +213,10 @@ def command_names() -> set[str]:
 
 
 def test_case_in_the_pages_is_the_built_in_case():
-    from asperity.case import builtin, load
+    from asperity.case import FIRST, builtin, load
 
     (shown,) = blocks(ROOT / "docs" / "cli.md", "toml")
-    assert load(shown, file=None) == builtin("published-exact")
+    assert load(shown, file=None) == builtin(FIRST)
 
 
 def environment_tool() -> ModuleType:

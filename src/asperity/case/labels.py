@@ -102,6 +102,10 @@ LABELS = {
 """Name in words of every table and of every key of a case, by its dotted key."""
 
 
+PERCENT = frozenset({"capillary.humidity"})
+"""Keys of shares that people give in per cent."""
+
+
 def label(key: str) -> str:
     """The name in words of a key or a table.
 

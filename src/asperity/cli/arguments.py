@@ -21,7 +21,7 @@ def _one_voice(ctx: typer.Context, value: bool) -> bool:
 CaseName = Annotated[
     str,
     typer.Argument(
-        help="Name of a built-in case (published-exact), a FILE.toml, or a record.nc to repeat.",
+        help="Name of a built-in case (glass-bead), a FILE.toml, or a record.nc to repeat.",
         show_default=False,
         autocompletion=completing.case,
     ),

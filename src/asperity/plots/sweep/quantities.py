@@ -16,6 +16,7 @@ from matplotlib.ticker import (
     NullLocator,
 )
 
+from asperity.case.labels import PERCENT
 from asperity.plots import style
 from asperity.studies.sweep.view import PREFIXED, is_number, words
 
@@ -104,7 +105,8 @@ def axis_quantity(axis: xarray.DataArray) -> Quantity:
         names = tuple(dict.fromkeys(texts))
         return Quantity(np.array([names.index(text) for text in texts]), name, False, names, 1.0)
     log = axis.attrs.get("scale") == "log" and bool(np.all(axis.values > 0.0))
-    return _of(axis.values.astype(float), name, str(axis.attrs.get("units", "1")), log=log)
+    unit = "%" if axis.name in PERCENT else str(axis.attrs.get("units", "1"))
+    return _of(axis.values.astype(float), name, unit, log=log)
 
 
 def measure_quantity(values: np.ndarray, measure: xarray.DataArray) -> Quantity:
@@ -126,7 +128,7 @@ def _of(values: np.ndarray, name: str, unit: str, *, log: bool) -> Quantity:
     typical = np.exp(np.log(found).mean(keepdims=True)) if log else found
     factor, shown = (
         style.scale_of(typical, unit=unit) if unit in PREFIXED
-        else (np.pi / 180.0, "deg") if unit == "rad" else (1.0, unit)
+        else (np.pi / 180.0, "deg") if unit == "rad" else (0.01 if unit == "%" else 1.0, unit)
     )  # fmt: skip
     shown = "-" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
     return Quantity(values / factor, style.label(name, shown), log, (), factor)

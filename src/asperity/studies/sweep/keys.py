@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, create_model
 from pydantic.fields import FieldInfo
 
 from asperity.case.fields import Number, Quantity
+from asperity.case.labels import label
 from asperity.case.problems import check, did_you_mean, tables_of
 from asperity.case.schema import Case
 from asperity.case.writing import unit_of
@@ -123,7 +124,7 @@ def find(name: str, materials: Iterable[str] = ()) -> Key:
             key=f"axes.{name}",
         )
     numeric = bool(kinds & {Quantity, Number})
-    return Key(name, unit_of(field), _label(name), numeric, Number in kinds and int in kinds)
+    return Key(name, unit_of(field), label(name), numeric, Number in kinds and int in kinds)
 
 
 def known(materials: Iterable[str] = ()) -> list[str]:
@@ -205,10 +206,3 @@ def _inside(annotation: Any) -> Iterator[type]:
         yield origin or annotation
 
 
-@functools.cache
-def _label(name: str) -> str:
-    """A key in words; with its table where the key alone would say too little."""
-    *above, last = place(name)
-    homes = [table for table, model in _tables().items() if last in model.model_fields]
-    words = last.replace("_", " ")
-    return words if len(homes) == 1 and " " in words else f"{above[-1]} {words}"
