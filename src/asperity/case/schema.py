@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
@@ -9,7 +10,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from asperity import materials as catalogue
-from asperity.case import problems, writing
+from asperity.case import problems, replacing, showing, writing
 from asperity.case.asperities import Asperities, asperities_of
 from asperity.case.bodies import Body, Counterface, Material
 from asperity.case.domain import refuse_asperities, refuse_outside
@@ -82,8 +83,9 @@ class Case(Table):
                     key=f"{part}.material",
                 )
         if self.publication is not None:
-            self._only_what_the_publication_has()
-        self._film_between_ends()
+            self.publication.refuse_beside(self)
+        if self.gas is not None and self.impact is not None:
+            self.gas.refuse_without_ends(self.impact, self.roughness)
         if self.roughness is None and self.counterface.deformation == "rigid":
             raise InputError(
                 "`deformation` must be 'half-space' without a [roughness] table: a smooth rigid "
@@ -118,30 +120,6 @@ class Case(Table):
                 key="capillary.formation_time",
             )
 
-    def _film_between_ends(self) -> None:
-        """Refuse a film that has no thinnest or no thickest place."""
-        gas, release = self.gas, None if self.impact is None else self.impact.release_gap
-        if gas is None or self.impact is None:
-            return
-        if self.roughness is None and gas.closest_gap is None:
-            raise InputError(
-                "`closest_gap` must be given for a smooth body: a film between smooth surfaces "
-                "that touch would hold them apart for ever; got nothing",
-                key="gas.closest_gap",
-            )
-        if release is None:
-            raise InputError(
-                "`release_gap` must be given with a [gas] table: the film takes energy at every "
-                "separation, and none beyond it is counted; got nothing",
-                key="impact.release_gap",
-            )
-        if gas.closest_gap is not None and gas.closest_gap >= release:
-            raise InputError(
-                f"`closest_gap` must be smaller than `release_gap` ({release * 1e9:.6g} nm), or "
-                f"the film would never thin; got {gas.closest_gap * 1e9:.6g} nm",
-                key="gas.closest_gap",
-            )
-
     def _bounded_liquid(self) -> None:
         """Refuse liquid without end, or on a surface that is not described."""
         air = self.capillary
@@ -165,41 +143,6 @@ class Case(Table):
                 raise InputError(
                     f"`surface_rms_height` {rule}; got {'a value' if given else 'nothing'}",
                     key="capillary.surface_rms_height",
-                )
-
-    def _only_what_the_publication_has(self) -> None:
-        """Refuse models that a [publication] table leaves no room for."""
-        if self.roughness is None:
-            raise InputError(
-                "a [roughness] table must be given with [publication]; got none", key="publication"
-            )
-        if self.roughness.files is not None:
-            raise InputError(
-                "`files` must be absent with a [publication] table, which knows Gaussian heights "
-                "and one radius alone",
-                key="roughness.files",
-            )
-        if self.gas is not None:
-            raise InputError(
-                "[gas] must not be given with a [publication] table, which leaves the gas out",
-                key="gas",
-            )
-        wanted = (
-            ("counterface.deformation", self.counterface.deformation, ("rigid",)),
-            ("adhesion.model", self.adhesion.model, ("dmt", "none")),
-            ("capillary.model", self.capillary.model, ("equilibrium", "none")),
-            ("capillary.formation", self.capillary.formation, ("contact",)),
-            ("capillary.formation_time", self.capillary.formation_time, (None,)),
-            ("capillary.film_thickness", self.capillary.film_thickness, (None,)),
-        )
-        for key, value, allowed in wanted:
-            if value not in allowed:
-                name = key.split(".")[1]
-                rule = "absent" if allowed == (None,) else " or ".join(map(repr, allowed))
-                raise InputError(
-                    f"`{name}` must be {rule} with a [publication] table, which replaces the other "
-                    f"models; got {value!r}",
-                    key=key,
                 )
 
     @property
@@ -319,17 +262,31 @@ class Case(Table):
         return writing.toml(self)
 
     def replace(self, changes: Mapping[str, object]) -> Case:
-        """The case with other values, checked anew.
+        """The case with other values, checked anew; it keeps its name.
 
         Parameters
         ----------
         changes : mapping of str to object
-            Values as in a file by their dotted key, e.g. ``{"body.radius": "20 um"}``; None takes
-            a key or a table away.
+            Values by their dotted key: text as in a file, or numbers in SI, e.g.
+            ``{"body.radius": "20 um"}`` or ``{"body.radius": 2e-5}``; None takes a key or a table
+            away.
 
         Raises
         ------
         InputError
             Where a key is unknown or a value breaks a rule.
         """
-        return problems.check(Case, writing.changed(self.toml(), changes))
+        return replacing.replaced(self, changes)
+
+    @functools.cached_property
+    def name(self) -> str:
+        """Name of the built-in case, or of the file without its suffix; "case" of any other."""
+        return replacing.NAME
+
+    def __repr__(self) -> str:
+        return f"<Case {self.name}: {showing.sentence(self)}>"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        return showing.html(self)
