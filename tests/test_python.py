@@ -200,7 +200,7 @@ class Balanced(html.parser.HTMLParser):
         assert self.open == []
 
     def handle_starttag(self, tag, attrs):
-        assert tag in {"div", "p", "strong", "table", "tr", "th", "td", "ul", "li"}
+        assert tag in {"div", "p", "strong", "table", "tr", "th", "td", "ul", "li", "code"}
         assert {name for name, _ in attrs} <= {"style", "colspan"}
         self.open.append(tag)
 
@@ -253,6 +253,12 @@ def test_a_curve_shows_its_pull_off_and_its_warnings():
     assert "beyond the law" in texts
     assert after(texts, "pull-off force").startswith(amount(curve.pull_off, "N"))
     assert repr(curve).endswith(", 1 warning>")
+
+
+def test_keys_in_a_warning_are_code():
+    curve = loading()
+    curve.warnings[:] = ["a smaller `numerics.rest` <tells> more"]
+    assert "a smaller <code>numerics.rest</code> &lt;tells&gt; more" in curve._repr_html_()
 
 
 def test_a_restitution_curve_shows_where_capture_ends():

@@ -13,6 +13,7 @@ from asperity import InputError, Outcome
 from asperity.case import load
 from asperity.studies.sweep import batch, grid
 from asperity.studies.sweep.layout import OUTCOMES
+from asperity.studies.sweep.study import parse
 from test_pull_off import SMOOTH
 
 DMT = SMOOTH.replace('"jkr"', '"dmt"')
@@ -43,6 +44,8 @@ def test_a_sweep_has_units_names_and_no_case_that_failed(swept):
     assert (swept.attrs["cases"], swept.attrs["computed"], swept.attrs["failed"]) == (6, 6, 0)
     assert set(swept["reason"].values.ravel()) == {""}
     assert isinstance(swept.attrs["warnings"], list)
+    study = parse(swept["outcome"].attrs["study"])
+    assert (study.base, study.size, study.keep) == (load(DMT), 6, ("pull_off", "restitution"))
     assert "impact" not in swept.dims
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
 Row = Sequence[str]
 """Cells of a row; the first says what the others are."""
 
+_CODE = re.compile(r"`([^`]+)`")
 _CELL = "text-align:left;padding:0.1em 0.8em"
 _WARNING = "border-left:3px solid #D55E00;margin:0.4em 0;padding:0 0.8em"
 
@@ -35,12 +37,17 @@ def card(
     return "\n".join(
         [
             f"<div><strong>{escape(title)}</strong>",
-            *([f"<p>{escape(sentence)}</p>"] if sentence else []),
+            *([f"<p>{_prose(sentence)}</p>"] if sentence else []),
             *_warnings(warnings),
             *(["<table>", *lines, "</table>"] if lines else []),
             "</div>",
         ]
     )
+
+
+def _prose(text: str) -> str:
+    """A sentence with its keys, which stand in backquotes, as code."""
+    return _CODE.sub(r"<code>\1</code>", escape(text))
 
 
 def counted(number: int, word: str) -> str:
@@ -61,5 +68,5 @@ def _row(cells: Row) -> str:
 def _warnings(warnings: Sequence[str]) -> list[str]:
     if not warnings:
         return []
-    lines = [f"<li>{escape(warning)}</li>" for warning in warnings]
+    lines = [f"<li>{_prose(warning)}</li>" for warning in warnings]
     return [f'<div style="{_WARNING}"><strong>Warnings</strong>', "<ul>", *lines, "</ul></div>"]

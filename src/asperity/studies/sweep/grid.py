@@ -72,7 +72,7 @@ def sweep(
         ``long_name``. A case that cannot be computed has NaN (-1 in whole numbers), the outcome
         "failed" of ``flag_meanings``, and its ``reason``. The attributes ``failed`` and
         ``computed`` count cases; ``warnings`` says where those at the corners of the grid leave the
-        validity of their models.
+        validity of their models. ``outcome.attrs["study"]`` is all of it as a study file.
 
     Raises
     ------
@@ -82,6 +82,8 @@ def sweep(
     study = _study(case_of(case), axes, keep, impacts)
     columns, tally = _computed(study, progress or silently, stop or threading.Event())
     found = dataset_in(study, columns)
+    text = {name: found.attrs.pop(name) for name in ("axes", "fingerprint", "study")}
+    found["outcome"].attrs["study"] = text["study"]  # where it is kept, and is not in the way
     found.attrs["warnings"] = tally.warnings
     if impacts is None and "impact" in found.dims:
         found = found.isel(impact=0)
