@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 
 from asperity import records
 from asperity.case import load_file
+from asperity.case.reading import builtin_text
 from asperity.cli import app
 from asperity.errors import Outcome
 from asperity.result import Curve, Result
@@ -183,7 +184,8 @@ def test_plot_draws_a_record_again(place: Path):
     assert (place / "out" / "motion.png").read_bytes() == before
     assert names(place / "out") == sorted(records.RUN_FILES)
     assert call("plot", "out/record.nc", "-o", "pictures").exit_code == 0
-    assert names(place / "pictures") == ["energy.png", "forces.png", "motion.png"]
+    drawn = [name for name in records.RUN_FILES if name.endswith((".png", ".svg"))]
+    assert names(place / "pictures") == sorted(drawn)
     assert call("plot", "out/record.nc", "-o", "pictures").exit_code == 2
     assert call("plot", "out/record.nc", "-o", "pictures", "--force").exit_code == 0
 
@@ -202,7 +204,7 @@ def test_init_writes_a_case_that_runs_and_never_overwrites(place: Path):
 
 
 def test_materials_are_listed_with_their_sources():
-    from asperity.materials import LIQUIDS, SOLIDS
+    from asperity.materials import ADHESION, LIQUIDS, SOLIDS
 
     text = call("materials").stdout
     for name in (*SOLIDS, *LIQUIDS):
@@ -211,7 +213,34 @@ def test_materials_are_listed_with_their_sources():
     found = strict(call("materials", "--json").stdout)
     assert set(found["solids"]) == set(SOLIDS)
     assert found["solids"]["silica"]["youngs_modulus"] == SOLIDS["silica"].youngs_modulus
+    works = found.pop("adhesion")
     assert all(entry["source"] for kind in found.values() for entry in kind.values())
+    assert [work["work"] for work in works] == [entry.work for entry in ADHESION]
+    assert all(work["source"] for work in works)
+
+
+def test_the_whole_catalogue_takes_a_line_each_and_a_named_entry_tells_its_source():
+    from asperity.materials import SOLIDS
+
+    lines = call("materials").stdout.splitlines()
+    first = next(n for n, line in enumerate(lines) if line.startswith("silica "))
+    table = lines[first : first + len(SOLIDS)]
+    assert [line[:25].strip() for line in table] == list(SOLIDS)
+    assert lines[-1].endswith("asperity materials NAME")
+    named = " ".join(call("materials", "mica", "PDMS").stdout.split())
+    assert "J. Geophys. Res. 91, 4657 (1986)" in named
+    assert "never yields: an elastomer recovers its shape" in named
+
+
+def test_works_of_adhesion_are_listed_for_either_solid_of_the_pair_and_never_assumed():
+    text = " ".join(call("materials").stdout.split())
+    assert "No case assumes one" in text
+    assert "J. Phys. Chem. 97, 12034 (1993)" in text
+    found = strict(call("materials", "silica", "--json").stdout)["adhesion"]
+    assert {tuple(work["pair"]) for work in found} == {("mica", "silica"), ("silica", "silica")}
+    only = call("materials", "diamond").stdout
+    assert "\nsapphire / diamond " in only
+    assert "Solids" not in only
 
 
 def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Path):
@@ -224,6 +253,54 @@ def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Pat
     assert names(folder) == ["notes.txt"]
     assert call("run", CASE, "--force").exit_code == 0
     assert names(folder) == sorted([*records.RUN_FILES, "notes.txt"])
+
+
+@pytest.mark.parametrize("command", ["run", "curve"])
+def test_an_earlier_answer_for_the_same_case_is_replaced(place: Path, command: str):
+    assert "in place of" not in call(command, CASE).stdout
+    folder = place / f"{CASE}-out"
+    for path in folder.iterdir():
+        if path.suffix not in (".nc", ".svg"):
+            path.write_text("old")
+    (folder / next(path.name for path in folder.glob("*.svg"))).unlink()
+    ran = call(command, CASE)
+    assert ran.exit_code == 0, ran.output
+    assert "in place of the earlier results" in ran.stdout
+    own = records.RUN_FILES if command == "run" else records.CURVE_FILES
+    assert names(folder) == sorted(own)
+    assert not any(path.read_bytes() == b"old" for path in folder.iterdir())
+
+
+def test_results_of_an_edited_case_are_replaced_and_those_of_another_are_refused(place: Path):
+    text = builtin_text(CASE)
+    (place / "drop.toml").write_text(text)
+    (place / "other.toml").write_text(text)
+    assert call("run", "drop.toml").exit_code == 0
+    (place / "drop.toml").write_text(text.replace("humidity = 0.6", "humidity = 0.5"))
+    assert call("run", "drop.toml").exit_code == 0
+    assert records.read(place / "drop-out" / "record.nc").case.capillary.humidity == 0.5
+    ran = call("run", "other.toml", "-o", "drop-out")
+    assert ran.exit_code == 2
+    assert_one_line(ran.stderr, "drop-out", "--force")
+
+
+@pytest.mark.parametrize("spoiled", ["a note", "a record cut short", "a folder"])
+def test_what_is_not_known_as_the_cases_own_results_is_refused(place: Path, spoiled: str):
+    assert call("run", CASE).exit_code == 0
+    folder = place / f"{CASE}-out"
+    record = folder / "record.nc"
+    if spoiled == "a note":
+        (folder / "notes.txt").write_text("mine")
+    elif spoiled == "a folder":
+        (folder / "summary.txt").unlink()
+        (folder / "summary.txt").mkdir()
+    else:
+        record.write_bytes(record.read_bytes()[:-9])
+    before = names(folder)
+    ran = call("run", CASE)
+    assert ran.exit_code in (2, 4)
+    assert_one_line(ran.stderr, folder.name)
+    assert names(folder) == before
 
 
 @pytest.mark.parametrize(

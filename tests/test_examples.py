@@ -55,8 +55,22 @@ def test_every_example_says_first_what_to_expect(name):
     assert first.startswith("# Expect")
 
 
-def test_example_of_the_built_in_case_is_that_case():
-    assert asperity.load(str(EXAMPLES / "published-exact.toml")) == asperity.load("published-exact")
+@pytest.mark.parametrize("name", ["glass-bead", "published-exact"])
+def test_example_of_a_built_in_case_is_that_case(name):
+    assert asperity.load(str(EXAMPLES / f"{name}.toml")) == asperity.load(name)
+
+
+SUBJECTS = {
+    "drop-in-air": ("Knudsen number of the gas film", "pressure in the gas film"),
+    "yielding-drop": ("beyond yield", "kept elastic"),
+}
+"""What an example warns of because that is what it is about."""
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if name != "published-exact"])
+def test_examples_warn_of_nothing_but_their_subject(solved, name):
+    told = solved(name).warnings
+    assert [line for line in told if not any(s in line for s in SUBJECTS.get(name, ()))] == []
 
 
 def test_dry_drop_is_the_wet_drop_without_menisci():
@@ -77,41 +91,41 @@ def test_wet_drop_leaves_its_first_impact_and_is_captured_by_menisci_later(solve
     assert not measures["captured"]
     assert measures["restitution"][-1] == 0.0
     assert measures["capture_time"] is not None
-    assert measures["critical_velocity"] == pytest.approx(0.73e-3, rel=0.01)
-    assert len(measures["restitution"]) == 13
-    assert measures["restitution"][0] == pytest.approx(0.922199, abs=1e-5)
-    assert measures["stiction_time"] == pytest.approx(8.164e-3, rel=1e-3)
+    assert measures["critical_velocity"] == pytest.approx(1.31e-3, rel=0.01)
+    assert len(measures["restitution"]) == 6
+    assert measures["restitution"][0] == pytest.approx(0.811883, abs=1e-5)
+    assert measures["stiction_time"] == pytest.approx(3.641e-3, rel=1e-3)
     assert set(result.ledger["lost"]) == {"capillary"}
 
 
-def test_glass_bead_is_captured_by_menisci_at_its_fifth_touch(solved):
+def test_glass_bead_is_captured_by_menisci_at_its_sixth_touch(solved):
     result = solved("glass-bead")
     measures = result.measures
     assert not measures["captured"]
-    assert measures["critical_velocity"] == pytest.approx(5.5e-3, rel=1e-2)
-    assert measures["restitution"][0] == pytest.approx(0.800, abs=1e-3)
+    assert measures["critical_velocity"] == pytest.approx(1.136e-3, rel=1e-2)
+    assert measures["restitution"][0] == pytest.approx(0.8222, abs=1e-3)
     assert measures["restitution"][-1] == 0.0
-    assert len(measures["restitution"]) == 5
-    assert measures["capture_time"] == pytest.approx(8.2e-3, rel=1e-2)
+    assert len(measures["restitution"]) == 6
+    assert measures["capture_time"] == pytest.approx(2.60e-3, rel=1e-2)
 
 
 def test_air_takes_most_of_the_drop_in_air(solved):
     result = solved("drop-in-air")
     assert result.outcome is Outcome.REST
-    assert result.regime["adhesion_law"] == "dmt"
-    assert result.measures["restitution"][0] == pytest.approx(0.7508, abs=1e-4)
-    assert result.measures["stiction_time"] == pytest.approx(2.56e-3, rel=1e-3)
+    assert result.measures["restitution"][0] == pytest.approx(0.7685, abs=1e-4)
+    assert result.measures["stiction_time"] == pytest.approx(0.738e-3, rel=1e-3)
     lost = result.ledger["lost"]
-    assert lost["gas"] == pytest.approx(0.857 * result.ledger["initial"], rel=1e-3)
-    assert lost["capillary"] < 1e-3 * lost["gas"]
+    assert lost["gas"] == pytest.approx(0.639 * sum(lost.values()), rel=1e-3)
 
 
-def test_water_between_asperities_is_said_and_takes_most_energy(solved):
+def test_water_in_every_gap_takes_more_energy_than_menisci_at_summits(solved):
     result = solved("wet-surface")
-    assert result.regime["wetting"] == "coalesced"
-    assert result.measures["restitution"][0] == pytest.approx(0.99681, abs=1e-5)
-    share = result.ledger["lost"]["capillary"] / result.ledger["initial"]
-    assert share == pytest.approx(0.714, abs=1e-3)
+    assert result.measures["restitution"][0] == pytest.approx(0.80687, abs=1e-5)
+    summits = {"capillary.model": "equilibrium", "capillary.surface_rms_height": None}
+    alone = asperity.solve(
+        result.case.replace({**summits, "numerics.max_impacts": 1}), critical=False
+    )
+    assert alone.measures["restitution"][0] == pytest.approx(0.96117, abs=1e-5)
 
 
 def test_sphere_is_held_by_measured_summits(solved):
@@ -121,21 +135,22 @@ def test_sphere_is_held_by_measured_summits(solved):
     assert not measures["captured"]
     assert measures["restitution"][-1] == 0.0
     assert measures["capture_time"] is not None
-    assert len(measures["rebound_height"]) == 12
-    assert measures["restitution"][0] == pytest.approx(0.90914, abs=1e-4)
-    assert measures["stiction_time"] == pytest.approx(3.219e-3, rel=1e-3)
-    assert result.surface["summits"] == 100
+    assert len(measures["rebound_height"]) == 9
+    assert measures["restitution"][0] == pytest.approx(0.86731, abs=1e-4)
+    assert measures["stiction_time"] == pytest.approx(4.686e-3, rel=1e-3)
+    assert result.surface["summits"] == 243
 
 
-def test_asperities_that_yield_keep_most_energy_at_the_first_impact(solved):
+def test_asperities_yield_at_the_first_impact_and_never_again(solved):
     result = solved("yielding-drop")
     assert result.outcome is Outcome.MAX_IMPACTS
     first, *later = result.measures["restitution"]
-    assert first == pytest.approx(0.337, abs=1e-3)
-    assert later == pytest.approx([0.9965] * 4, abs=5e-4)
-    assert result.measures["critical_velocity"] == pytest.approx(2.0e-3, rel=1e-2)
-    share = result.ledger["lost"]["plastic"] / result.ledger["initial"]
-    assert share == pytest.approx(0.881, abs=1e-3)
+    assert first == pytest.approx(0.8718, abs=1e-3)
+    assert later == pytest.approx([0.9201, 0.9136, 0.9059, 0.8965], abs=5e-4)
+    lost = result.ledger["lost"]["plastic"]
+    assert lost == pytest.approx(0.113 * result.ledger["initial"], rel=1e-2)
+    once = asperity.solve(result.case.replace({"numerics.max_impacts": 1}), critical=False)
+    assert lost == pytest.approx(once.ledger["lost"]["plastic"], rel=1e-12)
 
 
 def test_dry_drop_loses_nothing(solved):
@@ -145,12 +160,12 @@ def test_dry_drop_loses_nothing(solved):
     assert result.measures["restitution"][0] == pytest.approx(1.0, abs=1e-8)
 
 
-def test_fast_impact_dents_the_bulk_and_escapes(solved):
+def test_fast_impact_deforms_the_bulk_and_escapes(solved):
     result = solved("fast-impact")
     assert result.outcome is Outcome.ESCAPED
-    assert result.measures["restitution"][0] == pytest.approx(0.999996, abs=1e-6)
+    assert result.measures["restitution"][0] == pytest.approx(0.8928, abs=1e-4)
     indentation = result.central_separation - result.separation
-    assert indentation.max() == pytest.approx(10.0e-9, rel=1e-2)
+    assert indentation.max() == pytest.approx(1.125e-9, rel=1e-2)
 
 
 def test_jkr_sphere_bounces_above_the_critical_velocity_with_the_closed_form(solved):

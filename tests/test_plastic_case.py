@@ -40,6 +40,17 @@ humidity = 0.5
 temperature = "20 degC"
 contact_angle = "30 deg"
 """
+UNKNOWN = SMOOTH.replace('"silica"', '"soft"').replace('"silicon carbide"', '"stiff"')
+NO_STRENGTH = """
+[materials.soft]
+youngs_modulus = "70 GPa"
+poisson = 0.3
+density = "2 g/cc"
+[materials.stiff]
+youngs_modulus = "300 GPa"
+poisson = 0.3
+density = "3 g/cc"
+"""
 ELASTIC = Solid("elastic", 100e9, 0.1)
 SOFT = Solid("soft", 200e9, 0.4, hardness=1e9)
 HARD = Solid("hard", 50e9, 0.2, hardness=5e9)
@@ -135,7 +146,7 @@ def test_the_table_is_enough_where_no_material_has_a_strength_and_the_less_stiff
 
 
 def test_a_yield_pressure_is_enough_for_thornton_and_ning():
-    text = SMOOTH.replace('"silica"', '"silicon"') + '[plasticity]\nmodel = "thornton-ning"\n'
+    text = f'{UNKNOWN}{NO_STRENGTH}[plasticity]\nmodel = "thornton-ning"\n'
     found = load(text + 'yield_pressure = "1.61 GPa"').yielding
     assert found.yield_pressure == 1.61e9
     assert found.yield_strength == pytest.approx(1e9)
@@ -160,7 +171,7 @@ def test_a_material_of_ones_own_takes_a_yield_strength():
 
 
 def test_nothing_known_is_refused_where_it_is_asked_for():
-    case = load(SMOOTH.replace('"silica"', '"silicon"'))
+    case = load(UNKNOWN + NO_STRENGTH)
     with pytest.raises(InputError, match="`hardness` or `yield_strength` must be given"):
         _ = case.yielding
 
@@ -208,7 +219,7 @@ BELOW = "`hardness` must be at least the yield strength (2000 MPa)"
 OWN = '[materials.glass]\nyoungs_modulus = "1 GPa"\npoisson = 0.4\ndensity = "1 g/cc"\n'
 
 BAD = [
-    (SMOOTH.replace('"silica"', '"silicon"') + YIELDS, "plasticity.hardness (line 9): "
+    (UNKNOWN + YIELDS + NO_STRENGTH, "plasticity.hardness (line 9): "
      "`hardness` or `yield_strength` must be given with model = 'kogut-etsion'", "got nothing"),
     (SMOOTH + NOTHING + TWO, "plasticity.hardness (line 11): `hardness` must be at least "
      "the yield strength (2000 MPa)", "got 1000 MPa"),

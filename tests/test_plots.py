@@ -120,8 +120,11 @@ def overlapping(figure: Figure) -> list[tuple[str, str]]:
 
 def test_every_motion_is_drawn_page_wide(motion: Result):
     pictures = plots.pictures(motion)
-    assert list(pictures) == ["motion.png", "forces.png", "energy.png"]
-    for png in pictures.values():
+    parts = ("motion", "forces", "energy")
+    assert list(pictures) == [f"{part}.{kind}" for part in parts for kind in ("png", "svg")]
+    for part in parts:
+        assert b"<svg" in pictures[f"{part}.svg"][:1000]
+        png = pictures[f"{part}.png"]
         assert png.startswith(b"\x89PNG")
         if size_mm(png)[0] != pytest.approx(style.PAGE, abs=0.2):
             assert size_mm(png)[0] == pytest.approx(style.COLUMN, abs=0.2)
@@ -146,7 +149,7 @@ def test_a_curve_is_drawn_with_its_pull_off_enlarged_where_it_is_small(stiff: fl
     assert len(figure.axes) == (2 if stiff > 100 else 1)
     assert texts_outside(figure) == []
     assert overlapping(figure) == []
-    assert list(plots.pictures(curve)) == ["curve.png"]
+    assert list(plots.pictures(curve)) == ["curve.png", "curve.svg"]
 
 
 def test_the_same_result_gives_the_same_picture():

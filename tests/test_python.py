@@ -129,6 +129,16 @@ def test_a_near_file_in_another_folder_is_named_with_it(place):
     assert "did you mean" not in str(refused.value)
 
 
+def test_a_file_with_two_problems_tells_of_both(place):
+    Path("bad.toml").write_text(SMOOTH.replace('"1 um"', '"-1 um"').replace("0.2\n", "0.7\n"))
+    with pytest.raises(InputError) as refused:
+        asperity.load("bad.toml")
+    assert [problem.key for problem in refused.value.problems] == [
+        "body.radius",
+        "materials.soft.poisson",
+    ]
+
+
 # --- replace -----------------------------------------------------------------------------------
 
 

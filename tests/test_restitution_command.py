@@ -24,6 +24,7 @@ FILES = [f"restitution.{kind}" for kind in ("csv", "json", "png", "svg", "txt")]
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with two cases: a sphere by JKR, and the same without an [impact] table."""
     (tmp_path / "drop.toml").write_text(SMOOTH)
+    (tmp_path / "other.toml").write_text(SMOOTH)
     (tmp_path / "still.toml").write_text(SMOOTH[: SMOOTH.index("[impact]")])
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -50,9 +51,10 @@ def test_restitution_is_a_table_a_picture_and_json(place: Path):
     np.testing.assert_array_equal(table[:, 1], found["restitution"])
     assert found["critical_velocity"] == pytest.approx(CRITICAL, rel=1e-8)
     assert (place / "drop-out" / "restitution.png").read_bytes().startswith(b"\x89PNG")
-    ran = call("restitution", "drop.toml")
-    assert ran.exit_code == 2  # the folder is in use
-    assert "drop-out" in ran.output
+    ran = call("restitution", "drop.toml", "--points", "3")
+    assert ran.exit_code == 0, ran.output
+    assert "written to drop-out, in place of the earlier results" in ran.output
+    assert_refused(call("restitution", "other.toml", "-o", "drop-out"), "drop-out")
 
 
 def test_speeds_are_as_asked_and_json_writes_no_files(place: Path):

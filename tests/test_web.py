@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from asperity.case import FIRST
 from asperity.cli import app
 from asperity.web.app import application
 
@@ -52,7 +53,7 @@ def served(*options: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
             assert running.stdout is not None
             told = json.loads(running.stdout.readline())
             assert told["address"].startswith("http://127.0.0.1:")
-            assert told["case"] == "published-exact"
+            assert told["case"] == FIRST
             yield running, int(told["address"].rstrip("/").rpartition(":")[2])
         finally:
             running.kill()

@@ -13,9 +13,11 @@ from playwright.sync_api import Error, Page, expect
 
 import asperity
 from asperity.case import Case, load
-from asperity.case.problems import tables_of
+from asperity.case.labels import label
+from asperity.case.problems import check, tables_of
 from asperity.case.reading import builtin_text
 from asperity.colours import COLOURS
+from asperity.flying import COMPILATION
 from asperity.shares import share_texts
 from asperity.web.form import form
 from browser import needed, served
@@ -183,7 +185,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
     shown = page.evaluate("() => asperity.designs()[0].answer.measures.restitution[0]")
     assert shown == pytest.approx(wanted.measures["restitution"][0], rel=1e-9)
     before = picture(page, "curve")
-    page.get_by_role("slider", name="materials.my glass youngs modulus").press("PageDown")
+    page.get_by_role("slider", name="Young's modulus of my glass").press("PageDown")
     settled(page)
     assert picture(page, "curve") != before
     page.locator(field("poisson")).fill("0.7")
@@ -198,7 +200,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
 
 
 def test_a_slider_moves_by_keyboard_and_says_its_value(page):
-    slider = page.get_by_role("slider", name="roughness rms height")
+    slider = page.get_by_role("slider", name="Rms height of the asperities")
     slider.focus()
     slider.press("ArrowLeft")
     settled(page)
@@ -480,3 +482,362 @@ def test_the_state_in_a_link_is_plain_json(page):
     letters = page.url.split("#")[1]
     text = base64.urlsafe_b64decode(letters + "=" * (-len(letters) % 4))
     assert json.loads(text)[0]["tables"] == tomllib.loads(CASE)
+
+
+# What a newcomer meets
+
+
+def choose(page: Page, key: str, value: str) -> None:
+    """Open what hides a control and choose."""
+    field = page.locator(f"#field-{key.replace('.', '-')}")
+    reveal(page, f"#field-{key.replace('.', '-')}")
+    field.select_option(value)
+
+
+def reveal(page: Page, selector: str) -> None:
+    page.locator(selector).evaluate(
+        "(one) => { for (let each = one; each; each = each.parentElement) each.open = true; }"
+    )
+
+
+def tick(page: Page, table: str) -> None:
+    reveal(page, f"#use-{table}")
+    page.locator(f"#use-{table}").click()
+    page.wait_for_function("() => !asperity.designs()[0].completing")
+
+
+def hold(page: Page) -> list:
+    """Let no case be answered from now on; the questions that are held."""
+    held = []
+
+    def keep(route):
+        held.append(route)
+
+    page.route("**/api/explore", keep)
+    return held
+
+
+def shown_case(page: Page) -> str:
+    """What the case box says is shown."""
+    return page.locator("#case").evaluate("(box) => box.selectedOptions[0].textContent")
+
+
+def opacity(page: Page, selector: str) -> float:
+    return page.locator(selector).first.evaluate("(one) => Number(getComputedStyle(one).opacity)")
+
+
+def test_warnings_stand_beside_the_verdict_and_need_no_scrolling(page):
+    page.set_viewport_size({"width": 1400, "height": 900})
+    warnings = asperity.solve(load(CASE)).warnings
+    assert len(warnings) > 3
+    verdict = page.locator("#verdicts .said").bounding_box()
+    seen = [one for one in page.locator("#warning-list li").all() if one.is_visible()]
+    assert [one.inner_text() for one in seen] == warnings[:2]
+    for one in seen:
+        box = one.bounding_box()
+        assert box["x"] > verdict["x"] + verdict["width"]
+        assert box["y"] + box["height"] < 450
+    assert page.locator("#warnings").bounding_box()["y"] < verdict["y"] + verdict["height"]
+    more = page.locator("#more-warnings")
+    assert more.inner_text() == f"{len(warnings) - 2} more"
+    more.click()
+    for one in page.locator("#warning-list li").all():
+        expect(one).to_be_visible()
+    assert page.locator("#warnings").bounding_box()["height"] < 450  # the charts stay in sight
+
+
+def test_fields_are_labelled_in_words_with_the_key_as_a_hint(page):
+    tick(page, "gas")
+    for table in form():
+        if table["named"] or not (table["needed"] or table["name"] in ("capillary", "gas")):
+            continue
+        assert label(table["name"]).lower() in (
+            page.locator(f"#table-{table['name']} > summary").inner_text().lower()
+        )
+        for key in table["keys"]:
+            path = f"{table['name']}.{key['key']}"
+            field = page.locator(f"#field-{path.replace('.', '-')}")
+            words = field.evaluate("(one) => one.labels[0].textContent")
+            assert words.lower() == label(path).lower()
+            assert words[0].isupper()
+            box = field.locator("xpath=..")
+            assert path in box.locator(".key").text_content()
+
+
+def test_a_share_may_be_written_in_per_cent(page):
+    write(page, "capillary.humidity", "30 %")
+    settled(page)
+    assert state(page)[0]["tables"]["capillary"]["humidity"] == 0.3
+    assert page.locator("#verdicts .wrong").count() == 0
+
+
+def test_what_is_old_is_dimmed_while_something_new_is_computed(page):
+    assert opacity(page, "#verdicts .said") == opacity(page, "#motion") == 1.0
+    held = hold(page)
+    write(page, "body.radius", "41 um")
+    expect(page.locator("#progress-text")).to_have_text("Asking the program …")
+    for selector in ("#verdicts .said", "#warnings", "#motion", "#ledger", "#numbers"):
+        assert opacity(page, selector) < 0.6, selector
+    held[0].continue_()
+    settled(page)
+    page.wait_for_function("() => !document.body.dataset.waiting")
+    assert opacity(page, "#verdicts .said") == opacity(page, "#motion") == 1.0
+
+
+@pytest.mark.parametrize(
+    ("told", "words"),
+    [
+        (COMPILATION, "Compiling for the first time"),
+        ("impact 12", "Computing the motion, impact 12"),
+        ("motion", "Computing the motion"),
+        ("force curves", "Computing the force curves"),
+        ("loading", "Loading the program"),
+    ],
+)
+def test_what_is_waited_for_is_said_in_words(page, told, words):
+    script = "async (told) => (await import('/static/verdict.js')).wait(told)"
+    assert page.evaluate(script, told).startswith(words)
+
+
+def test_the_critical_velocity_is_waited_for_without_dimming(page):
+    page.route("**/api/critical", lambda route: None)  # an answer that never comes
+    write(page, "body.radius", "41 um")
+    expect(page.locator("#progress-text")).to_contain_text("Seeking the critical velocity")
+    assert opacity(page, "#verdicts .said") == opacity(page, "#motion") == 1.0
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#work")).to_be_hidden()
+    expect(page.locator("#measures")).to_contain_text("not sought")
+
+
+def test_every_bad_field_is_marked_with_its_own_message(page):
+    write(page, "body.radius", "-5 um")
+    write(page, "capillary.humidity", "1.5")
+    write(page, "adhesion.range", "")
+    for key, words in (
+        ("body-radius", "must be positive"),
+        ("capillary-humidity", "must lie in [0, 1]"),
+        ("adhesion-range", "must be given with model = 'dmt'"),
+    ):
+        expect(page.locator(f"#field-{key}-wrong")).to_contain_text(words)
+        field = page.locator(f"#field-{key}")
+        assert field.get_attribute("aria-invalid") == "true"
+        assert field.evaluate("(one) => getComputedStyle(one).borderTopWidth") == "2px"
+    assert page.locator("#verdicts .wrong").count() == 3
+    page.locator("#verdicts .wrong button").nth(1).click()
+    focused = page.evaluate("() => document.activeElement.id")
+    assert focused in ("field-capillary-humidity", "field-adhesion-range", "field-body-radius")
+    write(page, "capillary.humidity", "0.6")
+    write(page, "adhesion.range", "0.2 nm")
+    settled(page)
+    expect(page.locator("#field-body-radius-wrong")).to_be_visible()
+    expect(page.locator("#field-capillary-humidity-wrong")).to_be_hidden()
+
+
+def test_misspelt_keys_of_an_own_case_are_told_and_can_be_taken_out(page, tmp_path):
+    own = tmp_path / "typo.toml"
+    text = CASE.replace("[body]", "[body]\nraduis = 3\ncolour = 'red'") + "\n[bodi]\nx = 1\n"
+    own.write_text(text)
+    page.locator("#own-case").set_input_files(own)
+    wrong = page.locator("#table-body > .wrong")
+    expect(wrong).to_contain_text("did you mean 'radius'?")
+    expect(wrong).to_contain_text("colour")
+    expect(page.locator("#form > .wrong")).to_contain_text("did you mean 'body'?")
+    for _ in range(3):
+        page.locator("#form .wrong button").first.click()
+        settled(page)
+    assert page.locator("#verdicts .wrong").count() == 0
+    assert page.locator("#form .wrong:visible").count() == 0
+
+
+def test_the_case_box_says_which_case_is_shown(page, tmp_path):
+    assert shown_case(page) == "drop"
+    own = tmp_path / "wet-drop.toml"
+    own.write_text(CASE.replace('"50 um"', '"40 um"'))
+    page.locator("#own-case").set_input_files(own)
+    expect(page.locator("#notice")).to_have_text("wet-drop.toml is open.")
+    assert shown_case(page) == "wet-drop.toml"
+    reload(page)
+    assert shown_case(page) == "wet-drop.toml (from the link)"
+    write(page, "body.radius", "39 um")
+    assert shown_case(page) == "wet-drop.toml, changed (from the link)"
+    reload(page)
+    assert shown_case(page) == "wet-drop.toml, changed (from the link)"
+    hold(page)  # a built-in case would have to be compiled
+    page.locator("#case").select_option("published-exact")
+    expect(page.locator("#field-body-radius")).to_have_value("50 um")
+    assert shown_case(page) == "published-exact"
+    write(page, "body.radius", "49 um")
+    assert shown_case(page) == "published-exact, changed"
+    write(page, "body.radius", "50 um")
+    assert shown_case(page) == "published-exact"
+    write(page, "body.radius", "49 um")
+    page.locator("#case").select_option("published-exact")  # back to it as it was
+    expect(page.locator("#field-body-radius")).to_have_value("50 um")
+
+
+def reload(page: Page) -> None:
+    """Load the page anew once its address holds what is shown."""
+    page.wait_for_timeout(500)
+    page.reload()
+    page.wait_for_selector("#verdicts .said")
+
+
+def test_ticking_gas_fills_in_air(page):
+    hold(page)
+    before = state(page)[0]["tables"]
+    tick(page, "gas")
+    for key, value in (("name", "air"), ("pressure", "101.325 kPa"), ("temperature", "20 degC")):
+        expect(page.locator(f"#field-gas-{key}")).to_have_value(value)
+    check(Case, state(page)[0]["tables"])
+    tick(page, "gas")
+    assert state(page)[0]["tables"] == before
+
+
+def test_what_a_choice_fills_in_is_said_and_goes_with_it(page):
+    hold(page)
+    choose(page, "capillary.model", "kelvin-filling")
+    expect(page.locator("#notice")).to_contain_text("Filled in as well: rms height of the surface")
+    check(Case, state(page)[0]["tables"])
+    page.locator("#case").select_option("drop")
+    write(page, "impact.release_gap", "")
+    reveal(page, "#field-impact-speed")
+    write(page, "impact.speed", "10 mm/s")
+    before = state(page)[0]["tables"]
+    tick(page, "gas")  # which needs a gap from which the film counts
+    assert state(page)[0]["tables"]["impact"]["release_gap"]
+    expect(page.locator("#notice")).to_contain_text("gap at release")
+    tick(page, "gas")
+    assert state(page)[0]["tables"] == before
+
+
+def test_a_table_that_is_taken_away_comes_back_as_it_was(page):
+    hold(page)
+    write(page, "roughness.rms_height", "7 nm")
+    before = state(page)[0]["tables"]
+    tick(page, "roughness")
+    assert "roughness" not in state(page)[0]["tables"]
+    tick(page, "roughness")
+    assert state(page)[0]["tables"] == before
+
+
+def test_what_rules_forbid_is_explained_at_the_control_with_what_mends_it(page):
+    tick(page, "viscoelasticity")  # on a rigid bulk
+    box = page.locator("#table-viscoelasticity > .wrong")
+    expect(box).to_contain_text("Does not go with deformation of the bulk")
+    expect(page.locator("#field-counterface-deformation-wrong")).to_contain_text("half-space")
+    hold(page)
+    box.get_by_role("button", name="Set deformation of the bulk to half-space").click()
+    expect(page.locator("#field-counterface-deformation")).to_have_value("half-space")
+    expect(box).to_be_hidden()
+    expect(page.locator("#verdicts .wrong")).to_have_count(0)
+    check(Case, state(page)[0]["tables"])
+
+
+def test_keys_of_measured_surfaces_wait_for_one(page):
+    field = page.locator("#field-roughness-source")
+    expect(field).to_be_disabled()
+    expect(field.locator("xpath=..")).to_contain_text("only with files")
+
+
+def test_no_error_is_left_of_before_a_surface_was_dropped(page, tmp_path):
+    bad, good = tmp_path / "bad.csv", tmp_path / "good.csv"
+    bad.write_text("1 2 3\n4 5 6\n7 8 9\n")
+    heights = np.random.default_rng(1).normal(0.0, 5e-9, (32, 32))
+    rows = "\n".join(" ".join(f"{value:.6e}" for value in row) for row in heights)
+    good.write_text(f"# size[um] 2 2\n# unit m\n{rows}\n")
+    page.locator("#own-surface").set_input_files(bad)
+    expect(page.locator("#field-roughness-files-wrong")).to_contain_text("must have a unit")
+    hold(page)
+    page.locator("#own-surface").set_input_files(good)
+    expect(page.locator("#notice")).to_have_text("good.csv is the surface now.")
+    assert page.locator("#verdicts .wrong").count() == 0
+    expect(page.locator("#field-roughness-files-wrong")).to_be_hidden()
+
+
+def test_a_surface_that_a_case_asks_for_leaves_the_other_one(page, tmp_path):
+    """Of a case of two files, each may be dropped by itself."""
+    tables = tomllib.loads(CASE)
+    rough = 'files = ["one.csv", "two.csv"]'
+    text = re.sub(r"asperity_density.*\nasperity_radius.*\nrms_height.*\n", rough + "\n", CASE)
+    assert tables != tomllib.loads(text)
+    own, one = tmp_path / "two.toml", tmp_path / "one.csv"
+    own.write_text(text)
+    rows = "1 2 1 3\n2 1 4 2\n" * 2
+    one.write_text(f"# size[um] 1 1\n# unit nm\n{rows}")
+    page.locator("#own-case").set_input_files(own)
+    expect(page.locator("#field-roughness-files-wrong")).to_contain_text("one.csv")
+    page.locator("#own-surface").set_input_files(one)
+    expect(page.locator("#field-roughness-files-wrong")).to_contain_text("two.csv")
+    assert page.locator("#field-roughness-files").input_value() == "one.csv, two.csv"
+
+
+def test_the_skip_button_leaves_the_state_in_the_address(page):
+    page.locator("#copy-link").click()
+    before = page.url
+    page.locator("#skip").focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("() => document.activeElement.id") == "answer"
+    assert page.url == before
+
+
+def test_on_a_telephone_the_answer_stands_above_the_form(page):
+    page.set_viewport_size({"width": 390, "height": 844})
+    tops = {one: page.locator(one).bounding_box()["y"] for one in ("#motion", "#measures", "#form")}
+    assert tops["#motion"] < tops["#measures"] < tops["#form"]
+    assert page.locator("#warnings").bounding_box()["y"] < tops["#motion"]
+    page.locator("#to-form").click()
+    expect(page.locator("#form")).to_be_in_viewport()
+    expect(page.locator("#verdicts .said")).to_be_in_viewport()
+    expect(page.locator("#to-form")).to_have_text("Back to the answer")
+    page.locator("#to-form").click()
+    expect(page.locator("#motion")).to_be_in_viewport()
+    reveal(page, "#more-capillary")
+    tick(page, "gas")
+    assert page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    smallest = page.evaluate(
+        "() => Math.min(...[...document.querySelectorAll('body *')].filter((one) =>"
+        " one.offsetParent && one.textContent.trim()).map("
+        "(one) => parseFloat(getComputedStyle(one).fontSize)))"
+    )
+    assert smallest >= 11.0
+
+
+# Machado, Oliveira and Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291: severity 1.
+SIGHTS = {
+    "usual": np.eye(3),
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    "tritanopia": [
+        [1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.303900],
+    ],
+}  # fmt: skip
+
+
+def lab(colour: str, sight: str) -> np.ndarray:
+    """A colour as somebody sees it, in CIE L*a*b* (1976) at D65."""
+    parts = np.array([int(colour[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    to_xyz = [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
+              [0.0193339, 0.1191920, 0.9503041]]  # fmt: skip
+    xyz = np.array(to_xyz) @ np.clip(np.array(SIGHTS[sight]) @ linear, 0.0, 1.0)
+    x, y, z = np.cbrt(np.maximum(xyz / [0.95047, 1.0, 1.08883], 0.008856))
+    return np.array([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
+
+
+@pytest.mark.parametrize("sight", SIGHTS)
+def test_kinetic_and_potential_energy_differ_for_every_eye(page, sight):
+    """Two blues are 25 apart; 2.3 is just seen, and 30 is another colour."""
+    pairs = [[COLOURS["kinetic"], COLOURS["potential"]]]
+    for _ in range(2):
+        script = "(c) => import('/static/charts.js').then((m) => c.map(m.tint))"
+        pairs.append(page.evaluate(script, pairs[0]))
+        page.locator("#theme").click()
+    for one, other in pairs:
+        assert np.linalg.norm(lab(one, sight) - lab(other, sight)) > 30.0, (one, other)

@@ -17,7 +17,7 @@ COLOURS = {
     "gas": "#CC79A7",
     "waves": "#8C6D31",
     "kinetic": "#0072B2",
-    "potential": "#56B4E9",
+    "potential": "#C8C8C8",
     "stored": "#F0E442",
     "lost_adhesion": "#D55E00",
     "lost_capillary": "#009E73",
@@ -31,7 +31,7 @@ COLOURS = {
 }
 """Okabe and Ito's, which the colour-blind can tell apart."""
 
-_SPARE = ("#444444", "#A05195", "#5B8C5A")  # of mechanisms of one's own
+_SPARE = ("#661100", "#A05195", "#5B8C5A")  # of mechanisms of one's own
 
 
 def colour(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,12 +26,46 @@ class InputError(ValueError):
         Path of the file at fault; None where the input came from no file.
     key : str, optional
         Dotted key at fault, e.g. ``body.radius``; None where no single key is.
+    also : sequence of InputError
+        What else is wrong with the same input; the message tells of the first problem alone.
     """
 
-    def __init__(self, message: str, *, file: str | None = None, key: str | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | None = None,
+        key: str | None = None,
+        also: Sequence[InputError] = (),
+    ) -> None:
         super().__init__(one_line(message))
         self.file = file
         self.key = key
+        self.also = tuple(also)
+
+    @property
+    def problems(self) -> tuple[InputError, ...]:
+        """All that is wrong with the input, this problem first."""
+        return (self, *(one for other in self.also for one in other.problems))
+
+
+def refuse_all(problems: Iterable[InputError]) -> None:
+    """Raise the first of some problems, with the others beside it; nothing where there is none."""
+    found = list(problems)
+    if found:
+        found[0].also = (*found[0].also, *found[1:])
+        raise found[0]
+
+
+def check_each(*checks: Callable[[], object]) -> None:
+    """Make every check, and raise what they refuse: the first problem with the others beside it."""
+    found = []
+    for check in checks:
+        try:
+            check()
+        except InputError as error:
+            found.append(error)
+    refuse_all(found)
 
 
 class SimulationError(RuntimeError):

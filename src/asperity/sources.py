@@ -76,7 +76,9 @@ def source_of(given: str | os.PathLike[str]) -> Source:
         text = path.read_bytes()
     except InputError as error:
         near = None if _is_there(path) else _near_file(path)
-        hint = "" if near is None else f" - did you mean '{near}'?"
+        if near is None:
+            raise
+        hint = f" - did you mean '{near}'?"
         raise InputError(f"{error}{hint}", file=error.file, key=error.key) from None
     except OSError as error:
         reason = error.strerror or error

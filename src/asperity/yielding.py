@@ -12,6 +12,7 @@ from .case.yielding import plastic_contact
 from .errors import InputError
 from .laws.base import as_float64
 from .laws.plastic import KogutEtsion, PlasticContact
+from .materials import Solid
 from .program import AT_ONCE, Program
 from .roughness import Gaussian
 
@@ -100,12 +101,12 @@ _tails = Program(_counted, AT_ONCE)
 
 
 def _not_judged(case: Case) -> list[str]:
-    """A line where the strength of a solid is not known, and nothing else says so."""
+    """A line where the strength of a solid is not known, and nothing else says so.
+
+    A solid that never yields leaves nothing to judge.
+    """
     solids = {named(solid): solid for solid in (case.body_solid, case.counterface_solid)}
-    known = {
-        name: solid.hardness is not None or solid.yield_strength is not None
-        for name, solid in solids.items()
-    }
+    known = {name: _judged(solid) for name, solid in solids.items() if not solid.never_yields}
     if all(known.values()):
         return []
     unknown = " and ".join(name for name, knows in known.items() if not knows)
@@ -118,13 +119,18 @@ def _not_judged(case: Case) -> list[str]:
     return [f"yielding not judged: no hardness or yield strength of {unknown} is known"]
 
 
+def _judged(solid: Solid) -> bool:
+    """Whether the strength of a solid is known."""
+    return solid.hardness is not None or solid.yield_strength is not None
+
+
 def _taken(case: Case) -> list[str]:
     """A line where one solid counts as the softer because nothing is known of the other."""
     table, solids = case.plasticity, (case.body_solid, case.counterface_solid)
     if table and (table.hardness or table.yield_strength or table.yield_pressure):
         return []
-    known = [solid.hardness is not None or solid.yield_strength is not None for solid in solids]
-    if all(known) or not any(known):
+    known = [_judged(solid) for solid in solids]
+    if all(known) or not any(known) or any(solid.never_yields for solid in solids):
         return []
     softer, other = (solids[known.index(knows)].name for knows in (True, False))
     return [

@@ -11,7 +11,7 @@ from asperity import materials as catalogue
 from asperity.case import fields
 from asperity.case.fields import entry
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 from asperity.materials import refuse_softer_than_yield
 
 _ELASTIC = ("youngs_modulus", "poisson", "density")
@@ -45,8 +45,8 @@ class Made(Table):
     needed: ClassVar[tuple[str, ...]] = _ELASTIC
 
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
-        among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
+        default=None, among=catalogue.SOLIDS,
     )  # fmt: skip
     youngs_modulus: fields.Modulus | None = entry(
         "Pa", "Young's modulus, in place of `material`.", "80 GPa", default=None
@@ -72,9 +72,10 @@ class Made(Table):
         missing = [key for key in self.needed if getattr(self, key) is None]
         if self.material is None and missing:
             wanted = ", ".join(f"`{key}`" for key in self.needed)
-            raise InputError(
-                f"`material`, or all of {wanted}, must be given; got no `{missing[0]}`",
-                key=missing[0] if given else "material",
+            rule = f"`material`, or all of {wanted}, must be given; got no"
+            refuse_all(
+                InputError(f"{rule} `{key}`", key=key if given else "material")
+                for key in (missing if given else missing[:1])
             )
         refuse_softer_than_yield(self.hardness, self.yield_strength)
         return self
@@ -109,8 +110,8 @@ class Body(Made):
     shape: Literal["sphere"] = entry("", "Shape of the body.", "sphere", default="sphere")
     radius: fields.Length = entry("m", "Radius of the sphere.", "50 um")
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silica", default=None,
-        shown=True, among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
+        default=None, shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
 
 
@@ -120,12 +121,12 @@ class Counterface(Made):
     needed: ClassVar[tuple[str, ...]] = ("youngs_modulus", "poisson")
 
     material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "silicon carbide",
-        default=None, shown=True, among=catalogue.SOLIDS,
+        "", "Name from the catalogue or of a [materials.NAME] table.", "silicon", default=None,
+        shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
     deformation: Literal["half-space", "rigid"] = entry(
         "",
         "Bulk deformation of both bodies: 'half-space' (elastic) or 'rigid' (asperities only).",
-        "half-space",
+        "rigid",
         default="half-space",
     )

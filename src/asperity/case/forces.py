@@ -41,10 +41,10 @@ class Adhesion(Table):
     ] = entry(
         "",
         "Law of one asperity: 'none', 'bradley', 'dmt', 'maugis' or 'jkr'; 'auto' chooses.",
-        "dmt",
+        "auto",
     )
     work: fields.SurfaceEnergy | None = entry(
-        "J/m^2", "Work of adhesion.", "30 mJ/m^2", default=None, shown=True
+        "J/m^2", "Work of adhesion.", "60 mJ/m^2", default=None, shown=True
     )
     range: fields.Length | None = entry(
         "m",
@@ -94,7 +94,7 @@ class Capillary(Table):
         "K", "Temperature of liquid and vapour.", "20 degC", default=None, shown=True
     )
     contact_angle: fields.Angle | None = entry(
-        "rad", "Contact angle of the liquid, in [0, 90) deg.", "73 deg", default=None, shown=True
+        "rad", "Contact angle of the liquid, in [0, 90) deg.", "30 deg", default=None, shown=True
     )
     tension: fields.Tension | None = entry(
         "N/m", "Surface tension, in place of the catalogue's.", "75 mN/m", default=None

@@ -10,7 +10,7 @@ from asperity.case import fields
 from asperity.case.fields import entry
 from asperity.case.problems import did_you_mean
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 from asperity.gases import GASES, SLIP_PER_FREE_PATH
 from asperity.units import shown
 
@@ -61,13 +61,12 @@ class Gas(Table):
                 key=by_number[0],
             )
         needed = _BY_NUMBER if by_number else ("name", *_NAMED)
-        for key in needed:
-            if getattr(self, key) is None:
-                raise InputError(
-                    f"`{key}` must be given with `{(by_number or by_name or ['[gas]'])[0]}`; "
-                    "got nothing",
-                    key=key,
-                )
+        beside = (by_number or by_name or ["[gas]"])[0]
+        refuse_all(
+            InputError(f"`{key}` must be given with `{beside}`; got nothing", key=key)
+            for key in needed
+            if getattr(self, key) is None
+        )
         if self.name is not None and self.name not in GASES:
             raise InputError(
                 "`name` must be a gas of the catalogue, or be replaced by `viscosity` and "

@@ -52,7 +52,7 @@ def check(model: type[Model], table: Any, *, source: str = "", file: str | None 
     ------
     InputError
         With the first problem: an unknown key before a bad value before a missing key, since a
-        misspelt key is missing too.
+        misspelt key is missing too. The others stand in its ``also``.
     """
     try:
         return model.model_validate(table)
@@ -60,28 +60,44 @@ def check(model: type[Model], table: Any, *, source: str = "", file: str | None 
         lines = _line_numbers(source)
         found = error.errors(include_url=False)
     order = {"extra_forbidden": 0, "missing": 2}
-    first = min(found, key=lambda e: (order.get(e["type"], 1), _line(lines, _place(e)) or 0))
-    place = _place(first)
-    line = _line(lines, place)
+    found.sort(key=lambda e: (order.get(e["type"], 1), _line(lines, _places(e)[0]) or 0))
+    refused = [
+        _refusal(place, message, _line(lines, place), file)
+        for error in found
+        for place, message in zip(_places(error), _messages(model, error), strict=True)
+    ]
+    raise InputError(str(refused[0]), file=file, key=refused[0].key, also=refused[1:])
+
+
+def _refusal(place: Place, message: str, line: int | None, file: str | None) -> InputError:
+    """A problem with its file, its key and its line in front."""
     key = ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in place)
     where = f"{key} (line {line})" if line and key else key
-    text = ": ".join(part for part in (file, where, _message(model, first)) if part)
-    raise InputError(text, file=file, key=key or None)
+    return InputError(": ".join(part for part in (file, where, message) if part),
+                      file=file, key=key or None)  # fmt: skip
 
 
-def _place(error: Any) -> Place:
-    """Where one of pydantic's errors is, down to the key that a rule between keys names."""
+def _causes(error: Any) -> tuple[InputError | None, ...]:
+    """The rules of ours that one of pydantic's errors is about; None for a rule of its own."""
     cause = error.get("ctx", {}).get("error")
-    below = cause.key.split(".") if isinstance(cause, InputError) and cause.key else ()
-    return (*(str(part) for part in error["loc"]), *below)
+    return cause.problems if isinstance(cause, InputError) else (None,)
+
+
+def _places(error: Any) -> list[Place]:
+    """Where one of pydantic's errors is, down to the keys that rules between keys name."""
+    around = tuple(str(part) for part in error["loc"])
+    keys = (cause.key if cause is not None else None for cause in _causes(error))
+    return [(*around, *(key.split(".") if key else ())) for key in keys]
+
+
+def _messages(model: type[BaseModel], error: Any) -> list[str]:
+    """Rules and values of one of pydantic's errors."""
+    return [str(c) if c is not None else _message(model, error) for c in _causes(error)]
 
 
 def _message(model: type[BaseModel], error: Any) -> str:
-    """Rule and value of one of pydantic's errors."""
-    kind, place, value = error["type"], _place(error), error["input"]
-    cause = error.get("ctx", {}).get("error")
-    if isinstance(cause, InputError):
-        return str(cause)
+    """Rule and value of one of pydantic's own errors."""
+    kind, place, value = error["type"], _places(error)[0], error["input"]
     name = place[-1] if place else "case"
     if kind == "extra_forbidden":
         return _unknown(model, place, value)

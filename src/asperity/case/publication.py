@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from asperity.case.fields import Number, entry
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 
 if TYPE_CHECKING:
     from asperity.case.schema import Case
@@ -63,12 +63,13 @@ class Publication(Table):
             ("capillary.formation_time", case.capillary.formation_time, (None,)),
             ("capillary.film_thickness", case.capillary.film_thickness, (None,)),
         )
-        for key, value, allowed in wanted:
-            if value not in allowed:
-                name = key.split(".")[1]
-                rule = "absent" if allowed == (None,) else " or ".join(map(repr, allowed))
-                raise InputError(
-                    f"`{name}` must be {rule} with a [publication] table, which replaces the other "
-                    f"models; got {value!r}",
-                    key=key,
-                )
+        refuse_all(
+            InputError(
+                f"`{key.split('.')[1]}` must be "
+                f"{'absent' if allowed == (None,) else ' or '.join(map(repr, allowed))} with a "
+                f"[publication] table, which replaces the other models; got {value!r}",
+                key=key,
+            )
+            for key, value, allowed in wanted
+            if value not in allowed
+        )

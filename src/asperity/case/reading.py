@@ -30,6 +30,9 @@ BUILTINS: tuple[str, ...] = tuple(
 )  # fmt: skip
 """Names of the built-in cases."""
 
+FIRST = "published-exact"
+"""Name of the built-in case that the page opens on."""
+
 _PLACE = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -178,7 +181,8 @@ def template() -> str:
     """The commented case that `asperity init` writes: every key, with its unit and meaning."""
     return writing.commented(
         Case,
-        "A case of asperity: a body that falls on a surface.\n"
+        "A case of asperity: a glass bead, 0.1 mm in diameter, falls 1 um onto a silicon wafer in\n"
+        "vapour at 60 % humidity. Will it stick? `asperity run` answers. Edit it into your own.\n"
         "Every value with a dimension is text with a unit; keys behind a # are optional.",
     )
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from asperity.case import fields
 from asperity.case.fields import Number, entry
 from asperity.case.table import Table
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 from asperity.units import lengths
 
 if TYPE_CHECKING:
@@ -25,13 +25,13 @@ class Roughness(Table):
     """
 
     asperity_density: fields.AreaDensity | None = entry(
-        "1/m^2", "Asperities per area.", "1.69e16 1/m^2", default=None, shown=True
+        "1/m^2", "Asperities per area.", "6.3e13 1/m^2", default=None, shown=True
     )
     asperity_radius: fields.Length | None = entry(
-        "m", "Radius of the asperities' tips.", "0.25 nm", default=None, shown=True
+        "m", "Radius of the asperities' tips.", "450 nm", default=None, shown=True
     )
     rms_height: fields.Length | None = entry(
-        "m", "Standard deviation of the asperities' heights, Gaussian.", "10.5 nm",
+        "m", "Standard deviation of the asperities' heights, Gaussian.", "1.64 nm",
         default=None, shown=True,
     )  # fmt: skip
     files: Annotated[list[str], Field(min_length=1, max_length=2)] | None = entry(
@@ -109,18 +109,16 @@ class Roughness(Table):
         return self
 
     def _without_files(self) -> None:
-        for key in NUMBERS:
-            if getattr(self, key) is None:
-                raise InputError(
-                    f"`{key}` is missing; give it, or `files` of measured surfaces", key=key
-                )
-        for key in self.of_files:
-            if getattr(self, key) is not None:
-                raise InputError(
-                    f"`{key}` must be absent without `files`, which it is for; got "
-                    f"{getattr(self, key)!r}",
-                    key=key,
-                )
+        missing = [key for key in NUMBERS if getattr(self, key) is None]
+        beside = [key for key in self.of_files if getattr(self, key) is not None]
+        rule = "is missing; give it, or `files` of measured surfaces"
+        only = "must be absent without `files`, which it is for"
+        refuse_all(
+            [
+                *(InputError(f"`{key}` {rule}", key=key) for key in missing),
+                *(InputError(f"`{k}` {only}; got {getattr(self, k)!r}", key=k) for k in beside),
+            ]
+        )
 
     @property
     def preparation(self) -> Preparation:

@@ -21,7 +21,7 @@ class Impact(Table):
     release_gap: fields.Length | None = entry(
         "m",
         "Rigid separation at the release; the solver chooses it where only `speed` is given.",
-        "60 nm",
+        "1 um",
         default=None,
         shown=True,
     )

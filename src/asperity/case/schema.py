@@ -10,15 +10,16 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from asperity import materials as catalogue
-from asperity.case import problems, replacing, showing, writing
+from asperity.case import replacing, showing, writing
 from asperity.case.asperities import Asperities, asperities_of
 from asperity.case.bodies import Body, Counterface, Material
-from asperity.case.domain import refuse_asperities, refuse_outside
+from asperity.case.domain import refuse_asperities
 from asperity.case.forces import Adhesion, Capillary
 from asperity.case.gas import Gas
 from asperity.case.plasticity import Plasticity, Yielding, yielding_of
 from asperity.case.publication import Publication
 from asperity.case.roughness import Roughness
+from asperity.case.rules import check_rules
 from asperity.case.running import Impact, Numerics, Output
 from asperity.case.table import Table
 from asperity.case.viscoelasticity import Viscoelasticity
@@ -73,77 +74,8 @@ class Case(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        known = [*self.materials, *catalogue.SOLIDS]
-        for part in ("body", "counterface"):
-            name = getattr(self, part).material
-            if name is not None and name not in known:
-                raise InputError(
-                    "`material` must be a name of the catalogue or of a [materials.NAME] table; "
-                    f"got {shown(name)}{problems.did_you_mean(name, known)}",
-                    key=f"{part}.material",
-                )
-        if self.publication is not None:
-            self.publication.refuse_beside(self)
-        if self.gas is not None and self.impact is not None:
-            self.gas.refuse_without_ends(self.impact, self.roughness)
-        if self.roughness is None and self.counterface.deformation == "rigid":
-            raise InputError(
-                "`deformation` must be 'half-space' without a [roughness] table: a smooth rigid "
-                "body has no elasticity at all; got 'rigid'",
-                key="counterface.deformation",
-            )
-        self._bounded_liquid()
-        self._late_liquid()
-        if self.waves is not None:
-            self.waves.refuse_beside(self.counterface_solid, self.capillary, self.publication)
-        if self.viscoelasticity is not None:
-            self.viscoelasticity.refuse_beside(self)
-        if self.plasticity is not None and self.plasticity_model != "none":
-            self.plasticity.refuse_beside(
-                self.adhesion, self.capillary, self.roughness, self.publication
-            )
-            self.plasticity.refuse_under(self.counterface, self.roughness)
-            _ = self.yielding  # which refuses what has no strength
-        refuse_outside(self)
+        check_rules(self)
         return self
-
-    def _late_liquid(self) -> None:
-        """Refuse menisci that take time on a rough half-space beside gas."""
-        time, rough = self.capillary.formation_time, self.roughness is not None
-        if not time or self.capillary.model == "none" or self.publication is not None:
-            return
-        if rough and self.counterface.deformation != "rigid" and self.gas is not None:
-            raise InputError(
-                "[gas] must be absent beside `formation_time` on a rough half-space, whose motion "
-                "is stepped without a film; take deformation = 'rigid', or no `formation_time`; "
-                f"got {time:.6g} s",
-                key="capillary.formation_time",
-            )
-
-    def _bounded_liquid(self) -> None:
-        """Refuse liquid without end, or on a surface that is not described."""
-        air = self.capillary
-        if air.model == "none" or self.publication is not None:
-            return
-        if air.humidity == 1.0 and air.film_thickness is None:
-            raise InputError(
-                "`humidity` must lie in [0, 1) without a `film_thickness` (at 1 the Kelvin radius "
-                "is infinite: menisci would reach to any gap, and only the adsorbed film that they "
-                "draw from bounds them); got 1",
-                key="capillary.humidity",
-            )
-        if air.model == "kelvin-filling":
-            given, table = air.surface_rms_height is not None, self.roughness
-            if (table is not None and table.files is None) != given:
-                rule = "must be given with a [roughness] table of numbers"
-                if table is None:
-                    rule = "must not be given for a smooth body, which has none"
-                elif table.files is not None:
-                    rule = "must not be given beside `roughness.files`, which it is taken from"
-                raise InputError(
-                    f"`surface_rms_height` {rule}; got {'a value' if given else 'nothing'}",
-                    key="capillary.surface_rms_height",
-                )
 
     @property
     def body_solid(self) -> catalogue.Solid:

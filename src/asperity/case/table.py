@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 
 
 class Table(BaseModel):
@@ -16,10 +16,10 @@ class Table(BaseModel):
 
 
 def need(table: Any, keys: tuple[str, ...]) -> Any:
-    """The table itself; raises `InputError` where its model needs a key that it has not."""
-    for key in keys:
-        if getattr(table, key) is None:
-            raise InputError(
-                f"`{key}` must be given with model = '{table.model}'; got nothing", key=key
-            )
+    """The table itself; raises `InputError` where its model needs keys that it has not."""
+    refuse_all(
+        InputError(f"`{key}` must be given with model = '{table.model}'; got nothing", key=key)
+        for key in keys
+        if getattr(table, key) is None
+    )
     return table

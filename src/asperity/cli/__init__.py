@@ -245,13 +245,13 @@ def materials(
 @app.command()
 def web(
     case: Annotated[
-        str,
+        str | None,
         typer.Argument(
             help="Case to begin with: as for run, but no record.",
             show_default=False,
             autocompletion=completing.case,
         ),
-    ] = "published-exact",
+    ] = None,
     port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
     host: Annotated[
         str, typer.Option("--host", metavar="ADDRESS", help="Address to listen at.")

@@ -49,7 +49,8 @@ Folder = Annotated[
     typer.Option("-o", "--output", metavar="DIR", help="Folder for the files.", show_default=False),
 ]
 Force = Annotated[
-    bool, typer.Option("--force", help="Replace earlier results in DIR; other files stay.")
+    bool,
+    typer.Option("--force", help="Replace results in DIR, of whatever case; other files stay."),
 ]
 Published = Annotated[
     bool,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import json
 import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -21,6 +22,7 @@ from asperity.records import (
     RESTITUTION_FILES,
     RUN_FILES,
     check_folder,
+    holds_only_results,
     json_object,
     read,
     write_folder,
@@ -44,6 +46,7 @@ class _Request:
     source: Source
     folder: Path | None
     force: bool
+    earlier: bool
     voice: Voice
     given: Mapping[str, Any]
     published: bool | None
@@ -81,11 +84,13 @@ def compute(
     """
     voice = Voice(**manner)
     named = source_of(case)
-    folder = None
+    folder, earlier = None, False
     if output is not None or not voice.as_json:
         folder = Path(output or named.case.output.directory or f"{named.name}-out")
+        earlier = _earlier(folder, what, named.name)
+        force = force or earlier
         check_folder(folder, _FILES[what], force=force)
-    request = _Request(what, named, folder, force, voice, given or {}, published)
+    request = _Request(what, named, folder, force, earlier, voice, given or {}, published)
     try:
         with voice.watch() as progress:
             work = Work(lambda stop: _task(request, stop, progress))
@@ -104,6 +109,23 @@ def compute(
         say("asperity: interrupted before there was anything to keep", whole=True)
     if code:
         raise typer.Exit(code)
+
+
+def _earlier(folder: Path, what: str, name: str) -> bool:
+    """Whether a folder holds an earlier answer for the case of this name, and no other file.
+
+    Such an answer is replaced without being asked. It is known by its own record, whole.
+    """
+    if not holds_only_results(folder):
+        return False
+    try:
+        if what != "restitution_curve":
+            kind = "record.nc" if what == "solve" else "curve.nc"
+            return read(folder / kind).name == name
+        told = json.loads((folder / "restitution.json").read_bytes())
+        return isinstance(told, dict) and told.get("name") == name
+    except (InputError, OSError, ValueError):
+        return False
 
 
 def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Answer:
@@ -157,7 +179,7 @@ def _deliver(result: Answer, request: _Request, code: int) -> int:
     if code:
         say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
     request.voice.answer(lambda: _brief(result, request), lambda: _object(result))
-    request.voice.written(written)
+    request.voice.written(written, earlier=request.earlier)
     return code
 
 

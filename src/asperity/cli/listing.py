@@ -14,13 +14,14 @@ from asperity.case.problems import did_you_mean
 from asperity.cli.terminal import tell
 from asperity.errors import InputError, OutputError
 from asperity.gases import ATMOSPHERE, GASES, Gas
-from asperity.materials import LIQUIDS, ROOM_TEMPERATURE, SOLIDS, Liquid, Solid
+from asperity.materials import ADHESION, LIQUIDS, ROOM_TEMPERATURE, SOLIDS, Adhesion, Liquid, Solid
 from asperity.records.layout import plain
 from asperity.summary import WIDTH, amount
 from asperity.units import shown
 
 _SOLID = (9, 7, 15, 12, 11)
 _FLUID = (18, 18, 18)
+_MORE = ["Where the numbers of an entry come from: asperity materials NAME"]
 _HIDDEN = ("tension_law", "density_law", "temperatures")
 
 
@@ -66,7 +67,9 @@ def write_template(file: str, *, as_json: bool = False) -> None:
 
 
 def list_materials(names: Sequence[str] = (), *, as_json: bool) -> None:
-    """Print the catalogue.
+    """Print the catalogue: a line for each entry, and of those that are named their sources.
+
+    Works of adhesion have their sources always, and belong to either solid of the pair.
 
     Parameters
     ----------
@@ -80,7 +83,8 @@ def list_materials(names: Sequence[str] = (), *, as_json: bool) -> None:
     InputError
         Where a name is in no part of the catalogue.
     """
-    known = {**SOLIDS, **LIQUIDS, **GASES}
+    paired = dict.fromkeys(name for entry in ADHESION for name in entry.pair)
+    known = {**SOLIDS, **LIQUIDS, **GASES, **paired}
     for name in names:
         if name not in known:
             raise InputError(
@@ -90,50 +94,79 @@ def list_materials(names: Sequence[str] = (), *, as_json: bool) -> None:
     solids = [entry for entry in SOLIDS.values() if not names or entry.name in names]
     liquids = [entry for entry in LIQUIDS.values() if not names or entry.name in names]
     gases = [entry for entry in GASES.values() if not names or entry.name in names]
+    works = [entry for entry in ADHESION if not names or set(entry.pair) & set(names)]
     if as_json:
         found = {"solids": _rows(solids), "liquids": _rows(liquids), "gases": _rows(gases)}
-        tell(json.dumps(found, allow_nan=False))
+        adhesion = [dataclasses.asdict(entry) for entry in works]
+        tell(json.dumps({**found, "adhesion": adhesion}, allow_nan=False))
         return
-    lines = [*_solid_lines(solids), *_liquid_lines(liquids), *_gas_lines(gases)]
-    tell("\n".join(lines).rstrip())
+    whole = bool(names)
+    tables = (_solid_lines(solids), _liquid_lines(liquids), _gas_lines(gases))
+    lines = [line for table in tables for line in _table(*table, whole=whole)]
+    tell("\n".join([*lines, *_adhesion_lines(works), *([] if whole else _MORE)]).rstrip())
 
 
-def _solid_lines(solids: Sequence[Solid]) -> list[str]:
-    lines = ["Solids: Young's modulus, Poisson's ratio, density, hardness, yield strength", ""]
+def _table(title: str, entries: Sequence[tuple[str, str]], *, whole: bool) -> list[str]:
+    """A table's lines, with what is said about each entry where it is wanted whole."""
+    if not entries:
+        return []
+    rows = [[row, *_wrapped(about), ""] if whole else [row] for row, about in entries]
+    return [title, "", *(line for row in rows for line in row), *([] if whole else [""])]
+
+
+def _solid_lines(solids: Sequence[Solid]) -> tuple[str, list[tuple[str, str]]]:
+    rows = []
     for solid in solids:
         numbers = [
             amount(solid.youngs_modulus, "Pa"),
             f"{solid.poisson:.4g}",
             _density(solid.density),
-            amount(solid.hardness, "Pa"),
-            amount(solid.yield_strength, "Pa"),
+            "never" if solid.never_yields else amount(solid.hardness, "Pa"),
+            "yields" if solid.never_yields else amount(solid.yield_strength, "Pa"),
         ]
-        lines += _entry(solid.name, numbers, _SOLID, solid.source)
-    return lines if solids else []
+        about = solid.source
+        if solid.never_yields:
+            about = f"{about}; never yields: {solid.never_yields}"
+        rows.append((_row(solid.name, numbers, _SOLID), about))
+    return "Solids: Young's modulus, Poisson's ratio, density, hardness, yield strength", rows
 
 
-def _liquid_lines(liquids: Sequence[Liquid]) -> list[str]:
-    lines = ["Liquids: surface tension, molar volume, density", ""]
+def _liquid_lines(liquids: Sequence[Liquid]) -> tuple[str, list[tuple[str, str]]]:
+    rows = []
     for liquid in liquids:
         numbers = [
             amount(liquid.tension, "N/m"),
             f"{liquid.molar_volume * 1e6:.4g} cm^3/mol",
             _density(liquid.density),
         ]
-        lines += _entry(liquid.name, numbers, _FLUID, liquid.source)
-    return lines if liquids else []
+        rows.append((_row(liquid.name, numbers, _FLUID), liquid.source))
+    return "Liquids: surface tension, molar volume, density", rows
 
 
-def _gas_lines(gases: Sequence[Gas]) -> list[str]:
-    lines = ["Gases: viscosity, mean free path and slip length at 20 degC and 101.325 kPa", ""]
+def _gas_lines(gases: Sequence[Gas]) -> tuple[str, list[tuple[str, str]]]:
+    rows = []
     for gas in gases:
         numbers = [
             amount(gas.viscosity(ROOM_TEMPERATURE), "Pa s"),
             amount(gas.free_path(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
             amount(gas.slip_length(ATMOSPHERE, ROOM_TEMPERATURE), "m"),
         ]
-        lines += _entry(gas.name, numbers, _FLUID, gas.source)
-    return lines if gases else []
+        rows.append((_row(gas.name, numbers, _FLUID), gas.source))
+    return "Gases: viscosity, mean free path and slip length at 20 degC and 101.325 kPa", rows
+
+
+def _adhesion_lines(works: Sequence[Adhesion]) -> list[str]:
+    lines = [
+        "Works of adhesion as measured, least and largest; environment, method, source.",
+        "No case assumes one: choose by your surfaces, and give `work` in [adhesion].",
+        "",
+    ]
+    for entry in works:
+        spread = " to ".join(amount(bound, "J/m^2") for bound in entry.bounds or ())
+        row = f"{' / '.join(entry.pair):<31}{amount(entry.work, 'J/m^2'):>14}  {spread}".rstrip()
+        about = f"{entry.environment}; {entry.method}; {entry.source}"
+        lines += [row, *_wrapped(about), ""]
+    return lines if works else []
 
 
 def _rows(entries: Any) -> dict[str, Any]:
@@ -148,11 +181,13 @@ def _rows(entries: Any) -> dict[str, Any]:
     }
 
 
-def _entry(name: str, numbers: Sequence[str], widths: Sequence[int], source: str) -> list[str]:
+def _row(name: str, numbers: Sequence[str], widths: Sequence[int]) -> str:
     columns = zip(numbers, widths, strict=True)
-    row = f"{name:<25}" + "".join(f"{number:>{width}}" for number, width in columns)
-    about = textwrap.wrap(source, WIDTH, initial_indent="    ", subsequent_indent="    ")
-    return [row, *about, ""]
+    return f"{name:<25}" + "".join(f"{number:>{width}}" for number, width in columns)
+
+
+def _wrapped(about: str) -> list[str]:
+    return textwrap.wrap(about, WIDTH, initial_indent="    ", subsequent_indent="    ")
 
 
 def _density(value: float | None) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from asperity.case import BUILTINS, load
+from asperity.case import BUILTINS, FIRST, load
 from asperity.case.reading import builtin, builtin_text, read_text
 from asperity.cli.terminal import exit_code_of, say, tell
 from asperity.errors import InputError
@@ -15,7 +15,7 @@ from asperity.web.serving import Address, serve
 
 
 def show(
-    case: str,
+    case: str | None,
     *,
     port: int,
     host: str,
@@ -28,8 +28,8 @@ def show(
 
     Parameters
     ----------
-    case : str
-        As the user named it: a built-in case or a TOML file.
+    case : str, optional
+        As the user named it: a built-in case or a TOML file; without it `FIRST`.
     port, host, names
         See :class:`asperity.web.serving.Address`.
     browse : bool
@@ -37,7 +37,7 @@ def show(
     as_json, quiet : bool
         The options of these names.
     """
-    first = _first(case)
+    first = _first(case or FIRST)
 
     def ready(address: str) -> None:
         if as_json:

@@ -61,7 +61,7 @@ class Voice:
         if not self.quiet:
             say(text)
 
-    def written(self, paths: Sequence[Path], *, after: bool = True) -> None:
+    def written(self, paths: Sequence[Path], *, after: bool = True, earlier: bool = False) -> None:
         """Say what was written; below the answer unless that is JSON.
 
         Parameters
@@ -70,9 +70,11 @@ class Voice:
             Files of one folder; none says nothing.
         after : bool
             Whether an answer stands above.
+        earlier : bool
+            Whether an earlier answer for the same case was replaced.
         """
         if paths:
-            self.below(written_to(paths), after=after)
+            self.below(written_to(paths, earlier=earlier), after=after)
 
     def below(self, text: str, *, after: bool = True) -> None:
         """Say a text below the answer, beside it where that is JSON."""
@@ -160,10 +162,14 @@ def seconds(duration: float) -> str:
     return f"{1e3 * duration:.1f} ms" if duration < 0.1 else f"{duration:.2f} s"
 
 
-def written_to(paths: Sequence[Path]) -> str:
-    """What was written, and where, in words."""
+def written_to(paths: Sequence[Path], *, earlier: bool = False) -> str:
+    """What was written, and where, in words; and whether in place of an earlier answer."""
+    instead = ", in place of the earlier results" if earlier else ""
     return "\n".join(
-        [f"written to {paths[0].parent}:", *wrapped(" ".join(path.name for path in paths), "  ")]
+        [
+            f"written to {paths[0].parent}{instead}:",
+            *wrapped(" ".join(path.name for path in paths), "  "),
+        ]
     )
 
 

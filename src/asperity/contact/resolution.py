@@ -72,7 +72,8 @@ def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: b
     smooth = LINEAR * (asinh(reach / LINEAR) - asinh(kinked / LINEAR))
     length = max(kinked + max(smooth, 0.0), _SHORTEST)
     if not deforms:
-        panels = ceil(length / fineness.panel)
+        # One more where a law bends (Maugis and Dugdale's), which else misses 1e-8 at first.
+        panels = ceil(length / fineness.panel) + (bends > 0.0)
         return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
     fills = fills_by_contact(interface.hysteretic)

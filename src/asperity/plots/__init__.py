@@ -36,12 +36,16 @@ def figure(result: Result | Curve, *parts: str) -> Figure:
 
 
 def pictures(result: Result | Curve) -> dict[str, bytes]:
-    """Every picture of a result as PNG, by file name; none where it holds no motion."""
+    """Every picture of a result as PNG and SVG, by file name; none where it holds no motion."""
     try:
         parts = _rows(result)
     except InputError:
         return {}
-    return {f"{part}.png": style.png(figure(result, part)) for part in parts}
+    found = {}
+    for part in parts:
+        drawn = figure(result, part)
+        found |= {f"{part}.png": style.png(drawn), f"{part}.svg": style.svg(drawn)}
+    return found
 
 
 def _rows(result: Result | Curve) -> dict[str, Row]:

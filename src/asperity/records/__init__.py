@@ -7,6 +7,7 @@ from asperity.records.folder import (
     RUN_FILES,
     SURFACE_FILES,
     check_folder,
+    holds_only_results,
     write_folder,
 )
 from asperity.records.layout import attributes, json_object, plain
@@ -22,6 +23,7 @@ __all__ = [
     "check_folder",
     "dataset",
     "encode",
+    "holds_only_results",
     "json_object",
     "plain",
     "read",

@@ -11,10 +11,14 @@ from pathlib import Path
 
 from asperity.errors import InputError, OutputError
 
-RUN_FILES = ("record.nc", "motion.png", "forces.png", "energy.png", "summary.txt")
+RUN_FILES = (
+    "record.nc",
+    *(f"{name}.{kind}" for name in ("motion", "forces", "energy") for kind in ("png", "svg")),
+    "summary.txt",
+)
 """Names that a run may write."""
 
-CURVE_FILES = ("curve.nc", "curve.png", "curve.txt")
+CURVE_FILES = ("curve.nc", "curve.png", "curve.svg", "curve.txt")
 """Names that a curve may write. They stand beside those of a run without touching them."""
 
 RESTITUTION_FILES = tuple(f"restitution.{kind}" for kind in ("csv", "json", "png", "svg", "txt"))
@@ -35,6 +39,24 @@ REPRODUCTION_FILES = (
 """Names that `asperity reproduce` may write."""
 
 
+_TOGETHER = (*RUN_FILES, *CURVE_FILES, *RESTITUTION_FILES, *SURFACE_FILES)
+
+
+def holds_only_results(directory: str | os.PathLike[str]) -> bool:
+    """Whether a folder holds files of a run, a curve, restitution or a surface, and nothing else.
+
+    Parameters
+    ----------
+    directory : path
+        The folder.
+    """
+    target = Path(directory)
+    try:
+        return all(entry.name in _TOGETHER and entry.is_file() for entry in target.iterdir())
+    except OSError:
+        return False
+
+
 def check_folder(
     directory: str | os.PathLike[str], own: Collection[str], *, force: bool = False
 ) -> None:
@@ -52,8 +74,8 @@ def check_folder(
     Raises
     ------
     InputError
-        Where the folder is not empty and ``force`` is not set. The files of a run, of a curve and
-        of a surface do not count for each other.
+        Where the folder is not empty and ``force`` is not set. The files of a run, of a curve, of
+        restitution against speed and of a surface do not count for each other.
     OutputError
         Where nothing can be written there.
     """
@@ -132,7 +154,7 @@ def _refuse_occupied(target: Path, own: Collection[str], *, force: bool) -> None
         return
     found = {entry.name: entry for entry in target.iterdir()}
     if not force:
-        other = {*RUN_FILES, *CURVE_FILES, *SURFACE_FILES} - set(own)
+        other = set(_TOGETHER) - set(own)
         kept = sorted(name for name in found if name not in other)
         if kept:
             raise InputError(

@@ -20,13 +20,14 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
-from asperity.case import BUILTINS, Case
+from asperity.case import BUILTINS, FIRST, Case
 from asperity.case.problems import check
 from asperity.case.reading import SIZE_LIMIT, builtin_text, tables
 from asperity.case.writing import text_of
 from asperity.errors import InputError, OutputError, SimulationError, one_line
 from asperity.web.answer import adhesion_map
-from asperity.web.asking import Asked, asked, refuse_depth
+from asperity.web.asking import Asked, asked, changed, refuse_depth
+from asperity.web.completing import completed, remedies
 from asperity.web.exploring import FILES, ahead, critical, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
@@ -79,6 +80,7 @@ def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOC
         Route("/api/cases/{name}", page.case),
         Route("/api/read", page.read, methods=["POST"]),
         Route("/api/toml", page.toml, methods=["POST"]),
+        Route("/api/complete", page.complete, methods=["POST"]),
         Route("/api/explore", page.explore, methods=["POST"]),
         Route("/api/critical", page.critical, methods=["POST"]),
         Route("/api/files/{name}", page.file, methods=["POST"]),
@@ -102,7 +104,7 @@ class _Page:
         self._ready: set[int] = set()
         self._first = first
         self._form = json.dumps(
-            {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else BUILTINS[-1]}
+            {"tables": form(), "cases": [*BUILTINS], "first": first[0] if first else FIRST}
         )
         self._map: str | None = None
 
@@ -153,6 +155,12 @@ class _Page:
         text = text_of(what.tables)
         assert tables(text, None) == what.tables
         return JSONResponse({"toml": text})
+
+    async def complete(self, request: Request) -> Response:
+        """The tables with what a choice of the user asks for, and what would mend the rest."""
+        after, before = changed(await _body(request, SIZE_LIMIT))
+        found = completed(after, before)
+        return JSONResponse({"tables": found, "remedies": remedies(found)})
 
     async def explore(self, request: Request) -> Response:
         """Lines of JSON: progress, and in the end the answer or what is wrong."""
@@ -310,7 +318,8 @@ def _told(event: Event) -> dict[str, Any]:
 def _words(error: Exception) -> dict[str, Any]:
     """What went wrong, in a line."""
     if isinstance(error, InputError):
-        return {"kind": "input", "key": error.key, "message": str(error)}
+        problems = [{"key": one.key, "message": str(one)} for one in error.problems]
+        return {**problems[0], "kind": "input", "problems": problems}
     if isinstance(error, SimulationError):
         return {"kind": "numerics", "key": None, "message": one_line(str(error))}
     return {"kind": "program", "key": None, "message": "the program failed; its log says more"}

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 from asperity.case import Case
 from asperity.case.problems import check
 from asperity.case.reading import SIZE_LIMIT
-from asperity.errors import InputError
+from asperity.errors import InputError, refuse_all
 
 MOST_RINGS = 160
 MOST_IMPACTS = 2000
@@ -51,14 +51,15 @@ class Asked:
         """
         tables = {key: value for key, value in self.tables.items() if key != "output"}
         case = check(Case, tables)
-        for key, most in (("rings", MOST_RINGS), ("max_impacts", MOST_IMPACTS)):
-            value = getattr(case.numerics, key)
-            if value > most:
-                raise InputError(
-                    f"`{key}` must be at most {most} on this page; copy the case and take "
-                    f"`asperity run` for more; got {value}",
-                    key=f"numerics.{key}",
-                )
+        refuse_all(
+            InputError(
+                f"`{key}` must be at most {most} on this page; copy the case and take "
+                f"`asperity run` for more; got {getattr(case.numerics, key)}",
+                key=f"numerics.{key}",
+            )
+            for key, most in (("rings", MOST_RINGS), ("max_impacts", MOST_IMPACTS))
+            if getattr(case.numerics, key) > most
+        )
         return case
 
 
@@ -70,19 +71,8 @@ def asked(body: bytes) -> Asked:
     InputError
         Where it is not as it should be.
     """
-    if len(body) > SIZE_LIMIT:
-        raise InputError(f"a case must be at most 1 MiB; got {len(body)} bytes")
-    try:
-        given = json.loads(body, parse_constant=_refuse)
-        json.dumps(given, ensure_ascii=False).encode()  # refuses halves of characters, "\\ud800"
-    except (ValueError, RecursionError):
-        raise InputError("a request must be a JSON object of whole characters") from None
-    if not isinstance(given, dict) or not set(given) <= set(_KEYS):
-        raise InputError(f"a request must be a JSON object with keys among {', '.join(_KEYS)}")
-    if not isinstance(given.get("case"), dict):
-        raise InputError("`case` must be an object: the tables of a case")
-    refuse_depth(given["case"])
-    _refuse_null(given["case"])
+    given = _read(body, _KEYS)
+    _refuse_no_tables(given, "case")
     surfaces = given.get("surfaces", {})
     if not isinstance(surfaces, dict) or not all(_short(value) for value in surfaces.values()):
         raise InputError("`surfaces` must be an object of texts")
@@ -91,6 +81,40 @@ def asked(body: bytes) -> Asked:
         if not _short(value):
             raise InputError(f"`{key}` must be a text of at most {_LONGEST} characters")
     return Asked(given["case"], words["name"] or "case", words["asker"], surfaces)
+
+
+def changed(body: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The tables of a case after a choice of the user and before it, as a request's JSON has them.
+
+    Raises
+    ------
+    InputError
+        Where it is not as it should be.
+    """
+    given = _read(body, ("case", "before"))
+    _refuse_no_tables(given, "case")
+    _refuse_no_tables(given, "before")
+    return given["case"], given["before"]
+
+
+def _read(body: bytes, keys: tuple[str, ...]) -> dict[str, Any]:
+    if len(body) > SIZE_LIMIT:
+        raise InputError(f"a case must be at most 1 MiB; got {len(body)} bytes")
+    try:
+        given = json.loads(body, parse_constant=_refuse)
+        json.dumps(given, ensure_ascii=False).encode()  # refuses halves of characters, "\\ud800"
+    except (ValueError, RecursionError):
+        raise InputError("a request must be a JSON object of whole characters") from None
+    if not isinstance(given, dict) or not set(given) <= set(keys):
+        raise InputError(f"a request must be a JSON object with keys among {', '.join(keys)}")
+    return given
+
+
+def _refuse_no_tables(given: dict[str, Any], name: str) -> None:
+    if not isinstance(given.get(name), dict):
+        raise InputError(f"`{name}` must be an object: the tables of a case")
+    refuse_depth(given[name])
+    _refuse_null(given[name])
 
 
 def _short(value: object) -> bool:

@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 
 from asperity.case import Case
 from asperity.case.fields import Number, Quantity
+from asperity.case.labels import label
 from asperity.case.problems import tables_of
 from asperity.case.writing import ordered, unit_of
 
@@ -31,11 +32,12 @@ def form() -> list[dict[str, Any]]:
 
     Returns
     -------
-    A list of tables ``{name, help, needed, named, keys}``, of which any number of ``named`` ones
-    may stand under their table's name, as [materials.NAME]; a key is ``{key, kind, unit, help,
-    example, needed, shown, default, choices, among, slider}``. Its kind is "quantity", "number",
-    "whole", "choice", "switch", "list", "name or number" or "text"; ``slider`` is None where a
-    slider cannot move it.
+    A list of tables ``{name, label, help, needed, named, keys}``, of which any number of ``named``
+    ones may stand under their table's name, as [materials.NAME]; a key is ``{key, label, kind,
+    unit, span, help, example, needed, shown, default, choices, among, slider, beside}``. Its kind
+    is "quantity", "number", "whole", "choice", "switch", "list", "name or number" or "text";
+    ``span`` says between what a plain number lies; ``slider`` is None where a slider cannot move
+    it; ``beside`` is the key without which it must be absent.
     """
     found = []
     for name, field in ordered(Case).items():
@@ -45,23 +47,32 @@ def form() -> list[dict[str, Any]]:
         found.append(
             {
                 "name": name,
+                "label": label(name),
                 "help": inspect.getdoc(tables[0]) or "",
                 "needed": field.is_required() or name == "impact",  # the page shows motions
                 "named": get_origin(field.annotation) is dict,
-                "keys": [_key(key, inner) for key, inner in ordered(tables[0]).items()],
+                "keys": [
+                    {
+                        **_key(name, key, inner),
+                        "beside": "files" if key in getattr(tables[0], "of_files", ()) else "",
+                    }
+                    for key, inner in ordered(tables[0]).items()
+                ],
             }
         )
     return found
 
 
-def _key(name: str, field: FieldInfo) -> dict[str, Any]:
+def _key(table: str, name: str, field: FieldInfo) -> dict[str, Any]:
     extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
     limits = _limits(field)
     kind, choices = _kind(field.annotation, limits)
     return {
         "key": name,
+        "label": label(f"{table}.{name}"),
         "kind": kind,
         "unit": unit_of(field),
+        "span": "{:g} to {:g}".format(*limits.bounds) if isinstance(limits, Number) else "",
         "help": field.description or "",
         "example": (field.examples or [None])[0],
         "needed": field.is_required(),

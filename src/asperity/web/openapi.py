@@ -37,8 +37,30 @@ _REFUSAL: dict[str, Any] = {
                 "kind": {"enum": ["input", "numerics", "output", "busy", "request", "program"]},
                 "key": {"type": ["string", "null"]},
                 "message": {"type": "string"},
+                "problems": {
+                    "type": "array",
+                    "description": "All that is wrong, the first of them first.",
+                    "items": {
+                        "type": "object",
+                        "required": ["key", "message"],
+                        "properties": {
+                            "key": {"type": ["string", "null"]},
+                            "message": {"type": "string"},
+                        },
+                    },
+                },
             },
         }
+    },
+}
+
+_CHANGED: dict[str, Any] = {
+    "type": "object",
+    "required": ["case", "before"],
+    "additionalProperties": False,
+    "properties": {
+        "case": {"type": "object", "description": "The tables of a case after a choice."},
+        "before": {"type": "object", "description": "The same before it."},
     },
 }
 
@@ -65,14 +87,22 @@ _REFUSALS = {
 }
 
 
-def _asking(summary: str, answer: dict[str, Any], *more: dict[str, Any]) -> dict[str, Any]:
+def _asking(
+    summary: str, answer: dict[str, Any], *more: dict[str, Any], schema: dict[str, Any] = _ASKED
+) -> dict[str, Any]:
+    examples = _EXAMPLES
+    if schema is _CHANGED:
+        examples = {
+            name: {"value": {**one["value"], "before": one["value"]["case"]}}
+            for name, one in _EXAMPLES.items()
+        }
     return {
         "post": {
             "summary": summary,
             "parameters": list(more),
             "requestBody": {
                 "required": True,
-                "content": {"application/json": {"schema": _ASKED, "examples": _EXAMPLES}},
+                "content": {"application/json": {"schema": schema, "examples": examples}},
             },
             "responses": {"200": answer, **_REFUSALS},
         }
@@ -103,6 +133,11 @@ DESCRIPTION: dict[str, Any] = {
             "The tables of a case.", _in_path({"type": "string"}, BUILTINS[0])
         ),
         "/api/toml": _asking("The case as text.", _json({"type": "object"}, "The text.")),
+        "/api/complete": _asking(
+            "A case with the keys that a choice of its user asks for.",
+            _json({"type": "object"}, "Its tables, and what would mend what is left."),
+            schema=_CHANGED,
+        ),
         "/api/explore": _asking(
             "Compute a case.",
             {

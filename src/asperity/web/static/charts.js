@@ -10,8 +10,8 @@ const quiet = () => getComputedStyle(document.documentElement).getPropertyValue(
 const line = () => getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
 
 // The house's colours where they are too pale, or too dark, for a screen's paper.
-const LIGHT = { "#F0E442": "#857A00", "#56B4E9": "#2A86BD", "#E69F00": "#A66F00", "#CC79A7": "#B8558D", "#F5D0B5": "#A0522D", "#009E73": "#008060" };
-const DARK = { "#7F3C8D": "#C58AD3", "#444444": "#BBBBBB", "#0072B2": "#4AA3DF", "#8C6D31": "#B8934B", "#A05195": "#C77BBB" };
+const LIGHT = { "#F0E442": "#857A00", "#56B4E9": "#2A86BD", "#E69F00": "#A66F00", "#CC79A7": "#B8558D", "#F5D0B5": "#A0522D", "#009E73": "#008060", "#C8C8C8": "#444444" };
+const DARK = { "#7F3C8D": "#C58AD3", "#661100": "#D9826B", "#0072B2": "#4AA3DF", "#8C6D31": "#B8934B", "#A05195": "#C77BBB" };
 
 // The colour of a thing on this page's paper: black is the colour of the ink.
 export function tint(colour) {
@@ -62,7 +62,7 @@ export class Chart {
       scales: { x: { time: false }, y: logarithmic ? { distr: 3 } : {} },
       cursor: { drag: { x: true, y: false } },
       series: [{ label: titles[0] }, ...series],
-      axes: [axis(titles[0], 44), axis(titles[1], 62)],
+      axes: [axis(titles[0], 30), axis(titles[1], 62)],
     };
     this.plot = new uPlot(options, [[0], ...lines.map(() => [null])], this.place);
     this.legend.replaceChildren(...lines.map(({ label, colour, dashed }) => chip(label, tint(colour), dashed)));

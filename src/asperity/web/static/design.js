@@ -7,9 +7,17 @@ const CALM = 400; // ms after an answer until its critical velocity is asked for
 const page = Math.random().toString(36).slice(2);
 
 export class Design {
-  constructor(letter, name, tables, surfaces = {}) {
+  // `source`: what its user calls the case that it began with: a built-in one, or a file.
+  constructor(letter, name, tables, surfaces = {}, source = name) {
     this.letter = letter;
     this.name = name;
+    this.source = source;
+    this.base = canonical(tables); // the case that it began with; null where that is not known
+    this.linked = false; // whether it came by a link
+    this.touched = ""; // the table or the key that was chosen last
+    this.kept = {}; // tables that were taken away, as they were
+    this.filled = {}; // by a table or key that was chosen, what it asked for: [path, key, value]
+    this.completing = 0; // choices whose consequences are asked for
     this.tables = tables;
     this.surfaces = surfaces;
     this.answer = null;
@@ -18,7 +26,17 @@ export class Design {
     this.asked = 0; // number of the newest question
     this.shown = 0; // number of the question that the answer belongs to
     this.running = null;
+    this.sought = null; // {begun, abort} while the critical velocity is computed
     this.waiting = false;
+  }
+
+  get changed() {
+    return canonical(this.tables) !== this.base;
+  }
+
+  // Whether what is shown is of an older case, and nothing newer is coming.
+  get stale() {
+    return Boolean(this.refusal) || (!this.running && this.shown < this.asked);
   }
 
   question() {
@@ -45,6 +63,36 @@ export class Design {
     const whole = inner === undefined ? table : withKey(this.tables[outer], inner, table);
     const empty = inner !== undefined && !Object.keys(whole).length;
     this.tables = withKey(this.tables, outer, empty ? undefined : whole);
+  }
+
+  // Take a table away, with what was filled in for it alone.
+  remove(path) {
+    this.kept[path] = this.table(path);
+    for (const [table, key, value] of this.filled[path] ?? []) if (this.get(table, key) === value) this.set(table, key, undefined);
+    this.filled[path] = [];
+    this.put(path, undefined);
+  }
+
+  // Fill in what a choice asks for, at the values of the schema's examples; the keys that were.
+  async complete(before) {
+    const after = this.tables;
+    this.completing += 1;
+    try {
+      const { tables } = await posting("/api/complete", JSON.stringify({ case: after, before }));
+      if (this.tables !== after) return []; // something newer was chosen
+      this.tables = tables;
+      return differing(after, tables);
+    } finally {
+      this.completing -= 1;
+    }
+  }
+
+  // Ask what would mend a case that is refused.
+  async mend() {
+    const { refusal, tables } = this;
+    if (refusal?.kind !== "input" || refusal.remedies) return;
+    refusal.remedies = [];
+    refusal.remedies = (await posting("/api/complete", JSON.stringify({ case: tables, before: tables }))).remedies;
   }
 
   // Ask for the case as it is now; `show()` is called when anything changes.
@@ -100,15 +148,18 @@ export class Design {
     clearTimeout(this.seeking);
     this.seeking = setTimeout(async () => {
       const { answer, shown } = this;
-      if (!answer || this.running) return;
+      if (!answer || this.refusal || this.running) return;
+      const sought = this.sought = { begun: performance.now(), abort: new AbortController() };
+      show("work");
       let found;
       try {
-        found = await posting("/api/critical", JSON.stringify(this.question()));
+        found = await posting("/api/critical", JSON.stringify(this.question()), undefined, sought.abort.signal);
       } catch (error) {
-        found = { critical_velocity: null, critical_velocity_note: error.message };
+        const note = error.name === "AbortError" ? "not sought" : error.message;
+        found = { critical_velocity: null, critical_velocity_note: note };
       }
-      if (this.shown !== shown || this.answer !== answer) return;
-      Object.assign(answer.measures, found);
+      if (this.sought === sought) this.sought = null;
+      if (this.shown === shown && this.answer === answer) Object.assign(answer.measures, found);
       show("measures");
     }, CALM);
   }
@@ -128,15 +179,30 @@ export class Design {
     this.waiting = false;
     clearTimeout(this.seeking);
     this.running?.abort.abort();
+    this.sought?.abort.abort();
   }
 
   copy(letter) {
-    return new Design(letter, this.name, structuredClone(this.tables), { ...this.surfaces });
+    const made = new Design(letter, this.name, structuredClone(this.tables), { ...this.surfaces }, this.source);
+    return Object.assign(made, { base: this.base, linked: this.linked });
   }
 
   toJSON() {
-    return { name: this.name, tables: this.tables, surfaces: this.surfaces };
+    return { name: this.name, source: this.source, changed: this.changed, tables: this.tables, surfaces: this.surfaces };
   }
+}
+
+// A case as text that is the same for the same case, in whatever order its keys stand.
+export function canonical(value) {
+  if (Array.isArray(value)) return `[${value.map(canonical).join()}]`;
+  if (value === null || typeof value !== "object") return JSON.stringify(value) ?? "";
+  return `{${Object.keys(value).sort().map((key) => `${JSON.stringify(key)}:${canonical(value[key])}`).join()}}`;
+}
+
+// Dotted keys that the second tables have and the first have not.
+function differing(before, after) {
+  return Object.entries(after).flatMap(([table, keys]) => Object.keys(Object(keys))
+    .filter((key) => before[table]?.[key] === undefined).map((key) => `${table}.${key}`));
 }
 
 function split(path) {
@@ -161,9 +227,10 @@ export function read(hash) {
   const letters = atob(hash.replaceAll("-", "+").replaceAll("_", "/"));
   const given = JSON.parse(new TextDecoder().decode(Uint8Array.from(letters, (one) => one.charCodeAt(0))));
   if (!Array.isArray(given) || !given.length || given.length > 2) throw new Error("no designs");
-  return given.map(({ name, tables, surfaces }, number) => {
+  return given.map(({ name, tables, surfaces, source, changed }, number) => {
     if (typeof name !== "string" || typeof tables !== "object" || tables === null) throw new Error("no design");
     Object.keys(tables.materials ?? {}).forEach(encodeURIComponent); // throws at half a character
-    return new Design("AB"[number], name, tables, surfaces ?? {});
+    const made = new Design("AB"[number], name, tables, surfaces ?? {}, typeof source === "string" ? source : name);
+    return Object.assign(made, { linked: true, base: changed ? null : made.base });
   });
 }

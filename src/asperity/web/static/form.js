@@ -15,22 +15,30 @@ const element = (tag, properties = {}, ...children) => {
 // A path as part of an id, which must hold no blanks.
 export const idOf = (kind, path) => `${kind}-${encodeURIComponent(path)}`;
 
-const words = (name) => name.replaceAll("_", " ");
+const sentence = (words) => words.charAt(0).toUpperCase() + words.slice(1);
+// A key small beside its name; it may be broken at its dots.
+const hint = (words) => element("code", { className: "key" }, ...words.split(/(?<=\.)/).flatMap((part) => [part, element("wbr")]));
 
 export class Form {
-  // `changed(path, key, value)`: value undefined takes the key away; `tabled(table, used)`.
-  constructor(place, tables, { changed, tabled }) {
+  // `changed(path, key, value, since)`: value undefined takes the key away; `chosen(path, key, value)`
+  // where it may ask for other keys; `tabled(table, used)`.
+  constructor(place, tables, { changed, chosen, tabled }) {
     this.place = place;
     this.tables = tables;
     this.changed = changed;
+    this.chosen = chosen;
     this.tabled = tabled;
     this.fields = new Map();
+    this.boxes = new Map(); // of tables
+    this.rest = { wrong: element("div", { className: "wrong", hidden: true }) }; // of what has neither
+    place.before(this.rest.wrong);
   }
 
   // Draw the form anew for a design.
   show(design) {
     const open = new Set([...this.place.querySelectorAll("details[open]")].map((one) => one.id));
     this.fields.clear();
+    this.boxes.clear();
     this.own = Object.keys(design.tables.materials ?? {}); // which can be named as those of the catalogue
     this.place.replaceChildren(...this.tables.map((table) => (table.named ? this.named : this.table).call(this, table, design, open)));
   }
@@ -38,7 +46,7 @@ export class Form {
   // Tables under names of the user's own, each with its fields, and a place for one more.
   named(table, design, open) {
     const own = Object.keys(design.tables[table.name] ?? {});
-    const box = element("details", { id: `table-${table.name}` }, element("summary", { textContent: words(table.name) }));
+    const box = element("details", { id: `table-${table.name}` }, element("summary", {}, sentence(table.label), hint(`[${table.name}.NAME]`)));
     box.open = open.has(box.id) || own.length > 0;
     if (table.help) box.append(element("p", { className: "about", textContent: table.help }));
     for (const name of own) box.append(this.table({ ...table, name: `${table.name}.${name}` }, design, open));
@@ -64,7 +72,9 @@ export class Form {
     const box = element("details", { id: idOf("table", table.name) });
     const roomy = matchMedia("(min-width: 60rem)").matches; // on a telephone the tables begin closed
     box.open = open.size ? open.has(box.id) : roomy && used && !["numerics", "publication"].includes(table.name);
-    box.append(element("summary", { textContent: table.named ? table.name.slice(table.name.indexOf(".") + 1) : words(table.name) }));
+    box.append(table.named
+      ? element("summary", { textContent: table.name.slice(table.name.indexOf(".") + 1) })
+      : element("summary", {}, sentence(table.label), hint(`[${table.name}]`)));
     if (table.help && !table.named) box.append(element("p", { className: "about", textContent: table.help }));
     if (table.named) {
       const remove = element("button", { type: "button", textContent: "remove", id: idOf("remove", table.name) });
@@ -73,13 +83,16 @@ export class Form {
     } else if (!table.needed) {
       const use = element("input", { type: "checkbox", checked: given !== undefined, id: idOf("use", table.name) });
       use.addEventListener("change", () => this.tabled(table, use.checked));
-      box.append(element("label", { className: "use" }, use, ` use [${table.name}]`));
+      box.append(element("label", { className: "use" }, use, " in this case"));
     }
+    const wrong = element("div", { className: "wrong", hidden: true });
+    box.append(wrong);
+    this.boxes.set(table.name, { box, wrong });
     if (!used) return box;
     const [shown, more] = [[], []];
     for (const key of table.keys) {
       const value = given?.[key.key];
-      (value !== undefined || key.needed ? shown : more).push(this.field(table, key, value));
+      (value !== undefined || key.needed ? shown : more).push(this.field(table, key, value, given));
     }
     box.append(...shown);
     if (more.length) {
@@ -90,19 +103,22 @@ export class Form {
     return box;
   }
 
-  field(table, key, value) {
+  field(table, key, value, given) {
     const path = `${table.name}.${key.key}`;
     const id = `${idOf("field", table.name)}-${key.key}`;
     const input = this.input(key, id, value);
-    const label = element("label", { htmlFor: id, textContent: words(key.key), title: key.help });
-    const wrong = element("p", { className: "wrong", id: `${id}-wrong`, hidden: true });
-    const box = element("div", { className: "field" }, label, input);
+    const label = element("label", { htmlFor: id, textContent: sentence(key.label), title: key.help });
+    const wrong = element("div", { className: "wrong", id: `${id}-wrong`, hidden: true });
+    const alone = key.beside && value === undefined && given?.[key.beside] === undefined;
+    input.disabled = Boolean(alone);
+    const about = [path, key.span, alone ? `only with ${key.beside}` : ""].filter(Boolean).join(", ");
+    const box = element("div", { className: "field" }, element("div", {}, label, hint(about)), input);
     const field = { box, input, wrong, slider: null };
     input.addEventListener("change", () => {
       this.tell(table, key, field, performance.now());
       if (field.slider) this.fit(field, key);
     });
-    if (key.slider && !["numerics", "publication"].includes(table.name) && key.kind !== "whole") this.slide(table, key, field);
+    if (key.slider && !alone && !["numerics", "publication"].includes(table.name) && key.kind !== "whole") this.slide(table, key, field);
     box.append(wrong);
     this.fields.set(path, field);
     return box;
@@ -132,7 +148,8 @@ export class Form {
 
   slide(table, key, field) {
     const slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, id: `${field.input.id}-slider` });
-    slider.setAttribute("aria-label", `${words(table.name)} ${words(key.key)}`);
+    const whose = table.named ? ` of ${table.name.slice(table.name.indexOf(".") + 1)}` : "";
+    slider.setAttribute("aria-label", sentence(key.label) + whose);
     field.slider = slider;
     field.box.append(slider);
     this.fit(field, key);
@@ -157,32 +174,85 @@ export class Form {
   }
 
   tell(table, key, field, since) {
-    this.changed(table.name, key.key, valueOf(key, field.input.value), since);
+    const value = valueOf(key, field.input.value);
+    if (key.kind === "choice") this.chosen(table.name, key.key, value);
+    else this.changed(table.name, key.key, value, since);
   }
 
-  // Say at a field what is wrong with it, or at none.
-  refuse(refusal) {
-    for (const { input, wrong } of this.fields.values()) {
+  // Say at every field, and every table, what is wrong with it; `mend(remedy)` does what mends it.
+  refuse({ refusal, touched }, mend) {
+    for (const { input, wrong } of [...this.fields.values(), ...this.boxes.values(), this.rest]) {
       wrong.hidden = true;
-      wrong.textContent = "";
-      input.removeAttribute("aria-invalid");
-      input.removeAttribute("aria-describedby");
+      wrong.replaceChildren();
+      input?.removeAttribute("aria-invalid");
+      input?.removeAttribute("aria-describedby");
     }
-    const field = refusal?.key && this.fields.get(refusal.key);
-    if (!field) return false;
-    field.wrong.textContent = refusal.message;
-    field.wrong.hidden = false;
-    field.input.setAttribute("aria-invalid", "true");
-    field.input.setAttribute("aria-describedby", field.wrong.id);
-    for (let around = field.box.parentElement; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
-    return true;
+    if (!refusal) return;
+    const { problems } = refusal;
+    const remedies = refusal.remedies ?? [];
+    const buttons = (key) => remedies.filter((one) => one.at === key).map((one) => {
+      const button = element("button", { type: "button", textContent: this.remedy(one) });
+      button.addEventListener("click", () => mend(one));
+      return button;
+    });
+    for (const { key, message } of problems) this.mark(key, plain(key, message), buttons(key));
+    // What was just chosen and is not itself at fault says what it does not go with.
+    const [{ key, message }] = problems;
+    if (touched && key && !problems.some((one) => one.key === touched || one.key?.startsWith(`${touched}.`))) {
+      this.mark(touched, `Does not go with ${this.name(key)}: ${plain(key, message)}`, buttons(key));
+    }
+  }
+
+  // The field, or the table, of a key.
+  at(key) {
+    return this.fields.get(key) ?? this.boxes.get(key) ?? this.boxes.get(key?.split(".")[0]) ?? this.rest;
+  }
+
+  mark(key, words, buttons) {
+    const place = this.at(key);
+    if (place.input && !place.wrong.hidden) return; // of two problems of a field the first
+    place.wrong.append(element("div", {}, words, ...buttons));
+    place.wrong.hidden = false;
+    place.input?.setAttribute("aria-invalid", "true");
+    place.input?.setAttribute("aria-describedby", place.wrong.id);
+    opened(place.box);
+  }
+
+  // Show the field, or the table, of a key, and have the keyboard there.
+  reveal(key) {
+    const place = this.at(key);
+    if (!place.box) return;
+    opened(place.box);
+    place.box.scrollIntoView({ block: "center" });
+    (place.input ?? place.box.querySelector("input, summary")).focus({ preventScroll: true });
+  }
+
+  // A key, or a table, in words.
+  name(path) {
+    const [outer, ...rest] = path.split(".");
+    const table = this.tables.find((one) => one.name === outer);
+    const key = table?.keys.find((one) => one.key === rest.at(-1));
+    return key?.label ?? table?.label ?? path;
+  }
+
+  remedy({ key, value }) {
+    return value === null ? `Take ${this.name(key)} out` : `Set ${this.name(key)} to ${value}`;
   }
 }
+
+function opened(box) {
+  for (let around = box; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
+}
+
+// A message without the key that it stands beside.
+export const plain = (key, message) => (key && message.startsWith(`${key}: `) ? message.slice(key.length + 2) : message);
 
 function valueOf(key, text) {
   if (text.trim() === "") return undefined;
   if (key.kind === "switch") return text === "true";
   if (key.kind === "list") return text.split(",").map((one) => one.trim()).filter(Boolean);
+  const percent = /^\s*([\d.]+)\s*%\s*$/.exec(text);
+  if (key.kind === "number" && percent) return Number((Number(percent[1]) / 100).toPrecision(12));
   const number = Number(text);
   if (["number", "whole", "name or number"].includes(key.kind) && Number.isFinite(number)) return number;
   return text;

@@ -1,20 +1,23 @@
 // The page: what its buttons do, and how designs, form and panels hang together.
 
-import { Design, read, written } from "/static/design.js";
+import { CaseBox } from "/static/casebox.js";
+import { Design, canonical, read, written } from "/static/design.js";
+import { copied, copyCase, download, opened } from "/static/files.js";
 import { Form, idOf } from "/static/form.js";
 import { AdhesionMap } from "/static/map.js";
 import { Panels } from "/static/panels.js";
-import { fileOf, getting, posting } from "/static/server.js";
+import { getting } from "/static/server.js";
+import { Top } from "/static/verdict.js";
 
 const FILES = ["motion.png", "forces.png", "energy.png", "curve.png", "motion.csv", "curve.csv", "record.nc", "curve.nc", "summary.txt"];
-const SLOW = 400; // ms until a computation shows its progress
+const TICK = 200; // ms between two looks at what is waited for
 
 const by = (id) => document.getElementById(id);
 const say = (words) => { by("notice").textContent = words; };
 
 let designs = [];
 let active = 0;
-let form, panels, map, linking, ticking;
+let form, panels, map, top, box, linking, ticking;
 const latencies = []; // ms from a change to its picture, for whoever measures
 
 const current = () => designs[active];
@@ -23,8 +26,7 @@ function show(what) {
   work();
   if (what === "measures") panels.measured(designs);
   if (what !== "answer") return;
-  const design = current();
-  form.refuse(design.refusal);
+  said();
   panels.show(designs);
   map?.show(designs);
   for (const one of designs) if (one.answeredSince) {
@@ -35,19 +37,23 @@ function show(what) {
   document.body.dataset.shown = designs.map((one) => `${one.shown}/${one.asked}`).join(" ");
 }
 
+// Verdicts, warnings, and what is refused, at the top and in the form.
+function said() {
+  top.show(designs);
+  form.refuse(current(), mended);
+  for (const one of designs) if (one.refusal && !one.refusal.remedies) {
+    one.mend().then(() => form.refuse(current(), mended), () => {}); // without remedies it is told too
+  }
+}
+
 function work() {
-  const busy = designs.find((one) => one.work);
-  by("work").hidden = !(busy?.running && performance.now() - busy.running.begun > SLOW);
-  if (document.body.dataset.busy !== (busy ? "yes" : "no")) document.body.dataset.busy = busy ? "yes" : "no";
-  if (!busy) return;
-  by("progress").value = busy.work.fraction;
-  by("progress-text").textContent = busy.work.text;
   clearTimeout(ticking);
-  ticking = setTimeout(work, SLOW);
+  if (top.work(designs)) ticking = setTimeout(work, TICK);
 }
 
 function ask(design = current(), since = performance.now()) {
   design.ask(show, since);
+  box.show(current());
   link(300);
 }
 
@@ -62,35 +68,83 @@ function changed(path, key, value, since) {
   const before = JSON.stringify(current().tables);
   current().set(path, key, value);
   if (JSON.stringify(current().tables) === before) return;
-  by("case").selectedIndex = -1; // no longer the case of that name
+  current().touched = "";
+  say("");
   ask(current(), since);
 }
 
-function tabled(table, used) {
+// A choice may ask for other keys, which are filled in before it is computed.
+async function chosen(path, key, value) {
+  const design = current();
+  const before = design.tables;
+  design.set(path, key, value);
+  await completed(design, before, `${path}.${key}`, idOf("field", path) + `-${key}`);
+}
+
+async function tabled(table, used) {
+  const design = current();
+  const before = design.tables;
   const given = Object.fromEntries(table.keys.filter((key) => key.shown && key.example !== null).map((key) => [key.key, key.example]));
-  current().put(table.name, used ? given : undefined);
-  form.show(current());
-  const box = by(idOf("table", table.name));
-  if (box) {
-    for (let around = box; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
-    (by(idOf("use", table.name)) ?? box.querySelector("input")).focus();
-  } else {
-    by(idOf("new", table.name.split(".")[0])).focus();
+  if (used) design.put(table.name, design.kept[table.name] ?? given);
+  else design.remove(table.name);
+  form.show(design);
+  const place = by(idOf("table", table.name));
+  for (let around = place; around; around = around.parentElement) if (around.tagName === "DETAILS") around.open = true;
+  const focus = place ? by(idOf("use", table.name)) ?? place.querySelector("input") : by(idOf("new", table.name.split(".")[0]));
+  focus.focus();
+  await completed(design, before, table.name, focus.id);
+}
+
+async function completed(design, before, touched, focus) {
+  design.touched = touched;
+  work();
+  let filled = [];
+  try {
+    filled = await design.complete(before);
+  } catch {
+    // what is missing is told by the question itself
   }
-  ask();
+  asked(design);
+  design.filled[touched] = filled.map((key) => [...halves(key), design.get(...halves(key))]);
+  if (filled.length && design === current()) {
+    form.show(design);
+    for (const key of filled) form.reveal(key);
+    form.reveal(touched);
+    by(focus)?.focus({ preventScroll: true });
+    say(`Filled in as well: ${filled.map((key) => `${form.name(key)} ${design.get(...halves(key))}`).join(", ")}.`);
+  }
+}
+
+const halves = (key) => [key.slice(0, key.lastIndexOf(".")), key.slice(key.lastIndexOf(".") + 1)];
+
+// Set what mends a refused case.
+function mended({ key, value }) {
+  const design = current();
+  const before = design.tables;
+  if (key.includes(".")) design.set(...halves(key), value ?? undefined);
+  else design.put(key, value ?? undefined);
+  form.show(design);
+  return completed(design, before, key, "");
+}
+
+// Ask anew where what was refused is no longer what is asked for.
+function asked(design) {
+  design.refusal = null;
+  say("");
+  ask(design);
+  said();
 }
 
 // Designs
 
-function replace(name, tables, surfaces = {}) {
-  const fresh = new Design(current()?.letter ?? "A", name, tables, surfaces);
+function replace(name, tables, source = name) {
+  const fresh = new Design(current()?.letter ?? "A", name, tables, {}, source);
   current()?.cancel();
   fresh.asked = fresh.shown = current()?.asked ?? 0;
   fresh.answer = current()?.answer ?? null;
   designs[active] = fresh;
-  by("case").value = name; // none, where it is no built-in case
   form.show(fresh);
-  ask(fresh);
+  asked(fresh);
 }
 
 function compare() {
@@ -112,71 +166,21 @@ function choose(number) {
   by("compare").setAttribute("aria-pressed", String(designs.length > 1));
   document.querySelectorAll("input[name=design]").forEach((one) => { one.checked = Number(one.value) === number; });
   form.show(current());
-  form.refuse(current().refusal);
-}
-
-// Files
-
-async function opened(files) {
-  for (const file of files) {
-    try {
-      if (file.name.toLowerCase().endsWith(".toml")) await openedCase(file);
-      else await openedSurface(file, files);
-    } catch (error) {
-      say(`${file.name}: ${error.message}`);
-    }
-  }
-}
-
-async function openedCase(file) {
-  if (file.size > 1 << 20) throw new Error("a case must be at most 1 MiB");
-  const { tables } = await posting("/api/read", await file.text(), "text/plain");
-  replace(file.name.replace(/\.toml$/i, "").slice(0, 100), tables);
-  say(`${file.name} is open.`);
-}
-
-async function openedSurface(file, among) {
-  say(`${file.name} is being read.`);
-  const design = current();
-  const { name, token } = await posting(`/api/surfaces/${encodeURIComponent(file.name)}`, file, "application/octet-stream");
-  const dropped = [...among].filter((one) => !one.name.toLowerCase().endsWith(".toml")).length > 1;
-  const before = dropped ? (design.get("roughness", "files") ?? []).filter((one) => design.surfaces[one] && one !== name) : [];
-  design.surfaces = { ...design.surfaces, [name]: token };
-  const { asperity_density, asperity_radius, rms_height, ...rest } = design.tables.roughness ?? {};
-  design.tables = { ...design.tables, roughness: { ...rest, files: [...before, name].slice(-2) } };
-  form.show(current());
-  by("table-roughness").open = true;
-  say(`${name} is the surface now.`);
-  ask(design);
-}
-
-async function copyCase() {
-  const { toml } = await posting("/api/toml", JSON.stringify(current().question()));
-  by("text-content").value = toml;
-  by("text").showModal();
-  by("text-content").select();
-  say((await copied(toml)) ? "The case is copied." : "Copy the text from the box.");
-}
-
-async function copied(words) {
-  try {
-    await navigator.clipboard.writeText(words);
-    return true;
-  } catch {
-    return false;
-  }
-}
-
-async function download(name) {
-  say(`${name} is being made.`);
-  const design = current();
-  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(await fileOf(name, design.question())), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  say(`${name} is downloaded.`);
+  form.refuse(current(), mended);
+  box.show(current());
 }
 
 const told = (action) => (...given) => Promise.resolve(action(...given)).catch((error) => say(error.message));
+
+// Take measured surfaces in place of the numbers.
+function dropped(design, files) {
+  const { asperity_density, asperity_radius, rms_height, ...rest } = design.tables.roughness ?? {};
+  design.tables = { ...design.tables, roughness: { ...rest, files } };
+  design.touched = "roughness";
+  form.show(current());
+  by("table-roughness").open = true;
+  asked(design);
+}
 
 // Look
 
@@ -191,9 +195,13 @@ function dress(dark) {
 async function start() {
   dress(matchMedia("(prefers-color-scheme: dark)").matches);
   const { tables, cases, first } = await getting("/api/form");
-  form = new Form(by("tables"), tables, { changed, tabled });
+  form = new Form(by("tables"), tables, { changed, chosen: told(chosen), tabled: told(tabled) });
   panels = new Panels();
-  by("case").append(...[...new Set([first, ...cases])].map((name) => new Option(name, name)));
+  top = new Top((design, key) => {
+    choose(designs.indexOf(design));
+    form.reveal(key);
+  });
+  box = new CaseBox(by("case"), [...new Set([first, ...cases])]);
   let from = null;
   if (location.hash.length > 1) {
     try {
@@ -203,6 +211,7 @@ async function start() {
     }
   }
   designs = from ?? [await builtin(first)];
+  for (const one of designs) if (one.linked && box.has(one.source)) one.base = canonical((await builtin(one.source)).tables);
   choose(0);
   designs.forEach((one) => ask(one));
   listen();
@@ -215,18 +224,28 @@ async function builtin(name) {
   return new Design("A", name, tables);
 }
 
+const page = { current, replace, dropped, say };
+
 function listen() {
   const on = (id, event, action) => by(id).addEventListener(event, told(action));
   on("case", "change", async () => {
+    if (!by("case").value) return;
     const { name, tables } = await builtin(by("case").value);
     replace(name, tables);
   });
+  on("skip", "click", () => by("answer").focus());
+  let below = false; // whether the form is what is looked at
+  new IntersectionObserver(([{ isIntersecting }]) => {
+    below = isIntersecting;
+    by("to-form").textContent = below ? "Back to the answer" : "Change the case";
+  }, { rootMargin: "-40% 0px -40% 0px" }).observe(by("form"));
+  on("to-form", "click", () => (below ? scrollTo(0, 0) : by("form").scrollIntoView()));
   for (const id of ["own-case", "own-surface"]) on(id, "change", async ({ target }) => {
-    await opened([...target.files]);
+    await opened([...target.files], page);
     target.value = "";
   });
   on("compare", "click", compare);
-  on("copy-case", "click", copyCase);
+  on("copy-case", "click", () => copyCase(current(), say));
   on("text-close", "click", () => by("text").close());
   on("copy-link", "click", async () => {
     history.replaceState(null, "", `#${written(designs)}`);
@@ -235,6 +254,8 @@ function listen() {
   on("theme", "click", () => dress(document.documentElement.dataset.theme !== "dark"));
   on("cancel", "click", () => {
     designs.forEach((one) => one.cancel());
+    work();
+    said();
     panels.show(designs);
     say("Cancelled; the last picture stays.");
   });
@@ -246,7 +267,7 @@ function listen() {
   });
   by("download-list").append(...FILES.map((name) => {
     const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
-    button.addEventListener("click", told(() => download(name)));
+    button.addEventListener("click", told(() => download(name, current(), say)));
     return button;
   }));
   by("form").addEventListener("submit", (event) => event.preventDefault());
@@ -255,7 +276,7 @@ function listen() {
   document.addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    opened([...event.dataTransfer.files]);
+    opened([...event.dataTransfer.files], page);
   });
 }
 

@@ -33,7 +33,7 @@ export class AdhesionMap {
       width: Math.max(this.figure.clientWidth - 16, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       scales: { x: { time: false, distr: 3, range: () => across }, y: { distr: 3, range: () => up } },
       series: [{}, { show: true, points: { show: false }, width: 0 }],
-      axes: [decades("elasticity parameter λ [–]", 44), decades("load parameter [–]", 62)],
+      axes: [decades("elasticity parameter λ [–]", 30), decades("load parameter [–]", 62)],
       hooks: { draw: [(plot) => this.draw(plot)] },
     }, [across, up], this.place);
   }
@@ -97,7 +97,8 @@ function mark(ctx, plot, at, place, letter, colour) {
   ctx.arc(clip(x, left + reach, left + width - reach), clip(y, top + reach, top + height - reach), reach, 0, 7);
   ctx.fill();
   ctx.font = `bold ${12 * devicePixelRatio}px system-ui`;
-  ctx.fillText(letter, clip(x, left + reach, left + width - 3 * reach) + 2 * reach, clip(y, top + 2 * reach, top + height - reach) + 4);
+  const side = letter === "A" ? 2 : -2; // two designs may lie on one place
+  ctx.fillText(letter, clip(x, left + 3 * reach, left + width - 3 * reach) + side * reach, clip(y, top + 2 * reach, top + height - reach) + 4);
 }
 
 function heightAt([, x, y], value) {

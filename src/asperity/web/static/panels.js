@@ -1,4 +1,4 @@
-// Everything that shows answers: charts, verdicts, ledger, measures, warnings.
+// What shows answers: charts, ledger, measures.
 
 import { Chart, tint } from "/static/charts.js";
 import { amount, shares } from "/static/units.js";
@@ -52,7 +52,6 @@ export class Panels {
 
   show(designs) {
     const answered = designs.filter((one) => one.answer);
-    this.verdicts(designs);
     if (!answered.length) return;
     const two = answered.length > 1;
     const named = (label, design) => (two ? `${design.letter} ${label}` : label);
@@ -67,25 +66,12 @@ export class Panels {
     this.rebounds(answered, group);
     ledger(answered, two);
     measures(answered, two);
-    warnings(answered, two);
-    document.querySelectorAll("#panels figure, #ledger").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.refusal || (!d.running && d.shown < d.asked))));
+    document.querySelectorAll("#panels figure, #ledger, #numbers").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.stale)));
   }
 
   measured(designs) {
     const answered = designs.filter((one) => one.answer);
     measures(answered, answered.length > 1);
-  }
-
-  verdicts(designs) {
-    const lines = designs.flatMap((design) => {
-      const who = designs.length > 1 ? `${design.letter}: ` : "";
-      const said = design.answer ? [text("p", `${who}${design.answer.verdict}`, { className: "said" })] : [];
-      const wrong = design.refusal ? [text("p", `${who}${design.refusal.message}`, { className: "wrong" })] : [];
-      return [...said, ...wrong];
-    });
-    const place = document.getElementById("verdicts");
-    const now = lines.map((one) => one.textContent).join("\n");
-    if (place.innerText.trim() !== now || !lines.length) place.replaceChildren(...lines);
   }
 
   motion(answered, group) {
@@ -191,12 +177,4 @@ function measures(answered, two) {
   if (two) top.append(head);
   body.append(...rows);
   document.getElementById("measures").replaceChildren(...(two ? [top] : []), body);
-}
-
-// Every warning once, with the designs that it holds for.
-function warnings(answered, two) {
-  const whose = new Map();
-  for (const { answer, letter } of answered) for (const one of answer.warnings) whose.set(one, [...(whose.get(one) ?? []), letter]);
-  const lines = [...whose].map(([one, letters]) => text("li", two ? `${letters.join(", ")}: ${one}` : one));
-  document.getElementById("warning-list").replaceChildren(...(lines.length ? lines : [text("li", "No warnings: the models hold here.")]));
 }

@@ -1,11 +1,13 @@
 // What the page asks of its server.
 
 export class Refusal extends Error {
-  // kind: "input", "numerics", "busy", ...; key: the dotted key at fault, or null.
-  constructor({ kind, key, message }) {
+  // kind: "input", "numerics", "busy", ...; problems: all that is wrong, {key, message}, of which
+  // key is the dotted key at fault, or null; remedies: {at, key, value}, null until they are known.
+  constructor({ kind, key, message, problems }) {
     super(message);
     this.kind = kind;
-    this.key = key;
+    this.problems = problems ?? [{ key, message }];
+    this.remedies = null;
   }
 }
 
@@ -13,8 +15,8 @@ export async function getting(path) {
   return whole(await fetch(path));
 }
 
-export async function posting(path, body, kind = "application/json") {
-  return whole(await fetch(path, { method: "POST", headers: { "content-type": kind }, body }));
+export async function posting(path, body, kind = "application/json", signal = undefined) {
+  return whole(await fetch(path, { method: "POST", headers: { "content-type": kind }, body, signal }));
 }
 
 async function whole(response) {

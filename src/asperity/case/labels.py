@@ -1,0 +1,127 @@
+"""What people call the tables and the keys of a case: one name for pages, pictures and texts."""
+
+from __future__ import annotations
+
+LABELS = {
+    "schema": "version of the schema",
+    "body": "body",
+    "body.shape": "shape of the body",
+    "body.radius": "radius of the body",
+    "body.material": "material of the body",
+    "body.youngs_modulus": "Young's modulus of the body",
+    "body.poisson": "Poisson's ratio of the body",
+    "body.density": "density of the body",
+    "body.hardness": "hardness of the body",
+    "body.yield_strength": "yield strength of the body",
+    "counterface": "counterface",
+    "counterface.material": "material of the counterface",
+    "counterface.deformation": "deformation of the bulk",
+    "counterface.youngs_modulus": "Young's modulus of the counterface",
+    "counterface.poisson": "Poisson's ratio of the counterface",
+    "counterface.density": "density of the counterface",
+    "counterface.hardness": "hardness of the counterface",
+    "counterface.yield_strength": "yield strength of the counterface",
+    "roughness": "roughness",
+    "roughness.asperity_density": "asperities per area",
+    "roughness.asperity_radius": "tip radius of the asperities",
+    "roughness.rms_height": "rms height of the asperities",
+    "roughness.files": "measured surfaces",
+    "roughness.source": "asperities taken from the maps",
+    "roughness.size": "size of the maps",
+    "roughness.unit": "unit of the heights",
+    "roughness.channel": "channel of the file",
+    "roughness.missing": "missing pixels",
+    "roughness.remove": "form that is removed",
+    "roughness.align": "alignment of scan lines",
+    "roughness.direction": "direction of scan lines",
+    "roughness.degree": "degree of a scan line's polynomial",
+    "roughness.short": "shortest wavelength kept",
+    "roughness.long": "longest wavelength kept",
+    "roughness.radius_classes": "classes of tip radius",
+    "adhesion": "dry adhesion",
+    "adhesion.model": "adhesion law",
+    "adhesion.work": "work of adhesion",
+    "adhesion.range": "range of the adhesion",
+    "capillary": "menisci",
+    "capillary.model": "meniscus model",
+    "capillary.formation": "formation of menisci",
+    "capillary.liquid": "liquid",
+    "capillary.humidity": "relative humidity",
+    "capillary.temperature": "temperature of the vapour",
+    "capillary.contact_angle": "contact angle",
+    "capillary.tension": "surface tension",
+    "capillary.molar_volume": "molar volume of the liquid",
+    "capillary.film_thickness": "thickness of the adsorbed film",
+    "capillary.surface_rms_height": "rms height of the surface",
+    "capillary.formation_time": "formation time of menisci",
+    "plasticity": "yielding",
+    "plasticity.model": "law of yielding",
+    "plasticity.hardness": "hardness of what yields",
+    "plasticity.yield_strength": "yield strength of what yields",
+    "plasticity.yield_pressure": "pressure at which a contact yields",
+    "gas": "gas in the gap",
+    "gas.name": "gas",
+    "gas.pressure": "gas pressure",
+    "gas.temperature": "gas temperature",
+    "gas.viscosity": "gas viscosity",
+    "gas.slip_length": "slip length",
+    "gas.closest_gap": "thinnest gas film",
+    "waves": "elastic waves",
+    "waves.model": "wave model",
+    "viscoelasticity": "creep of the bulk",
+    "viscoelasticity.model": "creep model",
+    "viscoelasticity.relaxed_modulus_ratio": "relaxed over sudden modulus",
+    "viscoelasticity.relaxation_time": "relaxation time",
+    "impact": "release and fall",
+    "impact.release_gap": "gap at release",
+    "impact.speed": "speed at release",
+    "impact.gravity": "gravity",
+    "publication": "assumptions of the publication",
+    "publication.pull_while_parting_only": "pull while parting only",
+    "publication.conjunction_ends": "end of the conjunction over rms height",
+    "publication.capillary_factor": "factor on the force of menisci",
+    "publication.polynomials": "height integrals",
+    "publication.bands": "bands of menisci",
+    "numerics": "numerics",
+    "numerics.tolerance": "error allowed to force curves",
+    "numerics.rest": "at rest below this share of the first rebound",
+    "numerics.time_limit": "longest simulated time",
+    "numerics.max_impacts": "largest number of impacts",
+    "numerics.rings": "rings of the conjunction",
+    "output": "output",
+    "output.directory": "folder of the files",
+    "output.motion": "keep the motion",
+    "output.pictures": "draw pictures",
+    "materials": "materials of your own",
+    "materials.youngs_modulus": "Young's modulus",
+    "materials.poisson": "Poisson's ratio",
+    "materials.density": "density",
+    "materials.hardness": "hardness",
+    "materials.yield_strength": "yield strength",
+}
+"""Name in words of every table and of every key of a case, by its dotted key."""
+
+
+def label(key: str) -> str:
+    """The name in words of a key or a table.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key, e.g. ``capillary.humidity``, or a table, e.g. ``capillary``; a key of a
+        material of one's own with its name, e.g. ``materials.my glass.density``.
+
+    Returns
+    -------
+    str
+        E.g. ``relative humidity``, ``menisci``, ``density of my glass``; without a capital but for
+        names of persons. Of an unknown key its last part, with blanks.
+    """
+    found = LABELS.get(key)
+    if found is not None:
+        return found
+    *above, last = key.split(".")
+    name = ".".join(above[1:])
+    if above and above[0] == "materials" and (what := LABELS.get(f"materials.{last}")) is not None:
+        return f"{what} of {name}"
+    return last.replace("_", " ")

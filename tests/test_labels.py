@@ -1,0 +1,34 @@
+"""Every table and every key of a case has a name in words."""
+
+from asperity.case import Case
+from asperity.case.labels import LABELS, label
+from asperity.case.problems import tables_of
+
+
+def keys() -> set[str]:
+    """Every table of a case and every key, as one writes them."""
+    found = set()
+    for name, field in Case.model_fields.items():
+        found.add(field.alias or name)
+        for table in tables_of(field.annotation):
+            found |= {f"{name}.{key}" for key in table.model_fields}
+    return found
+
+
+def test_every_key_of_a_case_has_a_name_in_words_and_no_other_thing_has():
+    assert set(LABELS) == keys()
+
+
+def test_names_are_words_that_no_two_keys_share():
+    for name in LABELS.values():
+        assert "_" not in name
+        assert name == name.strip()
+        assert len(name) <= 45, name
+    assert len(set(LABELS.values())) == len(LABELS)
+
+
+def test_a_key_of_a_material_of_ones_own_is_named_with_the_material():
+    assert label("capillary.humidity") == "relative humidity"
+    assert label("materials.my glass.density") == "density of my glass"
+    assert label("materials.no. 5 glass.youngs_modulus") == "Young's modulus of no. 5 glass"
+    assert label("wear.worn_depth") == "worn depth"
