@@ -91,3 +91,12 @@ def test_every_page_that_uses_an_example_names_one_that_is_there():
         for call in re.findall(r"^enter\(.*\)$", page.read_text(), re.MULTILINE):
             names = [ast.literal_eval(one) for one in ast.parse(call).body[0].value.args]
             assert all((ROOT / "examples" / name).is_file() for name in names), page.name
+
+
+def test_the_notebook_has_ten_cells_that_load_solve_sweep_and_plot():
+    page = (DOCS / "notebook.md").read_text()
+    cells = re.findall(r"^```\{code-cell\} python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    assert len(cells) == 10
+    used = set(re.findall(r"asperity\.(\w+)\(", "".join(cells)))
+    assert {"load", "solve", "curve", "sweep"} <= used
+    assert ".plot(" in "".join(cells)

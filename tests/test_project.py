@@ -7,7 +7,9 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 import tomllib
+import venv
 import zipfile
 from pathlib import Path
 from types import ModuleType
@@ -81,7 +83,7 @@ def test_wheel_holds_the_package_its_cases_and_the_licence(wheel: Path):
         names = set(archive.namelist())
         metadata = next(name for name in names if name.endswith(".dist-info/METADATA"))
         described = archive.read(metadata).decode()
-    wanted = [*cases, *SOURCE.rglob("*.py")]
+    wanted = [*cases, *SOURCE.rglob("*.py"), SOURCE / "py.typed"]
     assert {path.relative_to(ROOT / "src").as_posix() for path in wanted} <= names
     assert any(name.endswith("/licenses/LICENSE") for name in names)
     assert "License-Expression: MIT" in described
@@ -107,6 +109,46 @@ def test_wheel_runs_from_any_folder_without_the_repository(wheel: Path, tmp_path
     assert ran.returncode == 0, ran.stderr
     assert json.loads(ran.stdout)["outcome"]
     assert list(folder.iterdir()) == []
+
+
+USER = """import numpy as np
+
+import asperity
+
+case = asperity.load("published-exact")
+reveal_type(asperity.solve(case).time)
+reveal_type(asperity.curve("drop.toml").pull_off)
+reveal_type(asperity.sweep(case, {"capillary.humidity": np.linspace(0.2, 0.8, 3)}))
+asperity.solve(5)
+asperity.slove(case)
+"""
+
+
+def test_a_type_checker_knows_the_installed_package(wheel: Path, tmp_path: Path):
+    venv.create(tmp_path / "venv", with_pip=False)
+    (site,) = (tmp_path / "venv").glob("lib/python*/site-packages")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(site)
+    (site / "others.pth").write_text(sysconfig.get_paths()["purelib"])
+    (tmp_path / "user.py").write_text(USER)
+    mypy = [sys.executable, "-m", "mypy", "--python-executable", str(tmp_path / "venv/bin/python")]
+    ran = subprocess.run(
+        [*mypy, "user.py"],
+        cwd=tmp_path,
+        env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    told = [line.partition(": ")[2] for line in ran.stdout.splitlines()]
+    assert [re.sub(r"\[.*", "", line) for line in told[:3]] == [
+        'note: Revealed type is "numpy.ndarray',
+        'note: Revealed type is "float"',
+        'note: Revealed type is "xarray.core.dataset.Dataset"',
+    ]
+    assert told[3].startswith('error: Argument 1 to "solve" has incompatible type "int"')
+    assert told[4].startswith('error: Module has no attribute "slove"; maybe "solve"?')
+    assert len(told) == 6
 
 
 def test_no_file_names_a_package_index_or_a_path_of_one_machine():

@@ -4,6 +4,15 @@
 >>> case = asperity.load("published-exact")
 >>> case.body.radius
 5e-05
+
+A case: `load`, `Case`.
+What it does: `solve` -> `Result`, `curve` -> `Curve`, `restitution_curve` -> `RestitutionCurve`.
+Many cases: `sweep`, and `open_study` for the store of a study.
+Files: `read` a record. The publication: `reproduce` -> `Reproduction`.
+How a motion ends, and what can go wrong: `Outcome`, `InputError`, `SimulationError`, `Tolerance`.
+Below the case file, for gradients and batches: `Body`, `simulate`, `measure`.
+
+What `help` lists as package contents is internal, but for the modules on the page on Python.
 """
 
 from __future__ import annotations
@@ -12,6 +21,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import os
+
     from .case import Case
     from .errors import InputError, Outcome, SimulationError, Tolerance
     from .impact import Body, simulate
@@ -22,6 +33,7 @@ if TYPE_CHECKING:
     from .solver import curve, solve
     from .studies.reproduce import Reproduction, reproduce
     from .studies.sweep.dataset import open_study
+    from .studies.sweep.grid import sweep
 
 __version__ = "0.1.0"
 
@@ -44,6 +56,7 @@ _HOMES = {
     "restitution_curve": "restitution",
     "simulate": "impact",
     "solve": "solver",
+    "sweep": "studies.sweep.grid",
 }
 
 __all__ = [
@@ -66,29 +79,38 @@ __all__ = [
     "restitution_curve",
     "simulate",
     "solve",
+    "sweep",
 ]
 
 
-def load(source: str) -> Case:
-    """A built-in case by its name, or a case file by its path.
+def load(source: str | os.PathLike[str]) -> Case:
+    """A built-in case by its name, or a case by the path of its file.
 
     Parameters
     ----------
     source
-        Name such as ``"published-exact"``, or the path of a ``.toml`` file.
+        Name such as ``"published-exact"``, or the path of a ``.toml`` file, or of a record
+        (``.nc``), whose case it is. Text without a suffix or a folder is a name.
 
     Raises
     ------
     InputError
         If there is none, or it breaks a rule.
     """
-    from . import case
+    from .sources import source_of
 
-    return case.builtin(source) if source in case.BUILTINS else case.load_file(source)
+    return source_of(source).case
 
 
-def __getattr__(name: str) -> Any:
-    """Import a public name's room when it is first used: ``--help`` needs none of them."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
+def __dir__() -> list[str]:
+    """The public names alone, whatever was imported until now."""
+    return sorted([*__all__, "__version__"])
+
+
+if not TYPE_CHECKING:  # a type checker knows the names from above, and finds misspelt ones
+
+    def __getattr__(name: str) -> Any:
+        """Import a public name's room when it is first used: ``--help`` needs none of them."""
+        if name not in _HOMES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)

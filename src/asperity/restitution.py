@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .capture import Launcher, Rebound, critical_measures
+from .cards import card, counted
 from .case import Case
 from .case.build import build
 from .conversion import assessment_of, measured
 from .errors import InputError, SimulationError
 from .flying import Report, flown, silently
 from .impact import Limits
+from .sources import CaseLike, case_of
 from .summary import amount, warning_lines
 
 if TYPE_CHECKING:
@@ -119,18 +121,27 @@ class RestitutionCurve:
     def summary(self) -> str:
         """Critical velocity and a table of restitution, as text."""
         lines = [f"{self.name}: restitution of the first impact against speed of approach", ""]
-        critical = self.note or ""
-        if self.critical_velocity is not None:
-            note = f"  ({self.note})" if self.note else ""
-            critical = amount(self.critical_velocity, "m/s") + note
-        lines.append(f"  {'critical velocity':<26}{critical}")
+        lines.append(f"  {'critical velocity':<26}{self._critical()}")
         lines.append(f"  {'speed of the case':<26}{amount(self.own_speed, 'm/s')}")
         lines += ["", f"  {'speed':<26}restitution"]
+        lines += [f"  {speed:<26}{told}" for speed, told in self._points()]
+        return "\n".join([*lines, *warning_lines(self.warnings)])
+
+    def _critical(self) -> str:
+        """The critical velocity, or why there is none."""
+        if self.critical_velocity is None:
+            return self.note or ""
+        note = f"  ({self.note})" if self.note else ""
+        return amount(self.critical_velocity, "m/s") + note
+
+    def _points(self) -> list[tuple[str, str]]:
+        """Some thirteen of the speeds, and the restitution at each."""
+        found = []
         for at in range(0, self.speed.size, max(1, (self.speed.size - 1) // 12)):
             kept, held = self.restitution[at], self.captured[at]
             told = "captured" if held else "-" if np.isnan(kept) else f"{kept:.4f}"
-            lines.append(f"  {amount(float(self.speed[at]), 'm/s'):<26}{told}")
-        return "\n".join([*lines, *warning_lines(self.warnings)])
+            found.append((amount(float(self.speed[at]), "m/s"), told))
+        return found
 
     def files(self, *, pictures: bool = True) -> dict[str, bytes]:
         """Content of every file, by name: a table, its numbers as JSON, pictures, a summary."""
@@ -160,15 +171,28 @@ class RestitutionCurve:
         return out.getvalue()
 
     def __repr__(self) -> str:
-        return f"<RestitutionCurve {self.name}: {self.speed.size} speeds>"
+        critical = amount(self.critical_velocity, "m/s")
+        return (
+            f"<RestitutionCurve {self.name}: {counted(self.speed.size, 'speed')}, critical "
+            f"velocity {critical}, {counted(len(self.warnings), 'warning')}>"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("critical velocity", self._critical()),
+            ("speed of the case", amount(self.own_speed, "m/s")),
+            *self._points(),
+        ]
+        sentence = "Restitution of the first impact against speed of approach."
+        return card(self.name, sentence, [("", rows)], self.warnings)
 
 
 def restitution_curve(
-    case: Case,
+    case: CaseLike,
     speeds: np.ndarray | None = None,
     *,
     points: int = POINTS,
-    name: str = "case",
+    name: str | None = None,
     progress: Report | None = None,
     stop: threading.Event | None = None,
 ) -> RestitutionCurve:
@@ -177,7 +201,7 @@ def restitution_curve(
     Parameters
     ----------
     case
-        A case; the body is launched where the forces on it begin.
+        A case, or the name or path of one; the body is launched where the forces on it begin.
     speeds
         Speeds of launch [m/s], all positive; by default over three decades about the critical
         velocity, or about the case's own speed where there is none.
@@ -191,10 +215,10 @@ def restitution_curve(
     InputError, SimulationError
         As :func:`asperity.solve`.
     """
+    case = case_of(case)
+    name = case.name if name is None else name
     if speeds is not None:
-        speeds = np.unique(np.asarray(speeds, float))
-        if not speeds.size or not np.all(np.isfinite(speeds)) or speeds[0] <= 0.0:
-            raise InputError("`speeds` must be positive and finite, in m/s", key="speeds")
+        speeds = _checked(speeds)
     tell, problem, _ = progress or silently, build(case), case.launch
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1, time_limit=np.inf))
     numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
@@ -235,6 +259,14 @@ def restitution_curve(
         own_speed=own,
         warnings=warnings,
     )
+
+
+def _checked(speeds: np.ndarray) -> np.ndarray:
+    """Speeds [m/s] in order, once each."""
+    found = np.unique(np.asarray(speeds, float))
+    if not found.size or not np.all(np.isfinite(found)) or found[0] <= 0.0:
+        raise InputError("`speeds` must be positive and finite, in m/s", key="speeds")
+    return found
 
 
 def _decades(edges: list[float], own: float, points: int) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity import summary
+from asperity.cards import card, counted
 from asperity.errors import Outcome
 
 if TYPE_CHECKING:
@@ -144,7 +145,17 @@ class Result:
         return records.write_folder(directory, self.files(), records.RUN_FILES, force=force)
 
     def __repr__(self) -> str:
-        return f"<Result {self.name}: {self.outcome.value}, {self.time.size} points>"
+        kept = [e for e in self.measures.get("restitution") or [] if e is not None]
+        impacts = len(self.measures.get("restitution") or [])
+        first = f", first restitution {kept[0]:.3g}" if kept else ""
+        return (
+            f"<Result {self.name}: {self.outcome.value}, {counted(impacts, 'impact')}{first}, "
+            f"{counted(len(self.warnings), 'warning')}>"
+        )
+
+    def _repr_html_(self) -> str:
+        sentence, sections = summary.shown_of(self)
+        return card(self.name, sentence, sections, self.warnings)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -235,4 +246,10 @@ class Curve:
         return records.write_folder(directory, self.files(), records.CURVE_FILES, force=force)
 
     def __repr__(self) -> str:
-        return f"<Curve {self.name}: {self.rigid_separation.size} points>"
+        pull = summary.amount(self.pull_off, "N")
+        warned = counted(len(self.warnings), "warning")
+        return f"<Curve {self.name}: pull-off force {pull}, {warned}>"
+
+    def _repr_html_(self) -> str:
+        rows = summary.shown_of_curve(self)
+        return card(self.name, "Force against separation, in and out.", [("", rows)], self.warnings)

@@ -16,14 +16,15 @@ from .flying import Report, cut_in_steps, first_impact, flown, silently
 from .impact import Limits
 from .loading import turning_at
 from .result import Curve, Result
+from .sources import CaseLike, case_of
 from .trace import trace
 from .validity import pull_warnings
 
 
 def solve(
-    case: Case,
+    case: CaseLike,
     *,
-    name: str = "case",
+    name: str | None = None,
     progress: Report | None = None,
     stop: threading.Event | None = None,
     throw: bool = True,
@@ -34,9 +35,9 @@ def solve(
     Parameters
     ----------
     case
-        A case; see :func:`asperity.load`.
+        A case, or the name or path of one; see :func:`asperity.load`.
     name
-        What to call it.
+        What to call it; without it, the case's own name.
     progress
         Called with a fraction done and a line of text, now and then.
     stop
@@ -49,10 +50,12 @@ def solve(
     Raises
     ------
     InputError
-        If the release lies inside contact, or models count one force twice.
+        If it is no case, the release lies inside contact, or models count one force twice.
     SimulationError
         If the numerics fail; its ``partial`` is the result so far.
     """
+    case = case_of(case)
+    name = case.name if name is None else name
     _ = case.launch
     tell, problem = progress or silently, build(case)
     flight = flown(case, problem, tell, stop)
@@ -151,9 +154,9 @@ def _failure(case: Case) -> str:
 
 
 def curve(
-    case: Case,
+    case: CaseLike,
     *,
-    name: str = "case",
+    name: str | None = None,
     load: float | None = None,
     depth: float | None = None,
     progress: Report | None = None,
@@ -178,6 +181,8 @@ def curve(
     InputError, SimulationError
         As :func:`solve`.
     """
+    case = case_of(case)
+    name = case.name if name is None else name
     problem, tell = build(case), progress or silently
     if load is None and depth is None:
         _ = case.launch

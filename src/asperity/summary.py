@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from asperity.amounts import amount as amount
+from asperity.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
 from asperity.shares import share_texts
 from asperity.verdict import unjudged, verdict
@@ -20,11 +22,6 @@ _ROUNDING = 1e-15  # m: a separation below it is 0
 FEW = 5
 """How many impacts a terminal shows."""
 
-_PREFIXES = {
-    -24: "y", -21: "z", -18: "a", -15: "f", -12: "p", -9: "n", -6: "u", -3: "m",
-    0: "", 3: "k", 6: "M", 9: "G", 12: "T",
-}  # fmt: skip
-
 _COLUMNS = (
     ("height", "rebound_height", "m"),
     ("restitution", "restitution", ""),
@@ -36,39 +33,6 @@ _PUBLISHED = (
     ("one-way", "power_loss_published", "W"),
 )
 """What the publication counts."""
-
-
-def scaled(value: float, unit: str) -> tuple[float, str]:
-    """What to divide by, and the unit with its prefix, to show a value between 1 and 1000.
-
-    Parameters
-    ----------
-    value : float
-        A typical value, in ``unit``.
-    unit : str
-        SI unit without a prefix; an empty one takes none.
-
-    Returns
-    -------
-    tuple
-        E.g. ``(1e-9, "nm")`` for 4.6e-8 m. ASCII: "u" for micro.
-    """
-    if not unit or not math.isfinite(value) or value == 0.0:
-        return 1.0, unit
-    # A value that rounds to 1000 at four digits takes the next prefix.
-    power = 3 * math.floor(math.log10(abs(value) * 1.00005) / 3)
-    power = min(max(power, -24), 12)
-    return float(f"1e{power}"), _PREFIXES[power] + unit
-
-
-def amount(value: float | None, unit: str = "") -> str:
-    """A value with its unit at four digits, e.g. ``45.9 nm``; ``-`` where there is none."""
-    if value is None or not math.isfinite(value):
-        return "-"
-    if value == 0.0:
-        return f"0 {unit}".strip()
-    factor, prefixed = scaled(value, unit)
-    return f"{value / factor:.4g} {prefixed}".strip()
 
 
 def of_result(result: Result, made: Mapping[str, object], *, published: bool | None = None) -> str:
@@ -120,6 +84,25 @@ def brief(result: Result, *, published: bool | None = None) -> str:
             *warning_lines(result.warnings),
         ]
     )
+
+
+def shown_of(result: Result) -> tuple[str, list[tuple[str, list[tuple[str, str]]]]]:
+    """Outcome in a sentence, and the measures that there are under their headings."""
+    parts = {
+        "Motion": _motion(result.measures),
+        "Energy": _energy(result.ledger),
+        "Surface": _surface(result.surface),
+    }
+    return _ended(result), [(title, _known(rows)) for title, rows in parts.items()]
+
+
+def shown_of_curve(curve: Curve) -> list[tuple[str, str]]:
+    """The numbers of a curve that there are, by what they are called."""
+    return _known(_curve(curve))
+
+
+def _known(rows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [row for row in rows if row[1] != "-"]
 
 
 def _ended(result: Result) -> str:

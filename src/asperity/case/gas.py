@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from pydantic import model_validator
 
@@ -13,6 +13,10 @@ from asperity.case.table import Table
 from asperity.errors import InputError, refuse_all
 from asperity.gases import GASES, SLIP_PER_FREE_PATH
 from asperity.units import shown
+
+if TYPE_CHECKING:
+    from asperity.case.roughness import Roughness
+    from asperity.case.running import Impact
 
 _NAMED = ("pressure", "temperature")
 _BY_NUMBER = ("viscosity", "slip_length")
@@ -85,6 +89,34 @@ class Gas(Table):
             return gas.viscosity(self.temperature), slip
         except InputError as error:
             raise InputError(str(error), key="temperature") from error
+
+    def refuse_without_ends(self, impact: Impact, roughness: Roughness | None) -> None:
+        """Refuse a film that has no thinnest or no thickest place.
+
+        Raises
+        ------
+        InputError
+            With the key that must be given.
+        """
+        closest, release = self.closest_gap, impact.release_gap
+        if roughness is None and closest is None:
+            raise InputError(
+                "`closest_gap` must be given for a smooth body: a film between smooth surfaces "
+                "that touch would hold them apart for ever; got nothing",
+                key="gas.closest_gap",
+            )
+        if release is None:
+            raise InputError(
+                "`release_gap` must be given with a [gas] table: the film takes energy at every "
+                "separation, and none beyond it is counted; got nothing",
+                key="impact.release_gap",
+            )
+        if closest is not None and closest >= release:
+            raise InputError(
+                f"`closest_gap` must be smaller than `release_gap` ({release * 1e9:.6g} nm), or "
+                f"the film would never thin; got {closest * 1e9:.6g} nm",
+                key="gas.closest_gap",
+            )
 
     @property
     def film_viscosity(self) -> float:

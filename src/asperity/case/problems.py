@@ -23,9 +23,15 @@ _PARTS = re.compile(_PART)
 
 def did_you_mean(word: str, options: Iterable[str]) -> str:
     """`` - did you mean 'rms_height'?``, or nothing where no option is close to the word."""
+    near = nearest(word, options)
+    return "" if near is None else f" - did you mean '{near}'?"
+
+
+def nearest(word: str, options: Iterable[str]) -> str | None:
+    """The option that is close to a word; None where none is."""
     by_lower = {option.lower(): option for option in options}
     close = difflib.get_close_matches(word[:60].lower(), by_lower, n=1)
-    return f" - did you mean '{by_lower[close[0]]}'?" if close else ""
+    return by_lower[close[0]] if close else None
 
 
 def check(model: type[Model], table: Any, *, source: str = "", file: str | None = None) -> Model:
@@ -115,7 +121,7 @@ def _message(model: type[BaseModel], error: Any) -> str:
 def _unknown(model: type[BaseModel], place: Place, value: object) -> str:
     """What to say of an unknown key: the rule, the value, and the key that was meant."""
     name, above = place[-1], place[:-1]
-    owner = _table(model, above)
+    owner = table_of(model, above)
     keys = [field.alias or key for key, field in owner.model_fields.items()] if owner else []
     what = f"a key of [{'.'.join(above)}]" if above else "a key or table of a case"
     got = "" if isinstance(value, dict) else f"; got {shown(value)}"
@@ -124,13 +130,13 @@ def _unknown(model: type[BaseModel], place: Place, value: object) -> str:
         homes = [
             key
             for key in model.model_fields
-            if (table := _table(model, (key,))) is not None and name in table.model_fields
+            if (table := table_of(model, (key,))) is not None and name in table.model_fields
         ]
         hint = f" - it belongs in [{homes[0]}]" if homes else ""
     return f"`{shown(name)[1:-1]}` is not {what}{got}{hint}"
 
 
-def _table(model: type[BaseModel], place: Place) -> type[BaseModel] | None:
+def table_of(model: type[BaseModel], place: Place) -> type[BaseModel] | None:
     """The model of the table at a place; None where there is none."""
     for part in place:
         field = model.model_fields.get(part)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.case import problems, writing
+from asperity.case.replacing import named
 from asperity.case.schema import Case
 from asperity.errors import InputError
 from asperity.units import shown
@@ -102,7 +103,7 @@ def _refuse_lines(text: str, file: str | None) -> None:
 
 
 def load_file(path: str | os.PathLike[str]) -> Case:
-    """A case from a TOML file, which is never read beyond 1 MiB.
+    """A case from a TOML file, which is never read beyond 1 MiB; its name is the file's stem.
 
     Raises
     ------
@@ -110,7 +111,8 @@ def load_file(path: str | os.PathLike[str]) -> Case:
         Where the file cannot be read or is no case.
     """
     name = os.fspath(path)
-    return beside(load(read_text(name), file=name), Path(name).parent)
+    case = named(load(read_text(name), file=name), Path(name).stem)
+    return beside(case, Path(name).parent)
 
 
 def beside(case: Case, folder: Path) -> Case:
@@ -167,7 +169,7 @@ def builtin(name: str) -> Case:
             f"got {shown(name)}{problems.did_you_mean(name, BUILTINS)}",
             key="case",
         )
-    return load(builtin_text(name), file=f"{name}.toml")
+    return named(load(builtin_text(name), file=f"{name}.toml"), name)
 
 
 def builtin_text(name: str) -> str:

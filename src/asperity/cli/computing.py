@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from asperity import summary
-from asperity.cli.sources import Source, source
 from asperity.cli.terminal import say
 from asperity.cli.voice import Voice, files_of, written_to
 from asperity.cli.working import Progress, Work
@@ -29,6 +28,7 @@ from asperity.records import (
     write_folder,
 )
 from asperity.result import Curve, Result
+from asperity.sources import Source, source_of
 
 if TYPE_CHECKING:
     from asperity.restitution import RestitutionCurve
@@ -83,7 +83,7 @@ def compute(
         As `Voice` takes them.
     """
     voice = Voice(**manner)
-    named = source(case)
+    named = source_of(case)
     folder, earlier = None, False
     if output is not None or not voice.as_json:
         folder = Path(output or named.case.output.directory or f"{named.name}-out")

@@ -100,12 +100,12 @@ def _export_restitution(
 
 
 def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Exported:
-    from asperity.cli.sources import source as case_of
+    from asperity.sources import source_of
     from asperity.studies.sweep.force_table import check_force_table, write_force_table
 
     if is_store(source):
         raise InputError(f"{source}: a table of forces must be of a case; got a store", file=source)
-    given = case_of(source)
+    given = source_of(source)
     check_force_table(Path(file), force=force)
 
     def task(progress: Progress | None) -> Curve:

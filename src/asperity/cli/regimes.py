@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.sources import Source, source
 from asperity.cli.terminal import say
 from asperity.cli.voice import Voice
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, SimulationError
 from asperity.records import check_folder, plain, write_folder
 from asperity.regimes import LAW_NAMES, Boundary, Frame, Place, Verdict, region
+from asperity.sources import Source, source_of
 from asperity.summary import WIDTH, amount, warning_lines
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def tell_regime(case: str, **manner: bool) -> None:
         As `Voice` takes them.
     """
     voice = Voice(**manner)
-    (found,) = _assessed([source(case)], voice)
+    (found,) = _assessed([source_of(case)], voice)
     voice.answer(lambda: _regime_text(found), lambda: _regime_object(found))
 
 
@@ -75,7 +75,7 @@ def draw_map(cases: Sequence[str], *, output: str | None, force: bool, **manner:
         As `Voice` takes them.
     """
     voice = Voice(**manner)
-    given = [source(case) for case in cases]
+    given = [source_of(case) for case in cases]
     for one in given:
         _need_a_place(one)
     picture = None

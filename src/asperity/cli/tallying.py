@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
 
 from asperity.errors import Outcome
 
 if TYPE_CHECKING:
-    from asperity.studies.sweep.running import Tally, Warned
+    from asperity.studies.sweep.running import Tally
     from asperity.studies.sweep.store import Store
-
-
-_NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 
 def progress_of(tally: Tally) -> str:
@@ -66,20 +62,8 @@ def took(tally: Tally | None) -> dict[str, Any]:
 
 
 def warnings(tally: Tally | None) -> list[str]:
-    """Where the cases looked at leave the validity of their models, a line for each way.
-
-    Lines of which the numbers alone differ count as one way; it is shown of the first case.
-    """
-    if tally is None:
-        return []
-    kinds: dict[str, list[Warned]] = {}
-    for one in sorted(tally.warned):
-        kinds.setdefault(_NUMBER.sub("#", one[1]), []).append(one)
-    return [
-        f"{len({number for number, _ in found})} of {tally.looked} cases looked at, such as case "
-        f"{found[0][0]}: {found[0][1]}"
-        for found in kinds.values()
-    ]
+    """Where the cases looked at leave the validity of their models; see `Tally.warnings`."""
+    return [] if tally is None else tally.warnings
 
 
 def lines(store: Store) -> list[str]:

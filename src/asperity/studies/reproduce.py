@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from ..cards import card, counted
 from ..case import Case, builtin
 from ..errors import InputError, SimulationError
 from ..result import Result
@@ -58,6 +59,15 @@ class Reproduction:
     drawings: dict[str, Drawing]
     problems: list[str] = field(default_factory=list)
     surfaces: dict[str, Any] | None = None
+
+    def __repr__(self) -> str:
+        parts = (self.rows, "published number"), (self.audit, "claim"), (self.problems, "problem")
+        return f"<Reproduction: {', '.join(counted(len(of), word) for of, word in parts)}>"
+
+    def _repr_html_(self) -> str:
+        claims = [(claim["claim"], claim["verdict"]) for claim in self.audit]
+        sentence = f"{counted(len(self.rows), 'published number')} beside ours; its claims:"
+        return card("Reproduction", sentence, [("", claims)], self.problems)
 
     def json_object(self) -> dict[str, Any]:
         """What ``--json`` prints."""

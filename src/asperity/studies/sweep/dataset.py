@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -138,14 +138,27 @@ def open_study(
 
 def dataset_of(found: Results, names: Iterable[str]) -> xarray.Dataset:
     """Some columns of an open store as a dataset; see `open_study`."""
+    values = {name: found.store.column(name) for name in found.checked(names)}
+    return dataset_in(found.study, values)
+
+
+def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset:
+    """Columns of a study as a dataset, ``outcome`` among them; see `open_study`.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    values : mapping of str to ndarray
+        Columns by name, shape (cases[, width]).
+    """
     import xarray
 
-    study = found.study
-    values = {name: found.store.column(name) for name in found.checked(names)}
+    columns = {column.name: column for column in study.columns}
     coordinates = _coordinates(study)
     dimensions = tuple(axis.key for axis in study.axes) if study.sample is None else (CASE,)
     variables = {
-        name: _variable(found.columns[name], column, dimensions, study.shape)
+        name: _variable(columns[name], column, dimensions, study.shape)
         for name, column in values.items()
     }
     outcome = values["outcome"]

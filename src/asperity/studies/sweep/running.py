@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 import threading
 import time
@@ -26,6 +27,8 @@ Warned = tuple[int, str]
 
 Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""
+
+_NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 _EACH = {
     "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false",
@@ -110,6 +113,21 @@ class Tally:
         remaining = self.cases_wanted - self.cases
         return remaining / self.rate if self.rate > 0.0 else float("inf")
 
+    @property
+    def warnings(self) -> list[str]:
+        """Where the cases looked at leave the validity of their models, a line for each way.
+
+        Lines of which the numbers alone differ count as one way; it is shown of the first case.
+        """
+        kinds: dict[str, list[Warned]] = {}
+        for one in sorted(self.warned):
+            kinds.setdefault(_NUMBER.sub("#", one[1]), []).append(one)
+        return [
+            f"{len({number for number, _ in found})} of {self.looked} cases looked at, such as "
+            f"case {found[0][0]}: {found[0][1]}"
+            for found in kinds.values()
+        ]
+
     def plus(self, effort: Effort, wall: float) -> Tally:
         """With one task more."""
         return Tally(
@@ -170,7 +188,7 @@ def fill(
     began = time.monotonic()
     try:
         if missing:
-            with contextlib.closing(_generator(runner(study, missing, stop))) as answers:
+            with contextlib.closing(generator_of(runner(study, missing, stop))) as answers:
                 for task, columns, effort in answers:
                     store.write(task, columns)
                     tally = tally.plus(effort, time.monotonic() - began)
@@ -184,7 +202,7 @@ def fill(
     return tally
 
 
-def _generator(answers: Iterator[Answer]) -> Generator[Answer, None, None]:
+def generator_of(answers: Iterator[Answer]) -> Generator[Answer, None, None]:
     """The answers as something that can be closed."""
     yield from answers
 
@@ -209,9 +227,9 @@ def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Ite
             if task is not None and not stop.is_set():
                 ahead[pool.submit(compute, study, task, stop)] = task
 
-        for _ in range(2 * cores):
-            submit()
         try:
+            for _ in range(2 * cores):
+                submit()
             while ahead:
                 for future in wait(ahead, return_when=FIRST_COMPLETED).done:
                     task = ahead.pop(future)
@@ -223,6 +241,9 @@ def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Ite
                     yield task, columns, effort
                 if stop.is_set():
                     break
+        except BaseException:  # Ctrl-C too: leaving the pool waits for what is under way
+            stop.set()
+            raise
         finally:
             for future in ahead:
                 future.cancel()

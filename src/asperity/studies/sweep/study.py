@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,20 +14,19 @@ import numpy as np
 from pydantic import BaseModel
 
 from asperity.case import Case
-from asperity.case.reading import read_text, refuse_size
+from asperity.case.reading import read_text
 from asperity.errors import InputError
-from asperity.studies.sweep import bases, canonical, layout, reading, structure
+from asperity.studies.sweep import bases, canonical, layout, reading, showing, structure
 from asperity.studies.sweep.axes import Axis
 from asperity.studies.sweep.changing import Change, changed, parts
+from asperity.studies.sweep.corners import corners_of
 from asperity.studies.sweep.keys import Value, find, place, written
 from asperity.studies.sweep.layout import Column
 from asperity.studies.sweep.listing import axis_of
+from asperity.studies.sweep.refusing import refuse_unusable
 from asperity.studies.sweep.sampling import Sample
 
 __all__ = ["Axis", "Sample", "Study", "parse", "read"]
-
-CASES_LIMIT = 1 << 53
-"""Most cases that a study can count: each has a number that a float can hold."""
 
 _CORNERS = 16
 
@@ -229,14 +227,13 @@ class Study:
         """Numbers of a few cases: of a grid its corners, of a sample its first."""
         if self.sample is not None:
             return list(range(min(self.size, _CORNERS)))
-        last = np.array(self.shape) - 1
-        alone = np.eye(last.size, dtype=bool)
-        none = np.zeros((1, last.size), bool)
-        chosen = [none, ~none, alone, ~alone]  # all low, all high, each axis apart from the others
-        if 2**last.size <= _CORNERS:
-            chosen.append(np.array(list(itertools.product((False, True), repeat=last.size))))
-        numbers = np.ravel_multi_index(tuple((np.concatenate(chosen) * last).T), self.shape)
-        return list(dict.fromkeys(numbers.tolist()))[:_CORNERS]
+        return corners_of(self.shape, _CORNERS)
+
+    def __repr__(self) -> str:
+        return f"<Study of {self.base_name}: {showing.sentence(self)}>"
+
+    def _repr_html_(self) -> str:
+        return showing.html(self)
 
 
 def read(path: str) -> Study:
@@ -279,28 +276,8 @@ def parse(text: str, *, file: str | None = None, folder: Path | None = None) -> 
     kept, impacts = tuple(table.keep), table.keep_impacts
     study = Study(base, name, tuple(axes), table.sample, kept, impacts, table.motions)
     try:
-        _refuse(study)
+        refuse_unusable(study)
     except InputError as error:
         message = f"{file}: {error}" if file else str(error)
         raise InputError(message, file=file, key=error.key) from None
     return study
-
-
-def _refuse(study: Study) -> None:
-    """Refuse columns that there are not, cases beyond counting, and what no store could hold."""
-    _ = study.columns
-    if study.base.impact is None and not any(place(a.key)[0] == "impact" for a in study.axes):
-        raise InputError("`base` must have an [impact] table, for motions; got none", key="base")
-    if study.size > CASES_LIMIT:
-        got = f"at least 10^{len(str(study.size)) - 1}"
-        raise InputError(f"[axes] must give at most 2^53 cases; got {got}", key="axes")
-    if study.sample is not None:
-        study.sample.refuse_axes(len(study.axes))
-    try:
-        study.canonical.encode()
-    except UnicodeEncodeError:
-        raise InputError(
-            "`base` must name its files in UTF-8, for the store to hold; got other bytes",
-            key="base",
-        ) from None
-    refuse_size(study.canonical, None, "a study")

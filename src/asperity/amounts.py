@@ -1,0 +1,43 @@
+"""A value with its unit as people write it: ``45.9 nm``."""
+
+from __future__ import annotations
+
+import math
+
+_PREFIXES = {
+    -24: "y", -21: "z", -18: "a", -15: "f", -12: "p", -9: "n", -6: "u", -3: "m",
+    0: "", 3: "k", 6: "M", 9: "G", 12: "T",
+}  # fmt: skip
+
+
+def scaled(value: float, unit: str) -> tuple[float, str]:
+    """What to divide by, and the unit with its prefix, to show a value between 1 and 1000.
+
+    Parameters
+    ----------
+    value : float
+        A typical value, in ``unit``.
+    unit : str
+        SI unit without a prefix; an empty one takes none.
+
+    Returns
+    -------
+    tuple
+        E.g. ``(1e-9, "nm")`` for 4.6e-8 m. ASCII: "u" for micro.
+    """
+    if not unit or not math.isfinite(value) or value == 0.0:
+        return 1.0, unit
+    # A value that rounds to 1000 at four digits takes the next prefix.
+    power = 3 * math.floor(math.log10(abs(value) * 1.00005) / 3)
+    power = min(max(power, -24), 12)
+    return float(f"1e{power}"), _PREFIXES[power] + unit
+
+
+def amount(value: float | None, unit: str = "") -> str:
+    """A value with its unit at four digits, e.g. ``45.9 nm``; ``-`` where there is none."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    if value == 0.0:
+        return f"0 {unit}".strip()
+    factor, prefixed = scaled(value, unit)
+    return f"{value / factor:.4g} {prefixed}".strip()
