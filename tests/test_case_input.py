@@ -66,8 +66,8 @@ BAD = [
     ("schema = 1", "schema = 2", "`schema` must be 1, the only version that there is; got 2"),
     ("schema = 1", "schema = true", "`schema` must be 1"),
     ('shape = "sphere"', 'shape = "cylinder"', "`shape` must be 'sphere'; got 'cylinder'"),
-    ('material = "soda-lime glass"', "", "body.material (line 6): `material`, or all of `youngs_modulus`, "
-     "`poisson`, `density`, must be given"),
+    ('material = "soda-lime glass"', "", "body.material (line 6): `material`, or all of "
+     "`youngs_modulus`, `poisson`, `density`, must be given"),
     ('material = "soda-lime glass"', "poisson = 0.2", "body.youngs_modulus"),
     ('material = "soda-lime glass"', 'material = "silca"', "got 'silca' - did you mean 'silica'?"),
     ("# poisson = 0.25 ", "poisson = 0.25 ", "`poisson` and `material` exclude each other"),
@@ -97,9 +97,9 @@ BAD = [
     ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "1 um"',
      "`closest_gap` must be smaller than `release_gap` (1000 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
-    ('deformation = "rigid"', 'deformation = "half-space"\n[publication]', "counterface.deformation (line 20): `deformation` "
-     "must be 'rigid' with a [publication] table, which replaces the other models; got "
-     "'half-space'"),
+    ('deformation = "rigid"', 'deformation = "half-space"\n[publication]',
+     "counterface.deformation (line 20): `deformation` must be 'rigid' with a [publication] table, "
+     "which replaces the other models; got 'half-space'"),
     ("humidity = 0.6", "humidity = -0.1", "`humidity` must lie in [0, 1]; got -0.1"),
     ("humidity = 0.6", "humidity = nan", "`humidity` must be finite; got nan"),
     ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1]; got '60 %'"),

@@ -18,6 +18,8 @@ from asperity.materials import SOLIDS
 
 BASH = shutil.which("bash")
 
+PUBLISHED = [name for name in sorted(BUILTINS) if name.startswith("pub")]
+
 
 @pytest.fixture(autouse=True)
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -65,7 +67,7 @@ def test_commands_and_options_are_completed():
 
 
 def test_a_case_is_a_built_in_name_a_case_file_or_a_record():
-    assert offered("asperity run pub") == sorted(BUILTINS)
+    assert offered("asperity run pub") == PUBLISHED
     assert offered("asperity curve ") == [*sorted(BUILTINS), "drop.toml", "deep/", "study.zarr/"]
     assert offered("asperity adhesion-map drop.toml d") == ["drop.toml", "deep/"]
 
@@ -100,7 +102,7 @@ def test_what_an_option_takes_any_file_for_is_left_to_the_shell():
 
 
 def test_options_that_exclude_each_other_do_not_break_completion():
-    assert offered("asperity run -q -v pub") == sorted(BUILTINS)
+    assert offered("asperity run -q -v pub") == PUBLISHED
 
 
 def test_zsh_and_fish_get_their_own_form():
@@ -110,7 +112,7 @@ def test_zsh_and_fish_get_their_own_form():
     assert asked("zsh", "asperity surface no").stdout == "_files\n"
     assert '"drop.toml"' in asked("zsh", "asperity run dr").stdout
     ran = asked("fish", "asperity run pub", _TYPER_COMPLETE_FISH_ACTION="get-args")
-    assert ran.stdout.split() == sorted(BUILTINS)
+    assert ran.stdout.split() == PUBLISHED
 
 
 def test_completion_imports_nothing_heavy():

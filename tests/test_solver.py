@@ -174,7 +174,8 @@ def test_a_ledger_that_does_not_close_is_said(case, monkeypatch):
 def test_a_rebound_of_many_millimetres_is_resolved_within_nanometres(speed):
     """A smooth JKR sphere of 1 um under gravity, whose bond ends within 3 nm."""
     bounce = asperity.load(str(EXAMPLES / "jkr-bounce.toml"))
-    thrown = bounce.replace({"impact.gravity": "9.81 m/s^2", "impact.speed": speed})
+    falls = {"body.radius": "1 um", "impact.gravity": "9.81 m/s^2"}
+    thrown = bounce.replace({**falls, "impact.speed": speed})
     found = solver.solve(thrown)
     assert found.outcome in (Outcome.REST, Outcome.OSCILLATING)
     assert found.ledger["closure"] < 1e-10

@@ -117,8 +117,8 @@ WHOLE = [
      " that this program knows; got 2, a newer program's"),
     (f"schema = 1.0\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`schema` must be 1"),
     (f'{HEAD.replace("published", "publishd")}[axes]\n{RANGE}{SAMPLE}', "`base` must be a built-in "
-     "case (published, published-exact) or a case file beside the study, such as 'drop.toml'; got "
-     "'publishd' - did you mean 'published'?"),
+     "case (glass-bead, published, published-exact) or a case file beside the study, such as "
+     "'drop.toml'; got 'publishd' - did you mean 'published'?"),
     (f"base = 3\n[axes]\n{RANGE}{SAMPLE}", "`base` must be a built-in case or a case file"),
     (f'base = ""\n[axes]\n{RANGE}{SAMPLE}', "`base` must be a built-in case or a case file"),
     (f'base = "no-such.toml"\n[axes]\n{RANGE}{SAMPLE}', "base: no-such.toml: cannot be read"),

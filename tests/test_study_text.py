@@ -55,8 +55,8 @@ def test_labels_say_which_key_in_words():
     labels = [keys.find(name).label for name in keys.known()]
     assert len(set(labels)) == len(labels)
     assert keys.find(RMS).label == "rms height"
-    assert keys.find(HUMIDITY).label == "capillary humidity"
-    assert keys.find("body.density").label == "body density"
+    assert keys.find(HUMIDITY).label == "relative humidity"
+    assert keys.find("body.density").label == "density of the body"
 
 
 RANGES = {

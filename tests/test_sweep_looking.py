@@ -339,7 +339,8 @@ def test_a_map_draws_the_boundary_where_the_law_has_it(stores: dict[str, Path]):
     rough = points[:, 0] * 1e-9 / 1e-8
     exact = 0.2 * rough**4 / 0.25
     step = 0.02 + 4 * 0.8 * rough**3 * rough * math.log(1.5) / 40.0
-    assert np.all(np.abs(points[:, 1] - exact) <= step)
+    assert drawn.axes[0].get_ylabel().endswith("[%]")
+    assert np.all(np.abs(points[:, 1] / 100.0 - exact) <= step)
 
 
 def test_failed_cells_are_hatched_and_no_others(grid: xarray.Dataset):
@@ -354,7 +355,7 @@ def test_failed_cells_are_hatched_and_no_others(grid: xarray.Dataset):
     inside = set()
     for path in hatched.get_paths():
         box = path.get_extents()
-        x, y = grid[ROUGH].values * 1e9, grid[HUMID].values
+        x, y = grid[ROUGH].values * 1e9, 100.0 * grid[HUMID].values
         inside |= {
             (i, j)
             for i in np.flatnonzero((x > box.x0) & (x < box.x1))
@@ -487,7 +488,7 @@ def test_lines_stand_at_the_values_in_the_unit_of_the_label(stores: dict[str, Pa
         (line,) = axes.lines
         np.testing.assert_allclose(line.get_xdata(), speed * 1e3)
         np.testing.assert_allclose(line.get_ydata(), values)
-        assert axes.get_xlabel() == "impact speed [mm/s]"
+        assert axes.get_xlabel() == "speed at release [mm/s]"
     assert "[ms]" in drawn.axes[1].get_ylabel()
 
 
@@ -542,7 +543,7 @@ def test_a_logarithmic_axis_is_drawn_so(grid: xarray.Dataset):
 
 def test_a_picture_says_what_failed_and_what_was_held(grid: xarray.Dataset):
     _, drawn = sweep.figure(grid, held={HUMID: "0.33"})
-    assert drawn.texts[0].get_text() == "capillary humidity 0.34, 1 of 41 cases failed"
+    assert drawn.texts[0].get_text() == "relative humidity 0.34, 1 of 41 cases failed"
 
 
 # Tables

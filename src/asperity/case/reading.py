@@ -181,8 +181,8 @@ def template() -> str:
     """The commented case that `asperity init` writes: every key, with its unit and meaning."""
     return writing.commented(
         Case,
-        "A glass bead of 0.1 mm falls 1 um onto a silicon wafer in vapour at 60 % humidity. Will it\n"
-        "stick? Every value with a dimension is text with a unit; keys behind a # are optional.",
+        "A glass bead of 0.1 mm falls 1 um onto a silicon wafer at 60 % humidity. Will it stick?\n"
+        "Every value with a dimension is text with a unit; keys behind a # are optional.",
     )
 
 

@@ -41,7 +41,7 @@ def pictures(result: Result | Curve) -> dict[str, bytes]:
         parts = _rows(result)
     except InputError:
         return {}
-    found = {}
+    found: dict[str, bytes] = {}
     for part in parts:
         drawn = figure(result, part)
         found |= {f"{part}.png": style.png(drawn), f"{part}.svg": style.svg(drawn)}

@@ -204,5 +204,3 @@ def _inside(annotation: Any) -> Iterator[type]:
             yield from _inside(part)
     elif isinstance(origin or annotation, type):
         yield origin or annotation
-
-
