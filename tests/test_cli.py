@@ -414,6 +414,14 @@ def test_a_full_disk_is_exit_4_and_leaves_nothing(place: Path):
     assert names(place) == []
 
 
+def test_a_home_that_cannot_be_written_to_costs_no_message(place: Path):
+    nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), "/proc/nowhere")
+    environment = {key: value for key, value in os.environ.items() if key != "MPLCONFIGDIR"}
+    ran = program("quick", "run", CASE, env={**environment, **nowhere})
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert "motion.png" in names(place / f"{CASE}-out")
+
+
 def test_a_full_disk_keeps_an_earlier_result(place: Path):
     assert call("run", CASE).exit_code == 0
     folder = place / f"{CASE}-out"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import signal
 import sys
@@ -148,6 +149,8 @@ def prepare() -> None:
             stream.reconfigure(errors="backslashreplace")
     # A full or read-only disk costs the compile cache alone, and the result says the rest.
     warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation")
+    # Without a cache of fonts pictures come a second later, which is nothing to act on.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
 
 
 def leave(command: Any) -> NoReturn:
