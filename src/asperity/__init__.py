@@ -1,7 +1,7 @@
 """Impact of a small body on a rough surface: bounce or stick, how much energy goes and where.
 
 >>> import asperity
->>> case = asperity.load("published-exact")
+>>> case = asperity.load("glass-bead")
 >>> case.body.radius
 5e-05
 
@@ -89,7 +89,7 @@ def load(source: str | os.PathLike[str]) -> Case:
     Parameters
     ----------
     source
-        Name such as ``"published-exact"``, or the path of a ``.toml`` file, or of a record
+        Name such as ``"glass-bead"``, or the path of a ``.toml`` file, or of a record
         (``.nc``), whose case it is. Text without a suffix or a folder is a name.
 
     Raises
