@@ -586,8 +586,9 @@ def test_a_verdict_says_who_takes_the_energy():
         "dry adhesion takes 75 % of the energy lost"
     )
     assert taken(adhesion=0.0004 * energy, capillary=0.1 * energy) == (
-        "menisci take 99 % of the energy lost"
+        "menisci take 99.6 % of the energy lost"
     )
+    assert taken(adhesion=1.4, capillary=98.6) == "menisci take 99 % of the energy lost"
     assert taken(adhesion=0.0, plastic=energy) == "yielding takes all of the energy lost"
     assert taken(gas=0.2 * energy) == "the gas film takes all of the energy lost"
     assert taken(adhesion=1e-12 * energy, capillary=0.0) == "no energy is lost"

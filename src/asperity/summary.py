@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 WIDTH = 80
 _ROUNDING = 1e-15  # m: a separation below it is 0
 FEW = 5
-"""How many impacts a terminal shows."""
+"""How many impacts a terminal shows of many."""
+_FEW_MORE = 3  # are shown too
 
 _COLUMNS = (
     ("height", "rebound_height", "m"),
@@ -232,14 +233,14 @@ def _curve(curve: Curve) -> list[tuple[str, str]]:
 
 
 def _impacts(result: Result, most: int | None, published: bool | None) -> list[str]:
-    """The table of impacts, each column in one unit; its first ``most`` rows."""
+    """The table of impacts, each column in one unit; its first ``most`` rows of many more."""
     shows = result.case.publication is not None if published is None else published
     columns = [*_COLUMNS, *(_PUBLISHED if shows else ())]
     given = [result.measures.get(key) or [] for _, key, _ in columns]
     count = max(len(values) for values in given)
     if not count:
         return []
-    shown = min(count, most or count)
+    shown = count if most is None or count <= most + _FEW_MORE else most
     units = [_column_unit(values[:shown], columns[i][2]) for i, values in enumerate(given)]
     lines = ["", "Impacts" + " (one-way: the power loss as the publication counts it)" * shows]
     lines.append(_row("", [title for title, _, _ in columns]))

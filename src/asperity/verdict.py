@@ -151,7 +151,7 @@ def _taken(ledger: dict[str, Any]) -> str:
     words = _TAKERS.get(most, f"{most} takes")
     if len(lost) == 1 or share > 99.95:
         return f"{words} all of the energy lost"
-    return f"{words} {min(round(share), 99)} % of the energy lost"
+    return f"{words} {share:.{1 if share > 99.0 else 0}f} % of the energy lost"
 
 
 def _takes(ledger: dict[str, Any]) -> bool:
