@@ -34,7 +34,7 @@ from asperity.errors import Outcome
 from asperity.records.layout import json_object
 from asperity.result import Result
 from asperity.solver import explore
-from asperity.verdict import verdict
+from asperity.verdict import sentence, verdict
 from asperity.web.answer import _seen
 from asperity.web.app import LOCAL, application
 from asperity.web.exploring import FILES
@@ -222,7 +222,7 @@ def test_an_answer_is_that_of_explore_to_the_last_digit_and_of_solve_to_1e_9(
     assert_close(found["measures"], solved.measures)
     assert found["outcome"] == solved.outcome.value
     assert found["warnings"] == solved.warnings
-    assert found["verdict"] == verdict(result)
+    assert found["verdict"] == sentence(result)
     assert found["message"] == result.outcome.message
     assert (found["name"], found["motion"]["impacts"]) == ("drop", 12)
 
@@ -602,7 +602,7 @@ def test_nothing_is_lost_without_adhesion_and_liquid(client: TestClient, tables:
     found = explored(client, dry)["answer"]
     assert found["measures"]["captured"] is False
     assert found["verdict"] == (
-        "leaves the first impact with e = 1 and bounces for ever; no energy is lost"
+        "The body leaves the first impact with e = 1 and bounces for ever; no energy is lost"
     )
     wet = explored(client, tables)["answer"]["verdict"]
     assert "and still bounces after 12 rebounds, where the run was stopped; menisci" in wet

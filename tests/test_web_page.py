@@ -117,7 +117,7 @@ def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(page, 
         assert label, panel
     result = asperity.solve(load(CASE))
     expect(page.locator("#verdicts .said")).to_have_text(
-        "no verdict: 0.56 asperities are expected to touch at closest approach, so about half of "
+        "No verdict: 0.56 asperities are expected to touch at closest approach, so about half of "
         "single bodies touch none and the others one or two; the numbers are means over many bodies"
     )
     assert page.locator("#warning-list li").all_text_contents() == result.warnings
@@ -200,7 +200,7 @@ def test_materials_of_ones_own_have_fields_sliders_and_refusals(page):
 
 
 def test_a_slider_moves_by_keyboard_and_says_its_value(page):
-    slider = page.get_by_role("slider", name="Rms height of the asperities")
+    slider = page.get_by_role("slider", name="Rms height")
     slider.focus()
     slider.press("ArrowLeft")
     settled(page)

@@ -12,7 +12,7 @@ from asperity.amounts import amount as amount
 from asperity.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
 from asperity.shares import share_texts
-from asperity.verdict import unjudged, verdict
+from asperity.verdict import sentence
 
 if TYPE_CHECKING:
     from asperity.result import Curve, Result
@@ -110,9 +110,7 @@ def _ended(result: Result) -> str:
     """The answer in a sentence where there is one, and how the motion ended."""
     if not result.outcome.ok:
         return result.outcome.message
-    answer = verdict(result)
-    told = answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
-    return f"{told}. {result.outcome.message}"
+    return f"{sentence(result)}. {result.outcome.message}"
 
 
 def brief_curve(curve: Curve) -> str:

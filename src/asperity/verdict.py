@@ -50,6 +50,18 @@ def verdict(result: Result) -> str:
     return "; ".join(part for part in (told, _taken(result.ledger)) if part)
 
 
+def sentence(result: Result) -> str:
+    """The `verdict` as the beginning of a sentence, with its subject and without its stop.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    """
+    answer = verdict(result)
+    return answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
+
+
 def _first(measures: dict[str, Any]) -> str:
     """What happens at the first impact."""
     kept = measures["restitution"][0]

@@ -11,7 +11,7 @@ from asperity.colours import colour
 from asperity.records.layout import json_object, plain
 from asperity.regimes import Frame, Place, region
 from asperity.result import Curve, Result
-from asperity.verdict import verdict
+from asperity.verdict import sentence
 
 DRAWN = 12
 """Impacts whose course the page draws."""
@@ -41,7 +41,7 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
         **json_object(result),
         "name": result.name,
         "message": result.outcome.message,
-        "verdict": verdict(result),
+        "verdict": sentence(result),
         "motion": {
             **{
                 name: packed(getattr(result, name)[seen])
