@@ -699,6 +699,8 @@ def test_what_a_choice_fills_in_is_said_and_goes_with_it(page):
     expect(page.locator("#notice")).to_contain_text("Filled in as well: rms height of the surface")
     check(Case, state(page)[0]["tables"])
     page.locator("#case").select_option("drop")
+    drop = "() => asperity.designs()[0].tables.capillary.model === 'equilibrium'"
+    page.wait_for_function(drop)
     write(page, "impact.release_gap", "")
     reveal(page, "#field-impact-speed")
     write(page, "impact.speed", "10 mm/s")
