@@ -200,6 +200,8 @@ def test_init_writes_a_case_that_runs_and_never_overwrites(place: Path):
     assert_one_line(ran.stderr, "case.toml", "there already")
     assert (place / "case.toml").read_text() == "mine"
     assert call("init", "no/such/folder.toml").exit_code == 4
+    assert call("init", "plain").stdout.endswith("asperity run ./plain\n")
+    (place / "plain").unlink()
     assert names(place) == ["case.toml"]
 
 
@@ -279,9 +281,12 @@ def test_results_of_an_edited_case_are_replaced_and_those_of_another_are_refused
     (place / "drop.toml").write_text(text.replace("humidity = 0.6", "humidity = 0.5"))
     assert call("run", "drop.toml").exit_code == 0
     assert records.read(place / "drop-out" / "record.nc").case.capillary.humidity == 0.5
-    ran = call("run", "other.toml", "-o", "drop-out")
-    assert ran.exit_code == 2
-    assert_one_line(ran.stderr, "drop-out", "--force")
+    (place / "deep").mkdir()
+    (place / "deep" / "drop.toml").write_text(text)
+    for other in ("other.toml", "deep/drop.toml", "published"):
+        ran = call("run", other, "-o", "drop-out")
+        assert ran.exit_code == 2
+        assert_one_line(ran.stderr, "drop-out", "--force", "results of another case")
 
 
 @pytest.mark.parametrize("spoiled", ["a note", "a record cut short", "a folder"])
@@ -291,6 +296,7 @@ def test_what_is_not_known_as_the_cases_own_results_is_refused(place: Path, spoi
     record = folder / "record.nc"
     if spoiled == "a note":
         (folder / "notes.txt").write_text("mine")
+        assert "notes.txt" in call("run", CASE).stderr
     elif spoiled == "a folder":
         (folder / "summary.txt").unlink()
         (folder / "summary.txt").mkdir()

@@ -67,6 +67,8 @@ class RestitutionCurve:
         What to know before the numbers are used, for the case's own speed.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from.
+    case_file : str, optional
+        Path of the case's file, or which built-in case it is; None of a case made in Python.
     """
 
     case: Case
@@ -80,6 +82,7 @@ class RestitutionCurve:
     own_speed: float
     warnings: list[str]
     input_sha256: str | None = None
+    case_file: str | None = None
 
     def dataset(self) -> xarray.Dataset:
         """The curve as a dataset over the speed, with units."""

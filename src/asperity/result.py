@@ -54,6 +54,8 @@ class Result:
         "deepest_time", "apex_time" [s], "deepest_separation", "apex_separation" [m], per impact.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
+    case_file : str, optional
+        Path of the case's file, or which built-in case it is; None of a case made in Python.
     surface : dict, optional
         Measured surfaces: files with their SHA-256, what was done to them, and what was found,
         in SI; None for a case of numbers.
@@ -74,6 +76,7 @@ class Result:
     warnings: list[str]
     events: Arrays
     input_sha256: str | None = None
+    case_file: str | None = None
     surface: dict[str, Any] | None = None
 
     def dataset(self) -> xarray.Dataset:
@@ -191,6 +194,8 @@ class Curve:
         What to know before the numbers are used.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
+    case_file : str, optional
+        Path of the case's file, or which built-in case it is; None of a case made in Python.
     """
 
     case: Case
@@ -209,6 +214,7 @@ class Curve:
     loss: float
     warnings: list[str]
     input_sha256: str | None = None
+    case_file: str | None = None
 
     def dataset(self) -> xarray.Dataset:
         """Everything as a dataset with units; the case is its attribute."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from asperity.case import Case, builtin, load_file
+from asperity.case import BUILTINS, Case, builtin, load_file
 from asperity.case.problems import nearest
 from asperity.case.reading import builtin_text
 from asperity.case.replacing import named
@@ -25,12 +25,21 @@ _LISTED = 10_000  # files of a folder among which a near name is sought
 
 @dataclass(frozen=True)
 class Source:
-    """A case with its name, and the hash of the text that it was read from."""
+    """A case with its name, the hash of the text that it was read from, and where that is.
+
+    Attributes
+    ----------
+    file
+        As it was given; None for a built-in case.
+    case_file
+        Whole path of the case's file, or which built-in case it is; of a record what it says.
+    """
 
     case: Case
     name: str
     input_sha256: str
-    file: str | None = None
+    file: str | None
+    case_file: str | None
 
 
 def case_of(given: CaseLike) -> Case:
@@ -70,20 +79,20 @@ def source_of(given: str | os.PathLike[str]) -> Source:
         record = read(name)
         assert record.input_sha256 is not None
         _check_surfaces(name, getattr(record, "surface", None))
-        return Source(named(record.case, record.name), record.name, record.input_sha256, name)
+        case = named(record.case, record.name)
+        return Source(case, record.name, record.input_sha256, name, record.case_file)
     try:
         case = load_file(name)
         text = path.read_bytes()
     except InputError as error:
-        near = None if _is_there(path) else _near_file(path)
-        if near is None:
+        hint = "" if _is_there(path) else _meant(path)
+        if not hint:
             raise
-        hint = f" - did you mean '{near}'?"
         raise InputError(f"{error}{hint}", file=error.file, key=error.key) from None
     except OSError as error:
         reason = error.strerror or error
         raise InputError(f"{name}: cannot be read: {reason}", file=name) from None
-    return Source(case, case.name, hashlib.sha256(text).hexdigest(), name)
+    return Source(case, case.name, hashlib.sha256(text).hexdigest(), name, str(path.resolve()))
 
 
 def _no_source(wanted: str, given: object) -> InputError:
@@ -115,7 +124,8 @@ def _builtin(name: str) -> Source:
         case = builtin(name)
     except InputError as error:
         raise InputError(f"{error}{_file_of(name)}", key=error.key) from None
-    return Source(case, name, hashlib.sha256(builtin_text(name).encode()).hexdigest())
+    digest = hashlib.sha256(builtin_text(name).encode()).hexdigest()
+    return Source(case, name, digest, None, f"built-in case {name}")
 
 
 def _file_of(name: str) -> str:
@@ -132,6 +142,14 @@ def _is_there(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError):  # no name that a file can have
         return False
+
+
+def _meant(path: Path) -> str:
+    """Which case a missing file may stand for: one near by name, or a built-in one."""
+    near = _near_file(path)
+    if near is not None:
+        return f" - did you mean '{near}'?"
+    return f"; the built-in case is {path.stem}" if path.stem in BUILTINS else ""
 
 
 def _near_file(path: Path) -> Path | None:

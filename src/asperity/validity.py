@@ -213,7 +213,7 @@ def pull_warnings(case: Case, pull_off: float, held: float) -> list[str]:
     """
     if case.asperities is None or not pull_off > 0.0 or held >= 1.0:
         return []
-    if case.capillary is not None and case.capillary.model == "kelvin-filling":
+    if case.capillary.model == "kelvin-filling":
         return []  # liquid between the mean planes holds the body, and no bond of an asperity
     return [
         f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "

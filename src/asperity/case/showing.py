@@ -60,13 +60,13 @@ def _rows(table: BaseModel) -> list[tuple[str, str]]:
         if whole or getattr(table, name) != field.get_default(call_default_factory=True)
     }
     return [
-        (name, _text(value, unit_of(fields[name])))
+        (name, value_text(value, unit_of(fields[name])))
         for name, value in given.items()
         if value is not None
     ]
 
 
-def _text(value: object, unit: str) -> str:
+def value_text(value: object, unit: str) -> str:
     """A value with its unit, as a person would write it."""
     if isinstance(value, bool):
         return "yes" if value else "no"

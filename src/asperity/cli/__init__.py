@@ -236,7 +236,7 @@ def materials(
     names: Materials = None,
     as_json: OnlyJson = False,
 ) -> None:
-    """List solids, liquids and gases with their sources."""
+    """List solids, liquids, gases and works of adhesion; of those named, their sources."""
     from asperity.cli.listing import list_materials
 
     list_materials(names or (), as_json=as_json)

@@ -87,7 +87,7 @@ def compute(
     folder, earlier = None, False
     if output is not None or not voice.as_json:
         folder = Path(output or named.case.output.directory or f"{named.name}-out")
-        earlier = _earlier(folder, what, named.name)
+        earlier = _earlier(folder, what, named)
         force = force or earlier
         check_folder(folder, _FILES[what], force=force)
     request = _Request(what, named, folder, force, earlier, voice, given or {}, published)
@@ -111,19 +111,20 @@ def compute(
         raise typer.Exit(code)
 
 
-def _earlier(folder: Path, what: str, name: str) -> bool:
-    """Whether a folder holds an earlier answer for the case of this name, and no other file.
+def _earlier(folder: Path, what: str, named: Source) -> bool:
+    """Whether a folder holds an earlier answer for this case file, and no other file.
 
-    Such an answer is replaced without being asked. It is known by its own record, whole.
+    Such an answer is replaced without being asked, also where the file was edited since. It is
+    known by its own record, whole.
     """
-    if not holds_only_results(folder):
+    if named.case_file is None or not holds_only_results(folder):
         return False
     try:
         if what != "restitution_curve":
             kind = "record.nc" if what == "solve" else "curve.nc"
-            return read(folder / kind).name == name
+            return read(folder / kind).case_file == named.case_file
         told = json.loads((folder / "restitution.json").read_bytes())
-        return isinstance(told, dict) and told.get("name") == name
+        return isinstance(told, dict) and told.get("case_file") == named.case_file
     except (InputError, OSError, ValueError):
         return False
 
@@ -167,7 +168,11 @@ def _import_ahead() -> None:
 
 def _ended(request: _Request, result: Answer, outcome: Outcome | None) -> Answer:
     """The result with the hash of its input, and with how it was cut short."""
-    changes: dict[str, object] = {"input_sha256": request.source.input_sha256}
+    source = request.source
+    changes: dict[str, object] = {
+        "input_sha256": source.input_sha256,
+        "case_file": source.case_file,
+    }
     if isinstance(result, Result) and outcome is not None:
         changes["outcome"] = outcome if outcome is Outcome.FAILED else result.outcome
     return dataclasses.replace(result, **changes)  # type: ignore[arg-type]

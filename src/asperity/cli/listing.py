@@ -63,7 +63,8 @@ def write_template(file: str, *, as_json: bool = False) -> None:
         digest = hashlib.sha256(content).hexdigest()
         tell(json.dumps({"file": file, "bytes": len(content), "sha256": digest}))
     else:
-        tell(f"written to {file}; then: asperity run {file}")
+        path_shown = file if path.suffix or path.name != file else f"./{file}"
+        tell(f"written to {file}; then: asperity run {path_shown}")
 
 
 def list_materials(names: Sequence[str] = (), *, as_json: bool) -> None:

@@ -154,12 +154,15 @@ def _refuse_occupied(target: Path, own: Collection[str], *, force: bool) -> None
         return
     found = {entry.name: entry for entry in target.iterdir()}
     if not force:
-        other = set(_TOGETHER) - set(own)
-        kept = sorted(name for name in found if name not in other)
+        results = sorted(set(own) & set(found))
+        strange = sorted(set(found) - set(_TOGETHER) - set(own))
+        kept = [*strange, *results]
         if kept:
+            more = " and others" if len(kept) > 1 else ""
+            held = f"{kept[0]}{more}" if strange else f"results of another case ({kept[0]}{more})"
             raise InputError(
                 f"{target}: folder must be empty, or --force replaces the results in it and "
-                f"leaves the rest; got {kept[0]}{' and others' if len(kept) > 1 else ''}",
+                f"leaves the rest; got {held}",
                 file=str(target),
             )
     for name in own:

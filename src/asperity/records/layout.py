@@ -95,6 +95,8 @@ def attributes(result: Result | Curve) -> dict[str, str | int]:
         "input_sha256": result.input_sha256 or hashlib.sha256(resolved.encode()).hexdigest(),
         **versions(),
     }
+    if result.case_file is not None:
+        found["case_file"] = result.case_file
     if isinstance(result, Curve):
         found["warnings"] = json.dumps(result.warnings)
     if isinstance(result, Result):

@@ -122,6 +122,7 @@ def _decode(content: bytes, name: str) -> Result | Curve:
         "case": load(said["case"], file=name),
         "name": Path(str(said["name"])).name or "record",
         "input_sha256": str(said["input_sha256"]),
+        "case_file": said.get("case_file"),
     }
     if said[layout.KIND] == "curve":
         return _curve(arrays, said, shared)

@@ -103,6 +103,8 @@ def _study(
     if not any(str(key).startswith("impact.") for key in axes):
         _ = case.launch
     always = {column.name for column in ALWAYS}
+    if not isinstance(keep, Iterable):
+        raise InputError(f"`keep` must be names of measures; got {shown(keep)}", key="keep")
     names = (keep,) if isinstance(keep, str) else tuple(keep)
     base = case.model_copy(update={"output": Output()})
     study = Study(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from asperity.amounts import amount
 from asperity.cards import card, counted
+from asperity.case.showing import value_text
 
 if TYPE_CHECKING:
     from asperity.studies.sweep.axes import Axis
@@ -34,13 +34,7 @@ def html(study: Study) -> str:
 def _values(axis: Axis) -> str:
     """An axis' values, or their number and ends."""
     if axis.listed and (not axis.numeric or len(axis.listed) <= _LISTED):
-        return ", ".join(_text(axis, value) for value in axis.listed)
-    ends = f"from {_text(axis, axis.low)} to {_text(axis, axis.high)}"
+        return ", ".join(value_text(value, axis.unit) for value in axis.listed)
+    ends = f"from {value_text(axis.low, axis.unit)} to {value_text(axis.high, axis.unit)}"
     count = f"{counted(axis.size, 'value')} " if axis.size else ""
     return f"{count}{ends}" + (", log" if axis.scale == "log" else "")
-
-
-def _text(axis: Axis, value: object) -> str:
-    if not isinstance(value, float):
-        return str(value)
-    return f"{value:.4g}" if axis.unit in ("", "1") else amount(value, axis.unit)
