@@ -270,7 +270,7 @@ _prepare = Program(prepare)
 _prepare_at_once = Program(prepare, AT_ONCE)
 _start = Program(start, AT_ONCE)
 _at_release = Program(at_release, AT_ONCE)
-_fly_some = Program(fly)
+_fly_some = Program(fly, AT_ONCE)  # 0.8 s sooner at first, and then 1 to 9 ms later
 
 
 def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) -> None:
