@@ -18,9 +18,10 @@ import numpy as np
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import Problem, build
+from asperity.case.build import build
 from asperity.errors import Tolerance
 from asperity.impact import simulate
+from asperity.impact.problem import Problem
 from asperity.measures import measure
 from asperity.studies.evidence import PRINTED
 

@@ -22,6 +22,7 @@ from asperity.case import load_file
 from asperity.case.reading import builtin_text
 from asperity.cli import app
 from asperity.errors import Outcome
+from asperity.records.decoding import read
 from asperity.result import Curve, Result
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -130,7 +131,7 @@ def test_curve_writes_its_own_files_and_prints_its_own_json(place: Path):
     found = strict(call("curve", CASE, "--json").stdout)
     assert len(found["force_parting"]) == len(found["rigid_separation"])
     assert isinstance(found["pull_off"], float)
-    assert isinstance(records.read(f"{CASE}-out/curve.nc"), Curve)
+    assert isinstance(read(f"{CASE}-out/curve.nc"), Curve)
 
 
 def test_quiet_prints_nothing(place: Path):
@@ -151,7 +152,7 @@ def test_a_record_holds_the_hash_of_the_file_as_it_was_written(place: Path):
 
     assert call("init", "drop.toml").exit_code == 0
     assert call("run", "drop.toml").exit_code == 0
-    found = records.read("drop-out/record.nc")
+    found = read("drop-out/record.nc")
     assert found.name == "drop"
     content = (place / "drop.toml").read_bytes()
     assert found.input_sha256 == hashlib.sha256(content).hexdigest()
@@ -168,7 +169,7 @@ def test_the_case_says_where_and_what_to_write(place: Path):
     case_with(place, '[output]\ndirectory = "kept/here"\nmotion = false\npictures = false\n')
     assert call("run", "drop.toml").exit_code == 0
     assert names(place / "kept" / "here") == ["record.nc", "summary.txt"]
-    found = records.read("kept/here/record.nc")
+    found = read("kept/here/record.nc")
     assert isinstance(found, Result)
     assert found.time.size == 0
     ran = call("plot", "kept/here/record.nc")
@@ -280,7 +281,7 @@ def test_results_of_an_edited_case_are_replaced_and_those_of_another_are_refused
     assert call("run", "drop.toml").exit_code == 0
     (place / "drop.toml").write_text(text.replace("humidity = 0.6", "humidity = 0.5"))
     assert call("run", "drop.toml").exit_code == 0
-    assert records.read(place / "drop-out" / "record.nc").case.capillary.humidity == 0.5
+    assert read(place / "drop-out" / "record.nc").case.capillary.humidity == 0.5
     (place / "deep").mkdir()
     (place / "deep" / "drop.toml").write_text(text)
     for other in ("other.toml", "deep/drop.toml", "published"):
@@ -376,7 +377,7 @@ def test_a_failure_of_the_numerics_keeps_what_was_computed(
     ran = call("run", CASE)
     assert ran.exit_code == 3
     assert_one_line(ran.stderr, "no equilibrium at 44 nm")
-    found = records.read(f"{CASE}-out/record.nc")
+    found = read(f"{CASE}-out/record.nc")
     assert isinstance(found, Result)
     assert found.outcome is Outcome.FAILED
     assert strict(call("run", CASE, "--json").stdout)["outcome"] == "failed"
@@ -502,7 +503,7 @@ def test_ctrl_c_keeps_what_was_computed_within_two_seconds(place: Path):
     assert code == 130
     assert seconds < 2.0
     assert_one_line(err, "interrupted", "is kept")
-    found = records.read(f"{CASE}-out/record.nc")
+    found = read(f"{CASE}-out/record.nc")
     assert isinstance(found, Result)
     assert found.outcome is Outcome.INTERRUPTED
     assert names(place / f"{CASE}-out") == ["record.nc", "summary.txt"]

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from asperity import records
 from asperity.case import Case, builtin
 from asperity.errors import InputError, Outcome, OutputError
+from asperity.records.decoding import read
 from asperity.result import Curve, Result
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -64,13 +65,13 @@ def assert_same(found: Result | Curve, wanted: Result | Curve) -> None:
 
 
 def test_a_result_comes_back_from_its_record(result: Result, tmp_path: Path):
-    found = records.read(stored(records.encode(result), tmp_path))
+    found = read(stored(records.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert_same(found, result)
 
 
 def test_a_curve_comes_back_from_its_record(curve: Curve, tmp_path: Path):
-    found = records.read(stored(records.encode(curve), tmp_path))
+    found = read(stored(records.encode(curve), tmp_path))
     assert isinstance(found, Curve)
     assert_same(found, curve)
 
@@ -84,7 +85,7 @@ def test_the_same_result_gives_the_same_bytes_in_another_process(result: Result,
     command = [sys.executable, "-c", program, str(Path(__file__).parent)]
     there = subprocess.run(command, capture_output=True, check=True).stdout
     assert here == there
-    assert records.encode(records.read(stored(here, tmp_path))) == here
+    assert records.encode(read(stored(here, tmp_path))) == here
 
 
 def test_a_record_says_what_made_it(result: Result, tmp_path: Path):
@@ -124,7 +125,7 @@ def test_xarray_reads_a_record_as_the_dataset(result: Result, tmp_path: Path):
 def test_without_motion_a_record_keeps_the_measures_alone(tmp_path: Path):
     result = bounce(impacts=4, case=with_output(motion=False))
     path = stored(records.encode(result), tmp_path)
-    found = records.read(path)
+    found = read(path)
     assert isinstance(found, Result)
     assert found.time.size == 0
     assert found.forces == {}
@@ -143,7 +144,7 @@ def test_a_motion_without_an_impact_is_kept_too(result: Result, tmp_path: Path):
         measures=measures,
         events=dict.fromkeys(result.events, nothing),
     )
-    found = records.read(stored(records.encode(result), tmp_path))
+    found = read(stored(records.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert_same(found, result)
     assert "impacts" in found.summary()
@@ -152,7 +153,7 @@ def test_a_motion_without_an_impact_is_kept_too(result: Result, tmp_path: Path):
 def test_ten_thousand_impacts_are_kept(result: Result, tmp_path: Path):
     many = [0.1 + 1e-9 * number for number in range(10_000)]
     result = dataclasses.replace(result, measures={**result.measures, "restitution": many})
-    found = records.read(stored(records.encode(result), tmp_path))
+    found = read(stored(records.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert found.measures["restitution"] == many
 
@@ -161,7 +162,7 @@ def test_ten_thousand_impacts_are_kept(result: Result, tmp_path: Path):
 def test_a_record_cut_short_is_refused(result: Result, tmp_path: Path, length: int):
     path = stored(records.encode(result)[:length], tmp_path)
     with pytest.raises(InputError, match="must be a") as caught:
-        records.read(path)
+        read(path)
     assert str(path) in str(caught.value)
 
 
@@ -173,7 +174,7 @@ def test_a_changed_record_is_refused(result: Result, tmp_path_factory, data):
     path = tmp_path_factory.getbasetemp() / "changed.nc"
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"changed\.nc: must be a"):
-        records.read(path)
+        read(path)
 
 
 def test_another_netcdf_file_is_refused(tmp_path: Path):
@@ -182,7 +183,7 @@ def test_another_netcdf_file_is_refused(tmp_path: Path):
         other.createDimension("day", 3)
         other.createVariable("rain", "f8", ("day",))[:] = 1.0
     with pytest.raises(InputError, match="got another file"):
-        records.read(path)
+        read(path)
 
 
 @pytest.mark.parametrize(
@@ -191,14 +192,14 @@ def test_another_netcdf_file_is_refused(tmp_path: Path):
 )
 def test_a_file_of_another_kind_is_refused(tmp_path: Path, name: str, content: bytes):
     with pytest.raises(InputError, match=f"{name}: must be a record"):
-        records.read(stored(content, tmp_path, name))
+        read(stored(content, tmp_path, name))
 
 
 def test_a_missing_record_and_a_folder_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="no such file"):
-        records.read(tmp_path / "none.nc")
+        read(tmp_path / "none.nc")
     with pytest.raises(InputError, match="regular file"):
-        records.read(tmp_path)
+        read(tmp_path)
 
 
 @given(st.recursive(st.none() | st.booleans() | st.floats() | st.text(), st.lists))

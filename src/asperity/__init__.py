@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .errors import InputError, Outcome, SimulationError, Tolerance
     from .impact import Body, simulate
     from .measures import measure
-    from .records import read
+    from .records.decoding import read
     from .restitution import RestitutionCurve, restitution_curve
     from .result import Curve, Result
     from .solver import curve, solve
@@ -51,7 +51,7 @@ _HOMES = {
     "curve": "solver",
     "measure": "measures",
     "open_study": "studies.sweep.dataset",
-    "read": "records",
+    "read": "records.decoding",
     "reproduce": "studies.reproduce",
     "restitution_curve": "restitution",
     "simulate": "impact",

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from .case import Case
-from .case.build import Problem
 from .contact import ElasticContact
 from .contact.ring_error import ring_error
 from .impact import Motion
+from .impact.problem import Problem
 from .impact.table import SIZE, quantities, read_row
 
 CLOSED = 1e-6

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .case.build import CLEARANCE, Problem
 from .conversion import Flight, contact_end, measured
 from .errors import SimulationError, Tolerance
 from .flying import fly_prepared, prepared, silently
 from .impact import Limits
 from .impact.critical import Edges, FirstImpacts, capture_edges, speeds_about
+from .impact.problem import CLEARANCE, Problem
 from .measures import least_peak
 from .summary import amount
 

@@ -10,11 +10,11 @@ from . import regimes
 from ._jax import jax
 from .accuracy import CLOSED
 from .case import Case
-from .case.build import Problem
 from .contact import Contact
 from .errors import Outcome
 from .impact import Body, Motion
 from .impact.datum import Datum, end_of_contact
+from .impact.problem import Problem
 from .impact.sampling import Series, ascending, sample, until
 from .impact.table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from .impact.trajectory import Trajectory

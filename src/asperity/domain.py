@@ -13,9 +13,9 @@ from scipy.special import erfcx
 from .case import Case
 from .case.asperities import Asperities
 from .case.bodies import named
-from .case.build import Problem
 from .case.domain import wave_speed
 from .impact import Motion
+from .impact.problem import Problem
 
 LARGE_ASPERITY = 0.1
 """Asperity radius over body radius from which the effective radius, R beta/(R + beta), is 9 % off

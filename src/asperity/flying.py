@@ -11,7 +11,6 @@ import numpy as np
 
 from ._jax import jax, jnp
 from .case import Case
-from .case.build import CLEARANCE, Problem
 from .contact import Contact, ElasticContact, RigidContact
 from .contact.creep import Creep, CreptContact
 from .contact.resolution import in_steps
@@ -24,6 +23,7 @@ from .impact.delayed import fly as fly_late
 from .impact.foreseen import foreseen
 from .impact.history import ENDS, FLYING
 from .impact.legs import Ended
+from .impact.problem import CLEARANCE, Problem
 from .impact.release import TRIES, at_release, farther, negligible_force
 from .impact.sampling import compile_ahead
 from .impact.table import FORCE, read_row

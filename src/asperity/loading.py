@@ -7,11 +7,11 @@ import dataclasses
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
-from .case.build import CLEARANCE, Problem
 from .errors import InputError, SimulationError
 from .flying import prepared
 from .impact import Body, Table
 from .impact.datum import find_datum
+from .impact.problem import CLEARANCE, Problem
 from .impact.table import FORCE
 from .laws.base import as_float64
 from .program import AT_ONCE, Program

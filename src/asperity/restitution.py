@@ -22,12 +22,15 @@ from .conversion import assessment_of, measured
 from .errors import InputError, SimulationError
 from .flying import Report, flown, silently
 from .impact import Limits
+from .result import drawing
 from .sources import CaseLike, case_of
 from .summary import amount, warning_lines
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+
+_PICTURE = "asperity.plots.restitution"
 
 POINTS = 61
 """Speeds that are computed where none are given, besides some close to the edges of capture."""
@@ -109,9 +112,7 @@ class RestitutionCurve:
 
     def plot(self) -> Figure:
         """Restitution against speed, with the critical velocity."""
-        from asperity.plots import restitution
-
-        return restitution.figure(
+        figure: Figure = drawing(_PICTURE).figure(
             self.speed,
             self.restitution,
             self.captured,
@@ -120,6 +121,7 @@ class RestitutionCurve:
             own_speed=self.own_speed,
             name=self.name,
         )
+        return figure
 
     def summary(self) -> str:
         """Critical velocity and a table of restitution, as text."""
@@ -154,9 +156,7 @@ class RestitutionCurve:
             "restitution.txt": self.summary().encode() + b"\n",
         }
         if pictures:
-            from asperity.plots import restitution
-
-            found |= restitution.pictures(self.plot())
+            found |= drawing(_PICTURE).pictures(self.plot())
         return found
 
     def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:

@@ -9,11 +9,12 @@ from typing import Any
 
 from .capture import sought
 from .case import Case
-from .case.build import Problem, build
+from .case.build import build
 from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
 from .errors import InputError, Outcome, SimulationError
 from .flying import Report, cut_in_steps, first_impact, flown, silently
 from .impact import Limits
+from .impact.problem import Problem
 from .loading import turning_at
 from .result import Curve, Result
 from .sources import CaseLike, case_of

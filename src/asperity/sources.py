@@ -74,7 +74,7 @@ def source_of(given: str | os.PathLike[str]) -> Source:
     if isinstance(given, str) and not path.suffix and path.name == name and name not in ("", ".."):
         return _builtin(name)
     if path.suffix.lower() in _RECORDS:
-        from asperity.records import read
+        from asperity.records.decoding import read
 
         record = read(name)
         assert record.input_sha256 is not None

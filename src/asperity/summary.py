@@ -15,7 +15,7 @@ from asperity.shares import share_texts
 from asperity.verdict import sentence
 
 if TYPE_CHECKING:
-    from asperity.result import Curve, Result
+    from asperity.result_data import CurveData, ResultData
 
 WIDTH = 80
 _ROUNDING = 1e-15  # m: a separation below it is 0
@@ -36,12 +36,14 @@ _PUBLISHED = (
 """What the publication counts."""
 
 
-def of_result(result: Result, made: Mapping[str, object], *, published: bool | None = None) -> str:
+def of_result(
+    result: ResultData, made: Mapping[str, object], *, published: bool | None = None
+) -> str:
     """All of a result: outcome, measures, regime, energy, every impact, warnings, provenance.
 
     Parameters
     ----------
-    result : Result
+    result: ResultData
         The result.
     made : mapping of str to object
         Its record's attributes, for the versions and the hash of the input.
@@ -65,14 +67,14 @@ def of_result(result: Result, made: Mapping[str, object], *, published: bool | N
     )
 
 
-def of_curve(curve: Curve, made: Mapping[str, object]) -> str:
+def of_curve(curve: CurveData, made: Mapping[str, object]) -> str:
     """The numbers of a curve, and where they come from; ``made`` as for `of_result`."""
     heading = _heading(curve.name, "Force against separation, in and out.")
     rows = _section("Curve", _curve(curve))
     return "\n".join([*heading, *rows, *warning_lines(curve.warnings), *_provenance(made), ""])
 
 
-def brief(result: Result, *, published: bool | None = None) -> str:
+def brief(result: ResultData, *, published: bool | None = None) -> str:
     """What a terminal shows of a result; ``published`` as for `of_result`."""
     rows = [*_motion(result.measures), *_energy(result.ledger)]
     return "\n".join(
@@ -87,7 +89,7 @@ def brief(result: Result, *, published: bool | None = None) -> str:
     )
 
 
-def shown_of(result: Result) -> tuple[str, list[tuple[str, list[tuple[str, str]]]]]:
+def shown_of(result: ResultData) -> tuple[str, list[tuple[str, list[tuple[str, str]]]]]:
     """Outcome in a sentence, and the measures that there are under their headings."""
     parts = {
         "Motion": _motion(result.measures),
@@ -97,7 +99,7 @@ def shown_of(result: Result) -> tuple[str, list[tuple[str, list[tuple[str, str]]
     return _ended(result), [(title, _known(rows)) for title, rows in parts.items()]
 
 
-def shown_of_curve(curve: Curve) -> list[tuple[str, str]]:
+def shown_of_curve(curve: CurveData) -> list[tuple[str, str]]:
     """The numbers of a curve that there are, by what they are called."""
     return _known(_curve(curve))
 
@@ -106,14 +108,14 @@ def _known(rows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     return [row for row in rows if row[1] != "-"]
 
 
-def _ended(result: Result) -> str:
+def _ended(result: ResultData) -> str:
     """The answer in a sentence where there is one, and how the motion ended."""
     if not result.outcome.ok:
         return result.outcome.message
     return f"{sentence(result)}. {result.outcome.message}"
 
 
-def brief_curve(curve: Curve) -> str:
+def brief_curve(curve: CurveData) -> str:
     """What a terminal shows of a curve."""
     title = f"{curve.name}: force against separation"
     return "\n".join([title, *_section("", _curve(curve)), *warning_lines(curve.warnings)])
@@ -222,7 +224,7 @@ def _chosen(regime: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _curve(curve: Curve) -> list[tuple[str, str]]:
+def _curve(curve: CurveData) -> list[tuple[str, str]]:
     return [
         ("closest rigid separation", amount(curve.deepest, "m")),
         *_pull(vars(curve)),
@@ -230,7 +232,7 @@ def _curve(curve: Curve) -> list[tuple[str, str]]:
     ]
 
 
-def _impacts(result: Result, most: int | None, published: bool | None) -> list[str]:
+def _impacts(result: ResultData, most: int | None, published: bool | None) -> list[str]:
     """The table of impacts, each column in one unit; its first ``most`` rows of many more."""
     shows = result.case.publication is not None if published is None else published
     columns = [*_COLUMNS, *(_PUBLISHED if shows else ())]

@@ -9,11 +9,11 @@ import numpy as np
 
 from .accuracy import CLOSED, fall_warnings, ring_warnings
 from .case import Case
-from .case.build import Problem
 from .contact import Contact, ElasticContact
 from .domain import domain_warnings
 from .errors import InputError
 from .impact import Motion
+from .impact.problem import Problem
 from .impact.sampling import sample
 from .impact.table import CENTRAL, FORCE, PULL, TOUCHING, read_row
 from .impact.trajectory import Trajectory

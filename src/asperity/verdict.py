@@ -10,7 +10,7 @@ from asperity.errors import Outcome
 from asperity.regimes import missed
 
 if TYPE_CHECKING:
-    from asperity.result import Result
+    from asperity.result_data import ResultData
 
 _TAKERS = {
     "adhesion": "dry adhesion takes",
@@ -24,7 +24,7 @@ _LITTLE = 1e-9
 """Share of the energy at the release below which nothing was lost that is worth a word."""
 
 
-def verdict(result: Result) -> str:
+def verdict(result: ResultData) -> str:
     """What happens at the first impact, how the motion ends, and what takes most of the energy.
 
     E.g. ``leaves the first impact with e = 0.922 and sticks after 13 rebounds; menisci take all of
@@ -32,7 +32,7 @@ def verdict(result: Result) -> str:
 
     Parameters
     ----------
-    result : Result
+    result: ResultData
         The result.
     """
     if unjudged(result):
@@ -50,12 +50,12 @@ def verdict(result: Result) -> str:
     return "; ".join(part for part in (told, _taken(result.ledger)) if part)
 
 
-def sentence(result: Result) -> str:
+def sentence(result: ResultData) -> str:
     """The `verdict` as the beginning of a sentence, with its subject and without its stop.
 
     Parameters
     ----------
-    result : Result
+    result: ResultData
         The result.
     """
     answer = verdict(result)
@@ -72,12 +72,12 @@ def _first(measures: dict[str, Any]) -> str:
     return f"leaves the first impact with e = {kept:.{3 if kept < 0.9995 else 6}g}"
 
 
-def unjudged(result: Result) -> bool:
+def unjudged(result: ResultData) -> bool:
     """Whether fewer than one asperity is expected to touch, so that no single body does as told.
 
     Parameters
     ----------
-    result : Result
+    result: ResultData
         The result.
     """
     touching = result.regime.get("touching_asperities")
@@ -86,7 +86,7 @@ def unjudged(result: Result) -> bool:
     return touching is not None and touching < 1.0
 
 
-def _untouched(result: Result) -> bool:
+def _untouched(result: ResultData) -> bool:
     """Whether the gas film stopped the body on its first way in."""
     if result.outcome is not Outcome.STOPPED:
         return False
@@ -94,7 +94,7 @@ def _untouched(result: Result) -> bool:
     return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
 
 
-def _stopped(result: Result) -> str:
+def _stopped(result: ResultData) -> str:
     """Where the gas film stopped the body."""
     place = f"{result.events['apex_separation'][-1] * 1e9:.4g} nm"
     if _untouched(result):
@@ -102,7 +102,7 @@ def _stopped(result: Result) -> str:
     return f"is stopped by the gas film at {place} on its way out"
 
 
-def _ending(result: Result) -> str:
+def _ending(result: ResultData) -> str:
     """How the motion ends, where the first impact does not say it."""
     measures, outcome = result.measures, result.outcome
     impacts = len(measures["rebound_height"])
@@ -128,19 +128,19 @@ def _ending(result: Result) -> str:
     return f"still bounces {_after(impacts)}, where the run was stopped"
 
 
-def _held(result: Result) -> bool:
+def _held(result: ResultData) -> bool:
     """Whether anything pulls the body to the surface, be it captured or at rest in a gas."""
     return bool(np.min(result.forces["contact"], initial=0.0) < 0.0)
 
 
-def _rebounds_made(result: Result) -> int:
+def _rebounds_made(result: ResultData) -> int:
     """Rebounds that ended before the time limit."""
     limit = result.case.numerics.time_limit
     times = np.asarray(result.events["apex_time"])
     return int(np.sum(times <= (np.inf if limit is None else limit)))
 
 
-def _rebounds_before(result: Result) -> int:
+def _rebounds_before(result: ResultData) -> int:
     """Rebounds before the impact that captures."""
     times = np.asarray(result.events["deepest_time"])
     return int(np.sum(times < result.measures["capture_time"] * (1.0 - 1e-12)))

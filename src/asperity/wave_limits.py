@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import sqrt
 
 from .case import Case
-from .case.build import Problem
 from .domain import contact_radius
 from .impact import Motion
+from .impact.problem import Problem
 from .radiation import shear_speed
 
 SMALL = 0.1

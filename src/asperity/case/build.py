@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from ..contact.late import LATE, LateContact
 from ..contact.resolution import Resolution
 from ..film import SqueezeFilm
 from ..impact import Body
+from ..impact.problem import CLEARANCE, Problem
 from ..interface import Interface
 from ..laws import (
     Bradley,
@@ -38,6 +39,7 @@ from ..laws import (
     Meniscus,
     PublishedPressure,
 )
+from ..laws.adhesion_choice import AdhesionChoice
 from ..laws.base import Sum
 from ..laws.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..laws.meniscus import Formation
@@ -47,7 +49,7 @@ from ..materials import contact_modulus
 from ..plastic_interface import PlasticInterface
 from ..radiation import WaveRadiation
 from ..radius_classes import CLASSES
-from ..regimes import AdhesionChoice, choose_adhesion, tabor_number
+from ..regimes import choose_adhesion, tabor_number
 from ..roughness import Gaussian
 from ..shapes import Sphere
 from ..summits import loss_error, measured_surface
@@ -58,45 +60,6 @@ if TYPE_CHECKING:
     from .forces import Adhesion
     from .publication import Publication
     from .schema import Case
-
-CLEARANCE = 1e-9
-"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap.
-
-A first place: a force that goes on beyond its reach has the body released further out.
-"""
-
-
-class Problem(NamedTuple):
-    """What the equation of motion needs.
-
-    Attributes
-    ----------
-    contact
-        Forces between the two bodies.
-    body
-        Mass and release; at rest outside contact where a case has no [impact] table.
-    modulus
-        Contact modulus E* [Pa].
-    tip_radius
-        Radius [m] of one asperity, or of the smooth body.
-    adhesion
-        The law of adhesion in use, and why where the program chose it.
-    late
-        The contact with menisci that take time to form; None where they form at once.
-    class_error
-        Relative error that classes of tip radius make in the work of bonds; 0 without classes.
-    creep
-        How the bulk creeps; ``contact`` is then that of the relaxed bulk. None where it does not.
-    """
-
-    contact: Contact
-    body: Body
-    modulus: float
-    tip_radius: float
-    adhesion: AdhesionChoice
-    late: LateContact | None = None
-    class_error: float = 0.0
-    creep: Creep | None = None
 
 
 def build(case: Case, resolved: Resolution | None = None) -> Problem:

@@ -11,7 +11,7 @@ from asperity.records.folder import (
     write_folder,
 )
 from asperity.records.layout import attributes, json_object, plain
-from asperity.records.netcdf import dataset, encode, read
+from asperity.records.netcdf import dataset, encode
 
 __all__ = [
     "CURVE_FILES",
@@ -26,6 +26,5 @@ __all__ = [
     "holds_only_results",
     "json_object",
     "plain",
-    "read",
     "write_folder",
 ]

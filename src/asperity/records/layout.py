@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from asperity.result import Curve, Result
+from asperity.result_data import CurveData, ResultData
 
 KIND = "asperity_record"
 """Attribute that marks a record; "run" or "curve"."""
@@ -76,18 +76,18 @@ class Variable(NamedTuple):
     long_name: str
 
 
-def variables(result: Result | Curve) -> list[Variable]:
+def variables(result: ResultData | CurveData) -> list[Variable]:
     """The variables of a result, in the order of its record."""
-    if isinstance(result, Curve):
+    if isinstance(result, CurveData):
         return _curve_variables(result)
     return [*_motion(result), *_impacts(result), *_ledger(result.ledger)]
 
 
-def attributes(result: Result | Curve) -> dict[str, str | int]:
+def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
     """What else a record says: the case, the input's hash, the versions, the measures as JSON."""
     resolved = result.case.toml()
     found: dict[str, str | int] = {
-        KIND: "curve" if isinstance(result, Curve) else "run",
+        KIND: "curve" if isinstance(result, CurveData) else "run",
         "layout_version": VERSION,
         "title": f"asperity: {result.name}",
         "name": result.name,
@@ -97,9 +97,9 @@ def attributes(result: Result | Curve) -> dict[str, str | int]:
     }
     if result.case_file is not None:
         found["case_file"] = result.case_file
-    if isinstance(result, Curve):
+    if isinstance(result, CurveData):
         found["warnings"] = json.dumps(result.warnings)
-    if isinstance(result, Result):
+    if isinstance(result, ResultData):
         found["outcome"] = result.outcome.value
         for part in ("regime", "measures", "ledger", "warnings"):
             found[part] = json.dumps(plain(getattr(result, part)), allow_nan=False)
@@ -116,9 +116,9 @@ def versions() -> dict[str, str]:
     return {**found, "python_version": platform.python_version()}
 
 
-def json_object(result: Result | Curve) -> dict[str, Any]:
+def json_object(result: ResultData | CurveData) -> dict[str, Any]:
     """What ``--json`` prints: plain Python values in SI, None where a value does not apply."""
-    if isinstance(result, Curve):
+    if isinstance(result, CurveData):
         arrays = ("rigid_separation", "central_separation", "force_approach", "force_parting")
         return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE, "warnings")}
     parts = ("regime", "measures", "ledger", "warnings")
@@ -141,7 +141,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _motion(result: Result) -> list[Variable]:
+def _motion(result: ResultData) -> list[Variable]:
     if not result.case.output.motion:
         return []
     along = ("time",)
@@ -166,7 +166,7 @@ def _motion(result: Result) -> list[Variable]:
     return found
 
 
-def _impacts(result: Result) -> list[Variable]:
+def _impacts(result: ResultData) -> list[Variable]:
     found = []
     count = np.size(result.events.get("deepest_time", ()))
     for name, values in result.events.items():
@@ -200,7 +200,7 @@ def _ledger(ledger: Mapping[str, Any]) -> list[Variable]:
     return found
 
 
-def _curve_variables(curve: Curve) -> list[Variable]:
+def _curve_variables(curve: CurveData) -> list[Variable]:
     along = ("point",)
     found = [
         Variable("rigid_separation", along, curve.rigid_separation, "m", "rigid separation"),

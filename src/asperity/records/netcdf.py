@@ -1,35 +1,26 @@
-"""Results <-> netCDF, with provenance. The same result gives the same bytes."""
+"""Results as netCDF, with provenance. The same result gives the same bytes."""
 
 from __future__ import annotations
 
 import hashlib
-import json
-import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asperity.case import load
-from asperity.errors import InputError, Outcome
 from asperity.records import layout
-from asperity.result import Curve, Result
+from asperity.result_data import CurveData, ResultData
 
 if TYPE_CHECKING:
     import xarray
 
-_MOTION = ("time", "separation", "central_separation", "speed")
-_EVENTS = ("deepest_time", "deepest_separation", "apex_time", "apex_separation")
-_NUMBERS = ("deepest", "pull_off", "work_of_separation", "loss")
-_MAYBE = ("pull_off_separation", "preload")
-_SEAL = "content_sha256"
+SEAL = "content_sha256"
+"""Attribute that holds the hash of the record's content."""
+
 _UNSEALED = "0" * 64
 _SEAL_OFFSET = 24  # the name, padded to 16 bytes; type and length of its value
-_MAGIC = b"CDF\x02"
 
 
-def encode(result: Result | Curve) -> bytes:
+def encode(result: ResultData | CurveData) -> bytes:
     """A result as the content of a netCDF file.
 
     The classic format with 64-bit offsets: unlike netCDF-4 it holds no time of day, keeps the
@@ -38,7 +29,7 @@ def encode(result: Result | Curve) -> bytes:
     from netCDF4 import Dataset
 
     held = Dataset("record.nc", "w", format="NETCDF3_64BIT_OFFSET", memory=1)
-    for name, value in {_SEAL: _UNSEALED, **layout.attributes(result)}.items():
+    for name, value in {SEAL: _UNSEALED, **layout.attributes(result)}.items():
         held.setncattr(name, np.int32(value) if isinstance(value, int) else value)
     variables = [one for one in layout.variables(result) if one.values.size]
     for variable in variables:
@@ -49,32 +40,10 @@ def encode(result: Result | Curve) -> bytes:
         made.units, made.long_name = variable.units, variable.long_name
     for variable in variables:
         held[variable.name][...] = variable.values
-    return _sealed(bytes(held.close()))
+    return sealed(bytes(held.close()))
 
 
-def read(path: str | os.PathLike[str]) -> Result | Curve:
-    """A result from its record.
-
-    Parameters
-    ----------
-    path : path
-        A ``record.nc`` or ``curve.nc``.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read or is no whole record of this program.
-    """
-    name = os.fspath(path)
-    content = _content(name)
-    try:
-        return _decode(content, name)
-    except InputError as error:
-        told = str(error) if name in str(error) else f"{name}: {error}"
-        raise InputError(told, file=name, key=error.key) from None
-
-
-def dataset(result: Result | Curve) -> xarray.Dataset:
+def dataset(result: ResultData | CurveData) -> xarray.Dataset:
     """A result as a dataset: the variables of its record, with units, and its attributes."""
     import xarray
 
@@ -82,95 +51,14 @@ def dataset(result: Result | Curve) -> xarray.Dataset:
         v.name: (v.dimensions, v.values, {"units": v.units, "long_name": v.long_name})
         for v in layout.variables(result)
     }
-    index = "rigid_separation" if isinstance(result, Curve) else "time"
+    index = "rigid_separation" if isinstance(result, CurveData) else "time"
     coordinates = {index: found.pop(index)} if index in found else {}
     return xarray.Dataset(found, coords=coordinates, attrs=layout.attributes(result))
 
 
-def _content(name: str) -> bytes:
-    try:
-        if not Path(name).exists():
-            raise InputError(f"{name}: no such file", file=name)
-        if not Path(name).is_file():
-            raise InputError(f"{name}: a record must be a regular file", file=name)
-        content = Path(name).read_bytes()
-    except OSError as error:
-        reason = error.strerror or error
-        raise InputError(f"{name}: cannot be read: {reason}", file=name) from None
-    if not content.startswith(_MAGIC) or _SEAL.encode() not in content:
-        raise InputError(f"{name}: must be a record of asperity; got another file", file=name)
-    if _sealed(content) != content:  # found here, since the C library may crash on such a file
-        raise InputError(
-            f"{name}: must be a whole record of asperity; got one cut short or changed", file=name
-        )
-    return content
-
-
-def _decode(content: bytes, name: str) -> Result | Curve:
-    from netCDF4 import Dataset
-
-    with Dataset("record.nc", "r", memory=content) as held:
-        held.set_auto_mask(False)
-        said = {key: held.getncattr(key) for key in held.ncattrs()}
-        arrays = {key: np.asarray(held[key][...], dtype=float) for key in held.variables}
-    if said["layout_version"] != layout.VERSION:
-        raise InputError(
-            f"{name}: `layout_version` of the record must be {layout.VERSION}; "
-            f"got {said['layout_version']}"
-        )
-    shared = {
-        "case": load(said["case"], file=name),
-        "name": Path(str(said["name"])).name or "record",
-        "input_sha256": str(said["input_sha256"]),
-        "case_file": said.get("case_file"),
-    }
-    if said[layout.KIND] == "curve":
-        return _curve(arrays, said, shared)
-    return _result(arrays, said, shared)
-
-
-def _result(
-    arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]
-) -> Result:
-    nothing = np.empty(0)
-    motion: dict[str, Any] = {key: arrays.get(key, nothing) for key in _MOTION}
-    return Result(
-        **shared,
-        outcome=Outcome(said["outcome"]),
-        **motion,
-        forces=_below(arrays, "force_"),
-        energies={key: values for key, values in _below(arrays, "energy_").items() if values.ndim},
-        events={key: arrays.get(key, nothing) for key in _EVENTS},
-        **{key: json.loads(said[key]) for key in ("regime", "measures", "ledger", "warnings")},
-        surface=json.loads(said["surface"]) if "surface" in said else None,
-    )
-
-
-def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:
-    numbers: dict[str, Any] = {key: float(arrays[key]) for key in _NUMBERS}
-    for key in _MAYBE:
-        numbers[key] = None if np.isnan(arrays[key]) else float(arrays[key])
-    along = ("rigid_separation", "central_separation", "force_approach", "force_parting")
-    return Curve(
-        **shared,
-        **{key: arrays[key] for key in along},
-        components_approach=_below(arrays, "force_approach_"),
-        components_parting=_below(arrays, "force_parting_"),
-        **numbers,
-        warnings=json.loads(said["warnings"]),
-    )
-
-
-def _sealed(content: bytes) -> bytes:
+def sealed(content: bytes) -> bytes:
     """The content with its own SHA-256 inside, in place of what stood there."""
-    start = content.index(_SEAL.encode()) + _SEAL_OFFSET
+    start = content.index(SEAL.encode()) + _SEAL_OFFSET
     end = start + len(_UNSEALED)
     blank = content[:start] + _UNSEALED.encode() + content[end:]
     return content[:start] + hashlib.sha256(blank).hexdigest().encode() + content[end:]
-
-
-def _below(arrays: Mapping[str, np.ndarray], prefix: str) -> dict[str, np.ndarray]:
-    """Variables of one kind by their short names."""
-    return {
-        key.removeprefix(prefix): values for key, values in arrays.items() if key.startswith(prefix)
-    }

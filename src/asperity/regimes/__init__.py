@@ -6,7 +6,6 @@ from .choice import (
     DMT_BELOW,
     JKR_ABOVE,
     LAW_NAMES,
-    AdhesionChoice,
     choose_adhesion,
 )
 from .parameters import (
@@ -25,7 +24,6 @@ __all__ = [
     "FEW",
     "JKR_ABOVE",
     "LAW_NAMES",
-    "AdhesionChoice",
     "Boundary",
     "Frame",
     "Place",

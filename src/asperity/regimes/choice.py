@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import pi
 from typing import NamedTuple
 
+from ..laws.adhesion_choice import AdhesionChoice
 from .boundaries import SHARE
 from .parameters import ELASTICITY_PER_TABOR
 
@@ -30,24 +31,6 @@ LAW_NAMES = {
     "jkr": "JKR",
 }
 """The laws as they are called in text, by their names in a case."""
-
-
-class AdhesionChoice(NamedTuple):
-    """The law of adhesion in use.
-
-    Attributes
-    ----------
-    law
-        Its name, as in a case file.
-    reason
-        Why this one, in a line; None where the case names the law.
-    near_borders
-        A warning for each border between two laws that is near.
-    """
-
-    law: str
-    reason: str | None = None
-    near_borders: tuple[str, ...] = ()
 
 
 class _Border(NamedTuple):

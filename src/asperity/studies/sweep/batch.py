@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.case import Case
-from asperity.case.build import Problem, build
+from asperity.case.build import build
 from asperity.errors import InputError, Outcome, SimulationError
+from asperity.impact.problem import Problem
 from asperity.result import Result
 from asperity.solver import solve
 from asperity.studies.sweep.building import Group, Values, built

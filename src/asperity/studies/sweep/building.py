@@ -11,11 +11,12 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.case import Case
-from asperity.case.build import Problem, build
+from asperity.case.build import build
 from asperity.contact import Contact, ElasticContact, RigidContact
 from asperity.contact.resolution import Resolution, lengths_in_rms, resolution_of
 from asperity.errors import InputError
 from asperity.impact import Body
+from asperity.impact.problem import Problem
 from asperity.program import Program
 from asperity.studies.sweep.rows import Rows, Split
 

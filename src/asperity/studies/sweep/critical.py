@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 
 from asperity._jax import jax, jnp
-from asperity.case.build import CLEARANCE
 from asperity.errors import Outcome
 from asperity.impact.critical import FirstImpacts, capture_edges, speeds_about
 from asperity.impact.history import ENDS
+from asperity.impact.problem import CLEARANCE
 from asperity.studies.sweep.building import Flown, Group
 from asperity.studies.sweep.flights import Flight, fly_group, taken
 from asperity.studies.sweep.lanes import Clock

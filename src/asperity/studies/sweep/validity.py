@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from asperity.case import Case
-from asperity.case.build import Problem
 from asperity.conversion import regime_of
 from asperity.impact import Impacts, Motion
+from asperity.impact.problem import Problem
 from asperity.studies.sweep.flights import Flight
 from asperity.validity import AtDepth, pull_warnings, release_warnings, warnings_of
 
