@@ -301,7 +301,7 @@ def test_a_motion_can_be_stopped(case):
         ),
         ({"capillary.formation": "kelvin"}, "equilibrium"),
         ({"capillary.formation_time": "-1 s"}, "negative"),
-        ({"capillary.formation_time": 1e-6}, "unit"),
+        ({"capillary.formation_time": "1e-6"}, "unit"),
     ],
 )
 def test_what_has_no_delay_refuses_one(case, changes, reason):

@@ -192,7 +192,7 @@ def test_material_of_the_base_can_vary():
         f'[axes]\n"materials.my glass.density" = {{values = ["2 g/cm^3"]}}\n[base]\n{base}'
     )
     assert found.case(0).body_density == pytest.approx(2000.0)
-    assert found.axes[0].label == "my glass density"
+    assert found.axes[0].label == "density of my glass"
 
 
 @given(st.data())

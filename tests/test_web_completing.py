@@ -109,7 +109,7 @@ def test_gas_comes_with_air_and_with_the_gap_from_which_its_film_counts():
     case["impact"] = {"speed": "10 mm/s"}
     found = completed({**case, "gas": {"name": "air"}}, case)
     assert found["gas"] == {"name": "air", "pressure": "101.325 kPa", "temperature": "20 degC"}
-    assert found["impact"] == {"speed": "10 mm/s", "release_gap": "60 nm"}
+    assert found["impact"] == {"speed": "10 mm/s", "release_gap": "1 um"}
     assert not refused(found)
 
 

@@ -77,7 +77,7 @@ export class AdhesionMap {
     }));
     const told = this.spots.map(({ place, letter }) => `${letter}: ${place.region}`);
     this.legend.replaceChildren(...this.spots.map(({ letter, colour, place }) => chip(`${letter}: ${place.region}`, colour, false)));
-    if (!told.length) this.legend.textContent = "No place on the map: nothing adheres, or nothing touches.";
+    if (!told.length && designs.some((one) => one.answer)) this.legend.textContent = "No place on the map: nothing adheres, or nothing touches.";
     this.place.setAttribute("aria-label", `Adhesion map, load parameter against elasticity parameter. ${told.join("; ")}`);
     this.plot.redraw();
   }
