@@ -29,7 +29,7 @@ from asperity.case import BUILTINS, Case, load
 from asperity.case.fields import Length, Number, entry
 from asperity.case.problems import tables_of
 from asperity.case.reading import builtin_text
-from asperity.case.schema import Table
+from asperity.case.table import Table
 from asperity.errors import Outcome
 from asperity.records.layout import json_object
 from asperity.result import Result

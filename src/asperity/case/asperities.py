@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.case.roughness import Roughness
+from asperity.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,6 +19,12 @@ if TYPE_CHECKING:
     from asperity.topography.files.reading import Reading
     from asperity.topography.map import Topography
     from asperity.topography.preparing.preparation import Prepared
+
+LARGEST_ASPERITY = 1.0
+"""Asperity radius over body radius: what is larger than the body is no bump on it."""
+
+ROUGHEST = 0.5
+"""Rms height over body radius: 1 in 44 asperities is then as high as the body's radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +94,38 @@ def asperities_of(rough: Roughness) -> Asperities:
         assert rough.rms_height is not None
         return Asperities(rough.asperity_density, rough.asperity_radius, rough.rms_height)
     return _measured(rough.model_dump_json(), tuple(_state(file) for file in rough.files))
+
+
+def refuse_asperities(radius: float, rough: Asperities) -> None:
+    """Refuse asperities larger than the body, or nearly as high.
+
+    Parameters
+    ----------
+    radius
+        Radius of the body [m].
+    rough
+        Its asperities.
+
+    Raises
+    ------
+    InputError
+        With the rule and its number.
+    """
+    tip, height = rough.asperity_radius, rough.rms_height
+    measured = rough.facts is not None
+    if tip > LARGEST_ASPERITY * radius:
+        raise InputError(
+            f"`asperity_radius` must be at most the body's radius ({radius * 1e6:.6g} um): an "
+            f"asperity larger than the body is not a bump on it; got {tip * 1e6:.6g} um",
+            key="roughness.files" if measured else "roughness.asperity_radius",
+        )
+    if height >= ROUGHEST * radius:
+        raise InputError(
+            f"`rms_height` must be smaller than {ROUGHEST:g} of the body's radius "
+            f"({radius * 1e6:.6g} um): 1 in 44 asperities would be as high as that radius; got "
+            f"{height * 1e6:.6g} um",
+            key="roughness.files" if measured else "roughness.rms_height",
+        )
 
 
 def _state(file: str) -> tuple[int, int]:

@@ -4,29 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
 from asperity.case import problems, writing
+from asperity.case.tables import CaseTables
 from asperity.errors import InputError
 from asperity.units import example, shown
 
-if TYPE_CHECKING:
-    from asperity.case.schema import Case
-
-NAME = "case"
-"""What a case is called that came from no file."""
+_Tables = TypeVar("_Tables", bound=CaseTables)
 
 
-def named(case: Case, name: str) -> Case:
+def named(case: _Tables, name: str) -> _Tables:
     """The case under another name, which is no part of what makes two cases equal."""
     copy = case.model_copy()
     copy.__dict__["name"] = name  # where a cached property keeps its value, which no field does
     return copy
 
 
-def replaced(case: Case, changes: Mapping[str, object]) -> Case:
+def replaced(case: _Tables, changes: Mapping[str, object]) -> _Tables:
     """The case with other values, under the same name; see `Case.replace`.
 
     Raises
@@ -41,7 +38,7 @@ def replaced(case: Case, changes: Mapping[str, object]) -> Case:
         )
     model = type(case)
     written = {key: as_written(model, _key(key), value) for key, value in changes.items()}
-    return named(problems.check(model, writing.changed(case.toml(), written)), case.name)
+    return named(problems.check(model, writing.changed(writing.toml(case), written)), case.name)
 
 
 def as_written(model: type[BaseModel], key: str, value: object) -> object:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from asperity import materials as catalogue
 from asperity.case import problems
 from asperity.case.domain import refuse_outside
-from asperity.errors import InputError, check_each
+from asperity.case.tables import CaseTables
+from asperity.errors import InputError, check_each, refuse_all
 from asperity.units import shown
 
-if TYPE_CHECKING:
-    from asperity.case.schema import Case
 
-
-def check_rules(case: Case) -> None:
+def check_rules(case: CaseTables) -> None:
     """Refuse a case whose tables cannot stand beside each other, with all that is wrong.
 
     Raises
@@ -36,19 +32,52 @@ def check_rules(case: Case) -> None:
     )
 
 
-def _publication_beside(case: Case) -> None:
+def _publication_beside(case: CaseTables) -> None:
     """Refuse models that a [publication] table leaves no room for."""
-    if case.publication is not None:
-        case.publication.refuse_beside(case)
+    if case.publication is None:
+        return
+    if case.roughness is None:
+        raise InputError(
+            "a [roughness] table must be given with [publication]; got none", key="publication"
+        )
+    if case.roughness.files is not None:
+        raise InputError(
+            "`files` must be absent with a [publication] table, which knows Gaussian heights "
+            "and one radius alone",
+            key="roughness.files",
+        )
+    if case.gas is not None:
+        raise InputError(
+            "[gas] must not be given with a [publication] table, which leaves the gas out",
+            key="gas",
+        )
+    wanted = (
+        ("counterface.deformation", case.counterface.deformation, ("rigid",)),
+        ("adhesion.model", case.adhesion.model, ("dmt", "none")),
+        ("capillary.model", case.capillary.model, ("equilibrium", "none")),
+        ("capillary.formation", case.capillary.formation, ("contact",)),
+        ("capillary.formation_time", case.capillary.formation_time, (None,)),
+        ("capillary.film_thickness", case.capillary.film_thickness, (None,)),
+    )
+    refuse_all(
+        InputError(
+            f"`{key.split('.')[1]}` must be "
+            f"{'absent' if allowed == (None,) else ' or '.join(map(repr, allowed))} with a "
+            f"[publication] table, which replaces the other models; got {value!r}",
+            key=key,
+        )
+        for key, value, allowed in wanted
+        if value not in allowed
+    )
 
 
-def _film_between_ends(case: Case) -> None:
+def _film_between_ends(case: CaseTables) -> None:
     """Refuse a film that has no thinnest or no thickest place."""
     if case.gas is not None and case.impact is not None:
         case.gas.refuse_without_ends(case.impact, case.roughness)
 
 
-def _known_material(case: Case, part: str) -> None:
+def _known_material(case: CaseTables, part: str) -> None:
     """Refuse the name of a material that neither the case nor the catalogue has."""
     known = [*case.materials, *catalogue.SOLIDS]
     name = getattr(case, part).material
@@ -60,7 +89,7 @@ def _known_material(case: Case, part: str) -> None:
         )
 
 
-def _elastic_somewhere(case: Case) -> None:
+def _elastic_somewhere(case: CaseTables) -> None:
     """Refuse a smooth body on a bulk that does not deform."""
     if case.roughness is None and case.counterface.deformation == "rigid":
         raise InputError(
@@ -70,19 +99,70 @@ def _elastic_somewhere(case: Case) -> None:
         )
 
 
-def _waves_beside(case: Case) -> None:
+def _waves_beside(case: CaseTables) -> None:
     """Refuse what waves cannot stand beside."""
     if case.waves is not None:
         case.waves.refuse_beside(case.counterface_solid, case.capillary, case.publication)
 
 
-def _creep_beside(case: Case) -> None:
+def _creep_beside(case: CaseTables) -> None:
     """Refuse what a creeping bulk cannot stand beside."""
-    if case.viscoelasticity is not None:
-        case.viscoelasticity.refuse_beside(case)
+    table = case.viscoelasticity
+    if table is None or table.model == "none":
+        return
+    with_it = f"with [viscoelasticity] model = '{table.model}'"
+    _creep_alone(case, with_it)
+    if case.counterface.deformation == "rigid":
+        raise InputError(
+            f"`deformation` must be 'half-space' {with_it}: a rigid bulk has nothing that "
+            "creeps; got 'rigid'",
+            key="counterface.deformation",
+        )
+    if case.capillary.model != "none" and case.capillary.formation_time:
+        raise InputError(
+            f"`formation_time` must be absent {with_it}; got {case.capillary.formation_time:.6g} s",
+            key="capillary.formation_time",
+        )
+    if case.roughness is None:
+        _creep_without_pulls(case, with_it)
 
 
-def _yielding_beside(case: Case) -> None:
+def _creep_alone(case: CaseTables, with_it: str) -> None:
+    """Refuse what takes energy in another way, and what has no bulk."""
+    if case.publication is not None:
+        raise InputError(
+            f"a [publication] table must be absent {with_it}: it has no bulk that creeps",
+            key="publication",
+        )
+    if case.gas is not None:
+        raise InputError(
+            f"a [gas] table must be absent {with_it}, whose motion knows no drag", key="gas"
+        )
+    if case.waves is not None and case.waves.model != "none":
+        raise InputError(
+            f"`model` must be 'none' in [waves] {with_it}, whose motion knows no drag; got "
+            f"'{case.waves.model}'",
+            key="waves.model",
+        )
+    if case.plasticity_model != "none":
+        raise InputError(
+            f"`model` must be 'none' in [plasticity] {with_it}; got '{case.plasticity_model}'",
+            key="plasticity.model",
+        )
+
+
+def _creep_without_pulls(case: CaseTables, with_it: str) -> None:
+    """Refuse adhesion and menisci of a smooth body."""
+    for key, model in (("adhesion", case.adhesion.model), ("capillary", case.capillary.model)):
+        if model != "none":
+            raise InputError(
+                f"`model` must be 'none' for a smooth body {with_it}: how its edge heals and "
+                f"peels is not described; got '{model}'",
+                key=f"{key}.model",
+            )
+
+
+def _yielding_beside(case: CaseTables) -> None:
     """Refuse what a law of yielding cannot stand beside, and solids that have no strength."""
     table = case.plasticity
     if table is None or table.model == "none":
@@ -96,7 +176,7 @@ def _yielding_beside(case: Case) -> None:
     )
 
 
-def _late_liquid(case: Case) -> None:
+def _late_liquid(case: CaseTables) -> None:
     """Refuse menisci that take time on a rough half-space beside gas."""
     time, rough = case.capillary.formation_time, case.roughness is not None
     if not time or case.capillary.model == "none" or case.publication is not None:
@@ -110,7 +190,7 @@ def _late_liquid(case: Case) -> None:
         )
 
 
-def _bounded_liquid(case: Case) -> None:
+def _bounded_liquid(case: CaseTables) -> None:
     """Refuse liquid without end, or on a surface that is not described."""
     air = case.capillary
     if air.model == "none" or case.publication is not None:

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
 
 from asperity.amounts import amount
 from asperity.cards import card
+from asperity.case.tables import CaseTables
 from asperity.case.writing import ordered, unit_of
-
-if TYPE_CHECKING:
-    from asperity.case.schema import Case
 
 _PREFIXED = ("m", "Pa", "J/m^2", "N/m", "m/s", "s", "Pa s")
 """Units that take a prefix."""
 
 
-def sentence(case: Case) -> str:
+def sentence(case: CaseTables) -> str:
     """Body, counterface and what acts between them, in a few words."""
     body, plane = (part.material or "a solid by numbers" for part in (case.body, case.counterface))
     parts = [
@@ -38,7 +35,7 @@ def sentence(case: Case) -> str:
     return ", ".join(parts)
 
 
-def html(case: Case) -> str:
+def html(case: CaseTables) -> str:
     """The tables of a case that differ from their defaults, a row a key, with units."""
     sections = []
     for name in ordered(type(case)):

@@ -21,8 +21,7 @@ from asperity.studies.sweep.critical import critical_velocities
 from asperity.studies.sweep.flights import Flight, compile_ahead, fly_group
 from asperity.studies.sweep.lanes import Clock
 from asperity.studies.sweep.layout import OUTCOMES, REASON_SIZE
-from asperity.studies.sweep.running import Warned
-from asperity.studies.sweep.validity import warnings_in
+from asperity.studies.sweep.validity import Warned, warnings_in
 from asperity.validity import AtDepth, check_surface
 
 if TYPE_CHECKING:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
 from asperity.studies.sweep.axes import Axis
+from asperity.studies.sweep.definition import StudyDefinition
 from asperity.studies.sweep.keys import Value
 
-if TYPE_CHECKING:
-    from asperity.studies.sweep.study import Study
 
-
-def text(study: Study) -> str:
+def text(study: StudyDefinition) -> str:
     """The study as TOML: SI values that read back exactly, its base case as tables."""
     lines = [
         "schema = 1",
@@ -52,7 +49,7 @@ def _axis(axis: Axis) -> list[str]:
     return [f"{literal(axis.key)} = {{from = {low}, to = {high}{steps}, scale = {scale}}}"]
 
 
-def _base(study: Study) -> list[str]:
+def _base(study: StudyDefinition) -> list[str]:
     """The base case's own text, its tables put within [base]."""
     # A case's text has one value a line, so that a bracket in front opens a table.
     own = study.base.toml().rstrip("\n").split("\n")

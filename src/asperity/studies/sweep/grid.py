@@ -19,7 +19,7 @@ from asperity.studies.sweep.dataset import dataset_in
 from asperity.studies.sweep.keys import find
 from asperity.studies.sweep.layout import ALWAYS, DEFAULT_KEEP
 from asperity.studies.sweep.listing import axis_of
-from asperity.studies.sweep.refusing import refuse_unusable
+from asperity.studies.sweep.refusing import refuse_unstorable, refuse_unusable
 from asperity.studies.sweep.running import Tally, generator_of, in_process
 from asperity.studies.sweep.study import Study
 from asperity.units import shown
@@ -117,6 +117,7 @@ def _study(
         False,
     )
     refuse_unusable(study)
+    refuse_unstorable(study.canonical)
     if study.size > MOST_CASES:
         raise InputError(
             f"`axes` must give at most {MOST_CASES:,} cases in memory (`asperity sweep` keeps more "

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from asperity.case.reading import refuse_size
 from asperity.errors import InputError
+from asperity.studies.sweep.definition import StudyDefinition
 from asperity.studies.sweep.keys import place
-
-if TYPE_CHECKING:
-    from asperity.studies.sweep.study import Study
 
 CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""
 
 
-def refuse_unusable(study: Study) -> None:
-    """Refuse columns that there are not, cases beyond counting, and what no store could hold.
+def refuse_unusable(study: StudyDefinition) -> None:
+    """Refuse columns that there are not, cases without a motion, and cases beyond counting.
 
     Raises
     ------
@@ -31,11 +27,21 @@ def refuse_unusable(study: Study) -> None:
         raise InputError(f"[axes] must give at most 2^53 cases; got {got}", key="axes")
     if study.sample is not None:
         study.sample.refuse_axes(len(study.axes))
+
+
+def refuse_unstorable(text: str) -> None:
+    """Refuse a study whose canonical text no store could hold.
+
+    Raises
+    ------
+    InputError
+        With the rule, and the key at fault.
+    """
     try:
-        study.canonical.encode()
+        text.encode()
     except UnicodeEncodeError:
         raise InputError(
             "`base` must name its files in UTF-8, for the store to hold; got other bytes",
             key="base",
         ) from None
-    refuse_size(study.canonical, None, "a study")
+    refuse_size(text, None, "a study")

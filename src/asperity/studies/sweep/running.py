@@ -18,12 +18,10 @@ if TYPE_CHECKING:
     from asperity.studies.sweep.batch import Effort
     from asperity.studies.sweep.store import Store
     from asperity.studies.sweep.study import Study
+    from asperity.studies.sweep.validity import Warned
 
 Answer = tuple[int, dict[str, np.ndarray], "Effort"]
 """A task's number, its columns, and what they cost."""
-
-Warned = tuple[int, str]
-"""The number of a case, and a line on where it leaves the validity of its models."""
 
 Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from asperity.cards import card, counted
 from asperity.case.showing import value_text
-
-if TYPE_CHECKING:
-    from asperity.studies.sweep.axes import Axis
-    from asperity.studies.sweep.study import Study
+from asperity.studies.sweep.axes import Axis
+from asperity.studies.sweep.definition import StudyDefinition
 
 _LISTED = 6
 """Values of an axis that are shown one by one."""
 
 
-def sentence(study: Study) -> str:
+def sentence(study: StudyDefinition) -> str:
     """Number of cases, and the keys over which they vary."""
     return f"{counted(study.size, 'case')} over {', '.join(axis.key for axis in study.axes)}"
 
 
-def html(study: Study) -> str:
+def html(study: StudyDefinition, warnings: list[str]) -> str:
     """Axes with their values and units, what is kept, and what should be known beforehand."""
     drawn = study.sample
     how = [] if drawn is None else [("sample", f"{drawn.method}, seed {drawn.seed}")]
@@ -28,7 +24,7 @@ def html(study: Study) -> str:
         ("Axes", [(axis.key, _values(axis)) for axis in study.axes]),
         ("Kept of each case", [("measures", ", ".join(study.keep)), *how]),
     ]
-    return card(study.base_name, f"Study: {sentence(study)}.", sections, study.warnings)
+    return card(study.base_name, f"Study: {sentence(study)}.", sections, warnings)
 
 
 def _values(axis: Axis) -> str:

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from asperity.studies.sweep.definition import StudyDefinition
 from asperity.studies.sweep.keys import place
-
-if TYPE_CHECKING:
-    from asperity.studies.sweep.study import Study
 
 QUICK = 4096
 """Cases of a task where the force is a closed form or a sum over heights."""
@@ -19,7 +15,7 @@ ELASTIC = 64
 """Cases of a task where a rough half-space is solved for each force."""
 
 
-def task_size(study: Study) -> int:
+def task_size(study: StudyDefinition) -> int:
     """Number of cases of a task: by the slowest kind of case that the study can hold."""
     rough = _has(study, "roughness")
     bulk = "half-space" in _values(study, "counterface", "deformation")
@@ -28,7 +24,7 @@ def task_size(study: Study) -> int:
     return QUICK if _quick(study) else SLOW
 
 
-def largest_max_impacts(study: Study) -> int:
+def largest_max_impacts(study: StudyDefinition) -> int:
     """Largest number of impacts that a case of the study can have."""
     for axis in study.axes:
         if axis.key == "numerics.max_impacts":
@@ -36,7 +32,7 @@ def largest_max_impacts(study: Study) -> int:
     return study.base.numerics.max_impacts
 
 
-def _quick(study: Study) -> bool:
+def _quick(study: StudyDefinition) -> bool:
     """Whether no case has a rate, a memory of time, single summits, or adhesion beyond DMT's."""
     lossy = ("waves", "viscoelasticity", "plasticity")
     return not (
@@ -48,13 +44,13 @@ def _quick(study: Study) -> bool:
     )
 
 
-def _has(study: Study, table: str) -> bool:
+def _has(study: StudyDefinition, table: str) -> bool:
     """Whether a case of the study can have a table."""
     varied = any(place(axis.key)[0] == table for axis in study.axes)
     return varied or getattr(study.base, table) is not None
 
 
-def _values(study: Study, table: str, key: str) -> set[object]:
+def _values(study: StudyDefinition, table: str, key: str) -> set[object]:
     """All values of a key within the study; {"none"} for a model whose table is absent."""
     for axis in study.axes:
         if axis.key == f"{table}.{key}":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,10 +19,10 @@ from asperity.studies.sweep import bases, canonical, layout, reading, showing, s
 from asperity.studies.sweep.axes import Axis
 from asperity.studies.sweep.changing import Change, changed, parts
 from asperity.studies.sweep.corners import corners_of
+from asperity.studies.sweep.definition import StudyDefinition
 from asperity.studies.sweep.keys import Value, find, place, written
-from asperity.studies.sweep.layout import Column
 from asperity.studies.sweep.listing import axis_of
-from asperity.studies.sweep.refusing import refuse_unusable
+from asperity.studies.sweep.refusing import refuse_unstorable, refuse_unusable
 from asperity.studies.sweep.sampling import Sample
 
 __all__ = ["Axis", "Sample", "Study", "parse", "read"]
@@ -32,7 +31,7 @@ _CORNERS = 16
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(StudyDefinition):
     """A base case, the axes over which it varies, and what is kept of each case.
 
     Attributes
@@ -53,19 +52,6 @@ class Study:
         Whether the turning points of every impact are kept too.
     """
 
-    base: Case
-    base_name: str
-    axes: tuple[Axis, ...]
-    sample: Sample | None
-    keep: tuple[str, ...]
-    keep_impacts: int
-    motions: bool
-
-    @functools.cached_property
-    def columns(self) -> tuple[Column, ...]:
-        """What is kept of each case."""
-        return layout.columns(self.keep, motions=self.motions)
-
     def width(self, along: str) -> int:
         """Number of values of a case along a dimension of a column: "impact", "turn", "byte"."""
         if along == "impact":
@@ -75,18 +61,6 @@ class Study:
         if along == "byte":
             return layout.REASON_SIZE
         raise ValueError(f"no column has the dimension {along!r}")
-
-    @functools.cached_property
-    def shape(self) -> tuple[int, ...]:
-        """Sizes of the axes, the first slowest (C order); of a sample (size,)."""
-        if self.sample is not None:
-            return (self.sample.size,)
-        return tuple(axis.size for axis in self.axes)
-
-    @functools.cached_property
-    def size(self) -> int:
-        """Number of cases."""
-        return math.prod(self.shape)
 
     @functools.cached_property
     def task_size(self) -> int:
@@ -233,7 +207,7 @@ class Study:
         return f"<Study of {self.base_name}: {showing.sentence(self)}>"
 
     def _repr_html_(self) -> str:
-        return showing.html(self)
+        return showing.html(self, self.warnings)
 
 
 def read(path: str) -> Study:
@@ -277,6 +251,7 @@ def parse(text: str, *, file: str | None = None, folder: Path | None = None) -> 
     study = Study(base, name, tuple(axes), table.sample, kept, impacts, table.motions)
     try:
         refuse_unusable(study)
+        refuse_unstorable(study.canonical)
     except InputError as error:
         message = f"{file}: {error}" if file else str(error)
         raise InputError(message, file=file, key=error.key) from None

@@ -11,6 +11,9 @@ from asperity.impact.problem import Problem
 from asperity.studies.sweep.flights import Flight
 from asperity.validity import AtDepth, pull_warnings, release_warnings, warnings_of
 
+Warned = tuple[int, str]
+"""The number of a case, and a line on where it leaves the validity of its models."""
+
 
 def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> list[str]:
     """One line for each way in which a case of a flight leaves the validity of its models.
