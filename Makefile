@@ -8,7 +8,8 @@ PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -p no:benchmark
 COMPILE := uv pip compile pyproject.toml --universal --fork-strategy fewest --generate-hashes \
 	--no-emit-index-url --python-version 3.11 --no-header --quiet
 
-.PHONY: help run test validate bench frozen docs lint lock wheel clean run-environment dev-environment
+.PHONY: help run test validate bench frozen docs lint lock wheel clean
+.PHONY: run-environment dev-environment
 
 help:
 	@echo "make run       set up, run the case glass-bead, reproduce the publication"

@@ -52,6 +52,10 @@ def test_what_was_no_number_stays_none():
     assert values("inf", None, "inf") == []
 
 
+def test_what_comes_or_goes_by_rounding_has_no_bound():
+    assert values(2.0, math.inf, 5.0) == values(2.0, math.inf, None) == []
+
+
 def test_elements_of_a_list_have_responses_of_their_own():
     assert values([1.0, None, 1.0], [1e-3, None, 0.0], [1.009, None, 1.0]) == []
     assert values([1.0, None, 1.0], [1e-3, None, 0.0], [1.0, None, 1.009]) == ["values.x[2]"]

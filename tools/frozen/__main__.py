@@ -20,16 +20,18 @@ def main() -> int:
     """Write the set or compare with it; 1 where something differs."""
     parser = argparse.ArgumentParser(prog="python -m tools.frozen", description=__doc__)
     parser.add_argument("command", choices=("write", "compare"))
-    parser.add_argument("--only", metavar="PATTERN", default="*", help="structures, as 'smooth-*'")
+    help_only = "structures, as 'smooth-*'; may be given again"
+    parser.add_argument("--only", metavar="PATTERN", action="append", help=help_only)
     parser.add_argument("--missing", action="store_true", help="write what is not there yet")
     parser.add_argument("--values", type=Path, default=VALUES, help="file of the values")
     parser.add_argument("--processes", type=int, default=2)
     asked = parser.parse_args()
     stored = json.loads(asked.values.read_text()) if asked.values.exists() else {}
     start = time.monotonic()
-    names = fnmatch.filter(work.names(), asked.only)
+    known = work.names()
+    names = [n for n in known if any(fnmatch.fnmatch(n, each) for each in asked.only or "*")]
     if not names:
-        parser.error(f"no structure is named {asked.only!r}")
+        parser.error(f"no structure is named {', '.join(asked.only)}")
     if asked.command == "compare":
         code = _compare(stored, names, asked)
     else:
@@ -55,7 +57,7 @@ def _compare(stored: dict[str, Any], names: list[str], asked: argparse.Namespace
     """Compute structures again, and print what differs."""
     missing = [name for name in names if name not in stored]
     known = [name for name in names if name in stored]
-    if asked.only == "*":
+    if asked.only is None:
         missing += [name for name in stored if name not in names]
     jobs = [(name, stored[name]["inputs"]) for name in known]
     count = len(missing)

@@ -138,7 +138,7 @@ def _values(name: str, stored: Any, response: Any, found: Any) -> Iterator[Diffe
         for i, each in enumerate(zip(stored, response, found, strict=True)):
             yield from _values(f"{name}[{i}]", *each)
     elif response is None or not isinstance(found, int | float):
-        if stored != found:
+        if stored != found and response != math.inf:
             yield Difference(name, stored, found, None)
     elif not abs(found - stored) <= (most := allowed(stored, response)):
         yield Difference(name, stored, found, most)

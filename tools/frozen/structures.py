@@ -43,7 +43,7 @@ STUDIED = frozenset(
         "measured-summits-dmt",
     }
 )
-"""Structures of which a study is computed beside one run; of others two runs."""
+"""Structures that are computed by a study too."""
 
 
 def _rates() -> list[Structure]:
@@ -152,4 +152,5 @@ def structures() -> list[Structure]:
         for name in ("glass-bead", "published", "published-exact")
     ]
     out += [*laws(), *liquids(), *yielding(), *_rates(), *_measured()]
-    return [replace(s, runs=1, study=2) if s.name in STUDIED else s for s in out]
+    studied = [each for each in out if each.name in STUDIED]
+    return [*out, *(replace(s, name=f"study-{s.name}", runs=0, study=2) for s in studied)]

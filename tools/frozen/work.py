@@ -21,6 +21,7 @@ DRAWS = 2
 """Changes of all inputs by which a response is found."""
 
 _FIRST = (
+    "study-",
     "rough-bulk-",
     "rough-creep-",
     "smooth-creep",
