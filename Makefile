@@ -8,13 +8,15 @@ PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -p no:benchmark
 COMPILE := uv pip compile pyproject.toml --universal --fork-strategy fewest --generate-hashes \
 	--no-emit-index-url --python-version 3.11 --no-header --quiet
 
-.PHONY: help run test validate bench docs lint lock wheel clean run-environment dev-environment
+.PHONY: help run test validate bench frozen docs lint lock wheel clean
+.PHONY: run-environment dev-environment
 
 help:
 	@echo "make run       set up, run the case glass-bead, reproduce the publication"
 	@echo "make test      set up, then lint, types, docs and all tests but the long ones"
 	@echo "make validate  the long validation studies"
 	@echo "make bench     the benchmarks, beside a plain SciPy script"
+	@echo "make frozen    the answers of today beside the frozen set"
 	@echo "make docs      the documentation, in docs/_build/html"
 	@echo "make lint      ruff, mypy and the import contract"
 	@echo "make lock      remake the lock files (needs uv; UPGRADE=1 moves to newer versions)"
@@ -34,6 +36,9 @@ validate: dev-environment
 
 bench: dev-environment
 	$(BIN)/python -m benchmarks
+
+frozen: dev-environment
+	$(BIN)/python -m tools.frozen compare
 
 # -E: executed pages and docstrings follow the code, not the last build.
 docs: dev-environment
