@@ -24,9 +24,9 @@ from asperity.records import (
     check_folder,
     holds_only_results,
     json_object,
-    read,
     write_folder,
 )
+from asperity.records.decoding import read
 from asperity.result import Curve, Result
 from asperity.sources import Source, source_of
 
