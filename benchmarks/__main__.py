@@ -18,12 +18,12 @@ import numpy as np
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import build
+from asperity.dynamics import simulate
+from asperity.dynamics.problem import Problem
 from asperity.errors import Tolerance
-from asperity.impact import simulate
-from asperity.impact.problem import Problem
-from asperity.measures import measure
-from asperity.studies.evidence import PRINTED
+from asperity.model import build
+from asperity.publication.evidence import PRINTED
+from asperity.results.measures import measure
 
 from . import laws, published_method, surfaces, sweeps, web
 from .plain_scipy import Drop, fly

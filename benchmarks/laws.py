@@ -12,15 +12,15 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact, SmoothContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
+from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.errors import Tolerance
-from asperity.film import SqueezeFilm
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
+from asperity.interface.plastic_interface import PlasticInterface
 from asperity.laws import Bradley, ConstantVolume, Dmt, Hertz, Jkr, Law, Maugis, Meniscus
 from asperity.laws.plastic import KogutEtsion
-from asperity.plastic_interface import PlasticInterface
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 
 MODULUS, WORK, SPACING, TENSION, ANGLE = 50e9, 0.05, 0.3e-9, 0.0728, 0.5
 IMPACTS = 3

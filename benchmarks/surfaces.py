@@ -12,15 +12,15 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
+from asperity.interface.measured_summits import measured_surface
 from asperity.laws import Dmt, Hertz, Jkr, Law, Meniscus
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
-from asperity.summits import measured_surface
-from asperity.topography.describing.description import describe
-from asperity.topography.making.generation import self_affine
+from asperity.surfaces.description.describe import describe
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, RMS, DENSITY, BALL = 50e-9, 2e-9, 1e14, 20e-6
 SPEEDS = 200

@@ -12,9 +12,9 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from asperity.studies.sweep.batch import compute
-from asperity.studies.sweep.running import in_process
-from asperity.studies.sweep.study import Study, parse
+from asperity.sweeps.compute.batch import compute
+from asperity.sweeps.compute.runner import in_process
+from asperity.sweeps.study.study import Study, parse
 
 from . import published_method
 
@@ -77,7 +77,7 @@ def _rate(study: Study) -> tuple[float, float]:
 
 def _scipy(study: Study) -> float:
     """Cases a second of the publication's equations by SciPy, rigid, on a 64x64 grid."""
-    from asperity.case.build import build
+    from asperity.model import build
 
     columns, _ = compute(study, 0)
     took = 0.0

@@ -17,7 +17,7 @@ from statistics import median, quantiles
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from asperity.case.reading import builtin_text
+from asperity.config.case_file import builtin_text
 
 Row = tuple[str, str, str]
 

@@ -10,12 +10,12 @@ import jax
 
 import asperity
 from asperity.contact import RigidContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import Hertz, Law
-from asperity.laws.base import Real, jnp, quantity
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
-from asperity.testing import check_law
+from asperity.laws.law import Real, jnp, quantity
+from asperity.laws.testing import check_law
+from asperity.surfaces.heights import Gaussian
 
 
 # The law, from here

@@ -10,10 +10,10 @@ import itertools
 
 import numpy as np
 
-from asperity.case import builtin
-from asperity.case.schema import Case
+from asperity.config import builtin
+from asperity.config.schema import Case
 from asperity.errors import Outcome
-from asperity.result import Curve, Result
+from asperity.results.result import Curve, Result
 
 MASS = 1.152e-9
 GRAVITY = 9.81

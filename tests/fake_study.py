@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from asperity.studies.sweep.layout import REASON_SIZE, Column, columns
+from asperity.sweeps.study.columns import REASON_SIZE, Column, columns
 
 
 class Effort(NamedTuple):

@@ -15,6 +15,6 @@ import fake_study
 from asperity.cli import main
 
 if __name__ == "__main__":
-    sys.modules["asperity.studies.sweep.study"] = fake_study
-    sys.modules["asperity.studies.sweep.batch"] = fake_study
+    sys.modules["asperity.sweeps.study.study"] = fake_study
+    sys.modules["asperity.sweeps.compute.batch"] = fake_study
     main()

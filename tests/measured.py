@@ -17,11 +17,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from asperity._jax import jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ByContact, ByKelvinGap, Hertz, KelvinFilling, Meniscus
-from asperity.laws.meniscus import Formation
-from asperity.materials import LIQUIDS, SOLIDS, Solid, contact_modulus, kelvin_radius
-from asperity.roughness import Gaussian
+from asperity.laws.liquid.meniscus import Formation
+from asperity.materials.solids import LIQUIDS, SOLIDS, Solid, contact_modulus, kelvin_radius
+from asperity.surfaces.heights import Gaussian
 
 FILE = Path(__file__).parent / "data" / "measurements.csv"
 _LINES = [line for line in FILE.read_text().splitlines() if not line.startswith("#")]

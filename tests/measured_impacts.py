@@ -5,7 +5,7 @@ from math import log, pi, sqrt
 from asperity._jax import jnp
 from asperity.contact import SmoothContact
 from asperity.laws import Jkr
-from asperity.materials import SOLIDS, Solid, contact_modulus
+from asperity.materials.solids import SOLIDS, Solid, contact_modulus
 from figures import Figure
 from measured import Comparison, value
 

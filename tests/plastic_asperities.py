@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from asperity._jax import jnp
+from asperity.interface.plastic_interface import PlasticInterface
 from asperity.laws import Dmt, Meniscus
-from asperity.laws.base import Sum
+from asperity.laws.law import Sum
 from asperity.laws.plastic import KogutEtsion
-from asperity.plastic_interface import PlasticInterface
-from asperity.roughness import Gaussian
+from asperity.surfaces.heights import Gaussian
 
 BETA, E, NU, SIGMA, N = 2.5e-7, 5e9, 0.3, 4e-9, 1e14
 PULL = E * sqrt(SIGMA / BETA) * SIGMA  # of adhesion against elasticity, times the next [J/m^2]

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from asperity.errors import Outcome
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.store import Store
-from asperity.studies.sweep.study import Study, parse
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.columns import OUTCOMES
+from asperity.sweeps.study.study import Study, parse
 
 REST, FAILED = OUTCOMES.index(Outcome.REST), OUTCOMES.index(Outcome.FAILED)
 LEAST_SPEED = 0.1

@@ -1,6 +1,6 @@
 """Studies from a few lines of text."""
 
-from asperity.studies.sweep.study import Study, parse
+from asperity.sweeps.study.study import Study, parse
 
 RMS = "roughness.rms_height"
 HUMIDITY = "capillary.humidity"

@@ -14,12 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
-from asperity import case as case_room
-from asperity.case import BUILTINS, FIRST, Body, Case, builtin, load, load_file, template
-from asperity.case.problems import tables_of
-from asperity.case.roughness import NUMBERS
+from asperity import config as case_room
+from asperity.config import BUILTINS, FIRST, Body, Case, builtin, load, load_file, template
+from asperity.config.problems import tables_of
+from asperity.config.roughness import NUMBERS
 from asperity.errors import InputError, Tolerance
-from asperity.materials import LIQUIDS, SOLIDS, kelvin_radius
+from asperity.materials.solids import LIQUIDS, SOLIDS, kelvin_radius
 from asperity.units import quantity
 
 TEMPLATE = template()
@@ -286,7 +286,7 @@ def test_an_unknown_built_in_case_is_refused_with_a_hint():
 
 def test_importing_cases_is_light():
     code = (
-        "import sys, asperity.case; "
+        "import sys, asperity.config; "
         "print([name for name in ('jax', 'pint', 'numpy') if name in sys.modules])"
     )
     run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.case import SIZE_LIMIT, Case, builtin, load, load_file, template
-from asperity.case.problems import tables_of
+from asperity.config import SIZE_LIMIT, Case, builtin, load, load_file, template
+from asperity.config.problems import tables_of
 from asperity.errors import InputError
 
 TEMPLATE = template()

@@ -17,13 +17,13 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from asperity import records
-from asperity.case import load_file
-from asperity.case.reading import builtin_text
 from asperity.cli import app
+from asperity.config import load_file
+from asperity.config.case_file import builtin_text
 from asperity.errors import Outcome
-from asperity.records.decoding import read
-from asperity.result import Curve, Result
+from asperity.results import records
+from asperity.results.read_record import read
+from asperity.results.result import Curve, Result
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -207,7 +207,7 @@ def test_init_writes_a_case_that_runs_and_never_overwrites(place: Path):
 
 
 def test_materials_are_listed_with_their_sources():
-    from asperity.materials import ADHESION, LIQUIDS, SOLIDS
+    from asperity.materials.solids import ADHESION, LIQUIDS, SOLIDS
 
     text = call("materials").stdout
     for name in (*SOLIDS, *LIQUIDS):
@@ -223,7 +223,7 @@ def test_materials_are_listed_with_their_sources():
 
 
 def test_the_whole_catalogue_takes_a_line_each_and_a_named_entry_tells_its_source():
-    from asperity.materials import SOLIDS
+    from asperity.materials.solids import SOLIDS
 
     lines = call("materials").stdout.splitlines()
     first = next(n for n, line in enumerate(lines) if line.startswith("silica "))

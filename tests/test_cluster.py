@@ -19,10 +19,10 @@ import pytest
 
 import fake_study
 from asperity.errors import OutputError, SimulationError
-from asperity.studies.sweep.clients import _settings, connected, local
-from asperity.studies.sweep.cluster import on_cluster
-from asperity.studies.sweep.running import Tally, fill
-from asperity.studies.sweep.store import Store
+from asperity.sweeps.compute.clients import _settings, connected, local
+from asperity.sweeps.compute.cluster import on_cluster
+from asperity.sweeps.compute.runner import Tally, fill
+from asperity.sweeps.store.store import Store
 from fake_study import FakeStudy, in_order
 from test_store import contents
 
@@ -138,13 +138,13 @@ def test_what_is_no_address_is_told(address: str):
 
 
 def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("asperity.studies.sweep.clients.PATIENCE", 0.3)
+    monkeypatch.setattr("asperity.sweeps.compute.clients.PATIENCE", 0.3)
     with pytest.raises(OutputError, match="the scheduler cannot be reached: Timed out"):
         connected(f"tcp://127.0.0.1:{free_port()}").__enter__()
 
 
 def test_a_server_that_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("asperity.studies.sweep.clients.PATIENCE", 0.3)
+    monkeypatch.setattr("asperity.sweeps.compute.clients.PATIENCE", 0.3)
     with (
         socket.create_server(("127.0.0.1", 0)) as server,
         pytest.raises(OutputError, match="the scheduler cannot be reached"),

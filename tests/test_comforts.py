@@ -18,14 +18,14 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from asperity import solver as real_solver
-from asperity.case import builtin
 from asperity.cli import app
 from asperity.cli.compiling import Compilation
+from asperity.cli.reporter import Voice
 from asperity.cli.terminal import WIDTH, say, tell, wrapped
-from asperity.cli.voice import Voice
 from asperity.cli.working import _bar_on
-from asperity.studies.sweep.store import Store
-from asperity.studies.sweep.study import parse
+from asperity.config import builtin
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.study import parse
 from fake_solve import solver
 from study_results import GRID, SAMPLE, SPEEDS, columns_of
 

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from asperity.case import BUILTINS
-from asperity.cli import app, completing
-from asperity.materials import SOLIDS
+from asperity.cli import app, shell_completion
+from asperity.config import BUILTINS
+from asperity.materials.solids import SOLIDS
 
 BASH = shutil.which("bash")
 
@@ -79,7 +79,7 @@ def test_a_folder_alone_is_entered():
 
 def test_hidden_files_only_when_asked_for_and_names_with_blanks_are_left_to_the_shell():
     assert offered("asperity run .hid") == [".hidden.toml"]
-    assert completing.case("a") == sorted(BUILTINS)
+    assert shell_completion.case("a") == sorted(BUILTINS)
 
 
 def test_stores_and_their_columns_are_completed():
@@ -118,7 +118,7 @@ def test_zsh_and_fish_get_their_own_form():
 def test_completion_imports_nothing_heavy():
     program = (
         "import sys; from typer.main import get_command; from asperity.cli import app, completing; "
-        "get_command(app); completing.case(''); completing.material(''); "
+        "get_command(app); shell_completion.case(''); shell_completion.material(''); "
         "heavy = ('jax', 'matplotlib', 'pint', 'xarray', 'numpy', 'netCDF4', 'pydantic'); "
         "print([name for name in heavy if name in sys.modules])"
     )
@@ -146,7 +146,7 @@ def call(*arguments: str) -> Any:
     return CliRunner().invoke(app, list(arguments), prog_name="asperity")
 
 
-@pytest.mark.parametrize("shell", completing.SHELLS)
+@pytest.mark.parametrize("shell", shell_completion.SHELLS)
 def test_the_script_is_printed_for_each_shell(shell: str):
     for form in ((f"--show-completion={shell}",), ("--show-completion", shell)):
         ran = call(*form)
@@ -177,7 +177,7 @@ def test_the_shell_in_use_is_found_or_asked_for(monkeypatch: pytest.MonkeyPatch)
     assert "must name the shell, bash zsh fish" in ran.stderr
 
 
-@pytest.mark.parametrize("shell", completing.SHELLS)
+@pytest.mark.parametrize("shell", shell_completion.SHELLS)
 def test_the_script_is_installed_for_the_user(
     shell: str, place: Path, monkeypatch: pytest.MonkeyPatch
 ):

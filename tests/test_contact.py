@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, RigidContact, SmoothContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Jkr, Meniscus
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E = 50e-6, 0.25e-9, 10.5e-9, 56.8e9
 HERTZ = Hertz(BETA, E)

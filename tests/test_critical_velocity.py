@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 
 import asperity
-from asperity.case import load_file
+from asperity.config import load_file
+from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
 from asperity.errors import InputError
-from asperity.impact.critical import FirstImpacts, capture_edges
 from test_pull_off import MODULUS, RADIUS, UNIT, W, jkr, smooth
 
 MASS = 2500.0 * 4.0 / 3.0 * pi * RADIUS**3

@@ -8,12 +8,12 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import build
+from asperity.dynamics import simulate
+from asperity.dynamics.gas_film import SqueezeFilm
+from asperity.dynamics.motion import ENDS
 from asperity.errors import Outcome, Tolerance
-from asperity.film import SqueezeFilm
-from asperity.impact import simulate
-from asperity.impact.motion import ENDS
-from asperity.measures import measure
+from asperity.model import build
+from asperity.results.measures import measure
 
 IMPACTS = 4
 

@@ -8,8 +8,8 @@ import pytest
 from numpy.polynomial import Chebyshev
 
 from asperity._jax import jax, jnp
-from asperity.impact.datum import _outermost, end_of_contact, find_datum
-from asperity.impact.table import FORCE, STORED
+from asperity.dynamics.curve_table import FORCE, STORED
+from asperity.dynamics.static_equilibrium import _outermost, end_of_contact, find_datum
 
 ENDS = np.array([0.0, 1.0, 2.5, 4.0])
 

@@ -11,12 +11,12 @@ from scipy.integrate import quad
 
 import asperity
 from asperity import solver
-from asperity.case import load
-from asperity.case.asperities import Asperities
-from asperity.domain import first_yield_speed, mean_overlap
+from asperity.config import load
+from asperity.config.asperities import Asperities
 from asperity.errors import InputError
-from asperity.materials import contact_modulus
-from asperity.verdict import verdict
+from asperity.materials.solids import contact_modulus
+from asperity.regimes.model_domain import first_yield_speed, mean_overlap
+from asperity.results.verdict import verdict
 
 SMOOTH = """
 [body]

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from asperity.film import SqueezeFilm, slip_factor
+from asperity.dynamics.gas_film import SqueezeFilm, slip_factor
 
 
 def test_no_slip_is_the_limit_of_little_slip():

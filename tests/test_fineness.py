@@ -5,8 +5,8 @@ import pytest
 from numpy.polynomial import chebyshev
 
 from asperity._jax import jnp
-from asperity.roughness import Gaussian, Sampled, spread_of
-from asperity.roughness.fineness import WAY_NODES, Fineness, fineness_of
+from asperity.surfaces.heights import Gaussian, Sampled, spread_of
+from asperity.surfaces.heights.panel_length import WAY_NODES, Fineness, fineness_of
 
 _RANDOM = np.random.default_rng(3)
 RMS = 2e-9

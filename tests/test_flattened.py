@@ -6,21 +6,21 @@ import equinox as eqx
 import numpy as np
 import pytest
 
-import asperity.first_loading as module
-import asperity.flattened as tabulated
+import asperity.interface.residual_profile as tabulated
+import asperity.interface.virgin_loading as module
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.first_loading import first_loading
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
+from asperity.interface.layers import Layers
+from asperity.interface.plastic_interface import PlasticInterface
+from asperity.interface.virgin_loading import first_loading
 from asperity.laws import Dmt, KelvinFilling
-from asperity.laws.base import Sum
+from asperity.laws.law import Sum
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
-from asperity.layers import Layers
-from asperity.plastic_interface import PlasticInterface
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 from plastic_asperities import (
     BATCH,
     BESIDE,

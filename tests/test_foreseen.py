@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity import flying
+from asperity import integration
 from asperity._jax import jax
-from asperity.case import builtin, load_file
-from asperity.case.build import build
-from asperity.flying import cut_in_steps
-from asperity.impact import prepare
-from asperity.impact.foreseen import foreseen
+from asperity.config import builtin, load_file
+from asperity.dynamics import prepare
+from asperity.dynamics.output_shapes import foreseen
+from asperity.integration import cut_in_steps
+from asperity.model import build
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RIGID = {"counterface.deformation": "rigid"}
@@ -78,7 +78,7 @@ def test_so_are_those_of_the_published_sums():
 
 def test_a_motion_is_compiled_once_for_the_shapes_that_were_foreseen():
     case = builtin("published-exact").replace({**RIGID, "numerics.max_impacts": 1})
-    before = set(flying._fly_some._held)
+    before = set(integration._fly_some._held)
     asperity.solve(case)
     asperity.solve(case.replace({"roughness.rms_height": "10.6 nm"}))
-    assert len(set(flying._fly_some._held) - before) == 1
+    assert len(set(integration._fly_some._held) - before) == 1

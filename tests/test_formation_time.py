@@ -14,17 +14,17 @@ import asperity
 from asperity import InputError, Outcome, SimulationError, solver
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact, SmoothContact
-from asperity.contact.late import LateContact
+from asperity.contact.delayed_formation import LateContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, Limits, prepare
+from asperity.dynamics.delayed_motion import fly
+from asperity.dynamics.gas_film import SqueezeFilm
+from asperity.dynamics.motion import simulate
+from asperity.dynamics.time_collocation import Here, step
 from asperity.errors import Tolerance
-from asperity.film import SqueezeFilm
-from asperity.impact import Body, Limits, prepare
-from asperity.impact.collocation import Here, step
-from asperity.impact.delayed import fly
-from asperity.impact.motion import simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import ConstantVolume, Hertz, Jkr, Meniscus
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
@@ -266,8 +266,8 @@ def test_restitution_in_gas_tends_to_that_with_menisci_at_once(case):
 def test_a_time_of_zero_is_no_time(case):
     zero = case.replace({"capillary.formation_time": "0 s"})
     none = case.replace({"capillary.formation_time": None})
-    assert asperity.case.build.build(zero).late is None
-    assert asperity.case.build.build(none).late is None
+    assert asperity.model.build(zero).late is None
+    assert asperity.model.build(none).late is None
 
 
 def test_a_motion_can_be_stopped(case):

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity import InputError, Outcome
-from asperity.case.build import build
-from asperity.contact.late import LateContact
-from asperity.flying import flown, silently
-from asperity.impact.creeping.waiting import Flight
+from asperity.contact.delayed_formation import LateContact
+from asperity.dynamics.viscoelastic.ring_menisci import Flight
+from asperity.integration import flown, silently
+from asperity.model import build
 
 TURNS = ("deepest", "apex", "deepest_time", "apex_time")
 

@@ -3,7 +3,7 @@
 import pytest
 
 from asperity import InputError
-from asperity.gases import ATMOSPHERE, GASES
+from asperity.materials.gases import ATMOSPHERE, GASES
 
 
 @pytest.mark.parametrize(

@@ -9,15 +9,15 @@ from scipy.integrate import solve_ivp
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, RigidContact, SmoothContact
+from asperity.contact.profile import Sphere
 from asperity.contact.resolution import resolution
+from asperity.dynamics import Body, simulate
+from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome, Tolerance
-from asperity.impact import Body, simulate
-from asperity.impact.history import ENDS
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
-from asperity.measures import measure
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.results.measures import measure
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from asperity._jax import jax, jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
-from asperity.laws.base import Law, terms
-from asperity.roughness import Gaussian
-from asperity.roughness.heights import Heights
+from asperity.laws.law import Law, terms
+from asperity.surfaces.heights import Gaussian
+from asperity.surfaces.heights.distribution import Heights
 
 BETA, E, W, SIGMA, N = 2.5e-7, 5e9, 0.05, 4e-9, 1e14
 HERTZ, DMT, JKR = Hertz(BETA, E), Dmt(BETA, W), Jkr(BETA, E, W)

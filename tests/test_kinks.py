@@ -6,13 +6,13 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import build
-from asperity.case.reading import load
+from asperity.config.case_file import load
 from asperity.contact import SmoothContact, SmoothPlasticContact
-from asperity.impact.table import FORCE, outer_row, tabulate, tabulate_again
+from asperity.dynamics.curve_table import FORCE, outer_row, tabulate, tabulate_again
 from asperity.laws import Bradley, Dmt, Hertz, Jkr, Maugis
-from asperity.laws.base import terms
+from asperity.laws.law import terms
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
+from asperity.model import build
 
 YIELDS = """
 schema = 1

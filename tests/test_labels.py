@@ -1,8 +1,8 @@
 """Every table and every key of a case has a name in words."""
 
-from asperity.case import Case
-from asperity.case.labels import LABELS, label
-from asperity.case.problems import tables_of
+from asperity.config import Case
+from asperity.config.key_labels import LABELS, label
+from asperity.config.problems import tables_of
 
 
 def keys() -> set[str]:

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity.case import load
+from asperity.config import load
 from asperity.errors import InputError
 from asperity.laws.plastic import ThorntonNing
-from asperity.materials import (
+from asperity.materials.solids import (
     ADHESION,
     AVOGADRO,
     LIQUIDS,

@@ -12,7 +12,7 @@ from asperity._jax import jax, jnp
 from asperity.errors import InputError
 from asperity.laws import Dmt, Hertz, Jkr, Maugis
 from asperity.laws.maugis import RANGE_PER_SPACING
-from asperity.testing import check_law
+from asperity.laws.testing import check_law
 
 R, E, W = 2.5e-7, 5e9, 0.05  # m, Pa, J/m^2
 DEPTH = (9.0 * pi**2 * W**2 * R / (16.0 * E**2)) ** (1.0 / 3.0)

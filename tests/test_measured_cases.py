@@ -8,19 +8,19 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import records
-from asperity.case import load, load_file, template
-from asperity.case.build import build
 from asperity.cli import app
+from asperity.config import load, load_file, template
 from asperity.errors import InputError, Outcome
-from asperity.roughness import Gaussian
-from asperity.topography import Topography
-from asperity.topography.describing.adding import added
-from asperity.topography.describing.summits import find_summits
-from asperity.topography.files.writing import write_topography
-from asperity.topography.making.generation import self_affine
-from asperity.topography.preparing.preparation import Preparation, prepared
-from asperity.validity import CLASSED, _one_law
+from asperity.model import build
+from asperity.regimes.validity import CLASSED, _one_law
+from asperity.results import records
+from asperity.surfaces import Topography
+from asperity.surfaces.description.sum_of_maps import added
+from asperity.surfaces.description.summits import find_summits
+from asperity.surfaces.files.write_surface import write_topography
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.heights import Gaussian
+from asperity.surfaces.preparation.prepare import Preparation, prepared
 
 MADE = self_affine(
     (128, 128), (10e-9, 10e-9), hurst=0.8, rolloff=240e-9, cutoff=50e-9, rms_height=2e-9, seed=4

@@ -10,17 +10,17 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.height_quadrature import Near
+from asperity.interface.interface import Interface
+from asperity.interface.layers import Layers
+from asperity.interface.measured_summits import loss_error, measured_surface
+from asperity.interface.radius_classes import RadiusClasses, members
 from asperity.laws import Bradley, ByKelvinGap, ConstantVolume, Dmt, Hertz, Jkr, Maugis, Meniscus
-from asperity.layers import Layers
-from asperity.measures import measure
-from asperity.quadrature import Near
-from asperity.radius_classes import RadiusClasses, members
-from asperity.roughness import Gaussian, Sampled, spread_of
-from asperity.shapes import Sphere
-from asperity.summits import loss_error, measured_surface
+from asperity.results.measures import measure
+from asperity.surfaces.heights import Gaussian, Sampled, spread_of
 
 E, W, SIGMA, N = 5e9, 0.05, 4e-9, 1e14
 ANGLE = radians(40.0)

@@ -8,15 +8,15 @@ import pytest
 
 from asperity._jax import jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Meniscus
-from asperity.measures import measure
+from asperity.numerics.height_integrals import height_integral
 from asperity.regimes import load_parameter, plasticity_index, tabor_number
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
-from asperity.special import height_integral
+from asperity.results.measures import measure
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E, N, W = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16, 0.03
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3

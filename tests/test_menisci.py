@@ -7,14 +7,15 @@ import pytest
 from scipy.integrate import simpson
 
 import asperity
-from asperity import InputError, trace
+from asperity import InputError
 from asperity._jax import jax, jnp
-from asperity.case.build import build
 from asperity.contact import RigidContact, SmoothContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, quasi_static, simulate
+from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome, Tolerance
-from asperity.impact import Body, simulate
-from asperity.impact.history import ENDS
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
+from asperity.interface.layers import Layers
 from asperity.laws import (
     ByContact,
     ByKelvinGap,
@@ -23,14 +24,13 @@ from asperity.laws import (
     Hertz,
     KelvinFilling,
     Meniscus,
-    bridge,
 )
-from asperity.layers import Layers
-from asperity.measures import measure
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
-from asperity.testing import check_law
-from asperity.wetness import wetting_regime
+from asperity.laws.liquid import bridge
+from asperity.laws.testing import check_law
+from asperity.model import build
+from asperity.regimes.liquid_regime import wetting_regime
+from asperity.results.measures import measure
+from asperity.surfaces.heights import Gaussian
 
 ANGLE, TENSION, RADIUS = radians(40.0), 0.0728, 20e-9
 SMALL = ConstantVolume(RADIUS, TENSION, ANGLE, 0.4e-9)
@@ -263,7 +263,7 @@ AREAS = {
 @pytest.mark.parametrize("name", AREAS)
 def test_the_loss_of_an_impact_is_the_area_between_the_branches(name, monkeypatch):
     """To its deepest point and back, with many places for Simpson's rule."""
-    monkeypatch.setattr(trace, "_POINTS", 8000)
+    monkeypatch.setattr(quasi_static, "_POINTS", 8000)
     case = CASE.replace(
         {"counterface.deformation": "rigid", "numerics.max_impacts": 1, **AREAS[name]}
     )

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.case.reading import load_file
-from asperity.impact.sampling import ascending
-from asperity.impact.slowness import missed_time
+from asperity.config.case_file import load_file
+from asperity.dynamics.phase_time import missed_time
+from asperity.dynamics.time_series import ascending
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 BONDS = {
@@ -78,7 +78,7 @@ def test_a_fall_lasts_as_long_as_its_speeds_say():
 
 def test_the_time_of_a_body_that_was_just_at_rest_is_that_of_its_even_acceleration():
     """With what the quadrature misses: 2/(sqrt(e + 1) + sqrt(e)), for small e and large."""
-    from asperity.impact.table import RATE, RISE
+    from asperity.dynamics.curve_table import RATE, RISE
 
     for energy in (0.0, 1e-12, 1e-8, 1e-6, 1e-4, 1e-3, 0.02, 0.3):
         found = np.sum(RATE / np.sqrt(energy + RISE))

@@ -8,7 +8,7 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.laws.jkr import Jkr
-from asperity.laws.plastic.adhesive import AdhesiveThorntonNing
+from asperity.laws.plastic.adhesive_sphere import AdhesiveThorntonNing
 
 R, E, W = 2.5e-6, 1.3e9, 0.05  # m, Pa, J/m^2
 HARD = AdhesiveThorntonNing(R, E, W, 100e6)  # yields under load

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from asperity.case import builtin, load, template
-from asperity.case.build import build
-from asperity.case.plasticity import Plasticity, Yielding, yielding_of
 from asperity.cli import app
+from asperity.config import builtin, load, template
+from asperity.config.plasticity import Plasticity, Yielding, yielding_of
 from asperity.errors import InputError
-from asperity.materials import SOLIDS, Solid
+from asperity.materials.solids import SOLIDS, Solid
+from asperity.model import build
 
 MODELS = ("kogut-etsion", "jackson-green", "thornton-ning")
 SMOOTH = """

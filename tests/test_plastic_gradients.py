@@ -7,14 +7,14 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
+from asperity.interface.plastic_interface import PlasticInterface
 from asperity.laws import Dmt, Meniscus
 from asperity.laws.plastic import KogutEtsion
-from asperity.measures import measure
-from asperity.plastic_interface import PlasticInterface
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.results.measures import measure
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, TIP, E, DENSITY = 20e-6, 200e-9, 55e9, 1e14  # m, m, Pa, 1/m^2
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3

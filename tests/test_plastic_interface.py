@@ -7,12 +7,12 @@ import equinox as eqx
 import numpy as np
 import pytest
 
-import asperity.plastic_means as module
+import asperity.interface.plastic_means as module
 from asperity._jax import jax, jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Hertz
-from asperity.laws.base import Sum, terms
-from asperity.roughness import Gaussian
+from asperity.laws.law import Sum, terms
+from asperity.surfaces.heights import Gaussian
 from plastic_asperities import (
     BATCH,
     BESIDE,

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from asperity.plots import plasticity, style
+from asperity.plots import plastic_laws, style
 
 PAGE = Path(__file__).parents[1] / "docs" / "gallery.md"
 POISSON, INDENTATION = 0.3, 2.8  # of steel; hardness over yield strength
@@ -146,7 +146,7 @@ def test_of_other_solids_jackson_and_green_carry_what_the_page_says(hardness, mo
 
 
 def test_the_picture_is_one_column_wide_and_its_letters_lie_apart(gallery):
-    figure = plasticity.figure(gallery["index"], gallery["curves"], fitted=13.0)
+    figure = plastic_laws.figure(gallery["index"], gallery["curves"], fitted=13.0)
     assert figure.get_figwidth() * 25.4 == pytest.approx(style.COLUMN)
     figure.canvas.draw()
     width, height = figure.canvas.get_width_height()
@@ -163,5 +163,5 @@ def test_the_picture_is_one_column_wide_and_its_letters_lie_apart(gallery):
 
 
 def test_nothing_is_shaded_where_the_fits_hold_everywhere(gallery):
-    figure = plasticity.figure(gallery["index"], gallery["curves"], fitted=200.0)
+    figure = plastic_laws.figure(gallery["index"], gallery["curves"], fitted=200.0)
     assert [len(axes.patches) for axes in figure.axes] == [0, 0]

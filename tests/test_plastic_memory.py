@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from asperity._jax import jax, jnp
-from asperity.laws.base import terms
+from asperity.laws.law import terms
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
 from plastic_asperities import (
     BATCH,

@@ -6,11 +6,11 @@ from scipy.integrate import quad
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case import builtin, load
-from asperity.case.build import build
+from asperity.config import builtin, load
 from asperity.errors import InputError, SimulationError
-from asperity.flying import _REFINEMENTS
-from asperity.records import read as read_record
+from asperity.integration import _REFINEMENTS
+from asperity.model import build
+from asperity.results.records import read as read_record
 
 CASE = """
 [body]

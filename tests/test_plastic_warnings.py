@@ -4,9 +4,9 @@ import pytest
 
 import asperity
 from asperity import solver
-from asperity.case import load
-from asperity.materials import contact_modulus
-from asperity.yielding import yielded
+from asperity.config import load
+from asperity.materials.solids import contact_modulus
+from asperity.regimes.plastic_validity import yielded
 
 CASE = """
 [body]

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from asperity import plots
-from asperity.colours import colour
 from asperity.errors import InputError, Outcome
-from asperity.plots import impacts, restitution, style
-from asperity.result import Result
+from asperity.plots import impacts, restitution_plot, style
+from asperity.results.colours import colour
+from asperity.results.result import Result
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -349,7 +349,7 @@ def legend_of(figure: Figure) -> list[str]:
 
 def test_restitution_is_drawn_over_decades_with_the_critical_velocity():
     held = SPEEDS < CRITICAL
-    figure = restitution.figure(
+    figure = restitution_plot.figure(
         SPEEDS, of_jkr(SPEEDS), held, edges=(CRITICAL,), critical=CRITICAL, own_speed=0.1, name="a"
     )
     (axes,) = figure.axes
@@ -376,7 +376,7 @@ def test_restitution_is_drawn_over_decades_with_the_critical_velocity():
 def test_every_interval_of_captured_speeds_is_shaded_between_its_edges():
     edges = (CRITICAL, 0.2, 0.9)
     held = (SPEEDS < CRITICAL) | ((SPEEDS > 0.2) & (SPEEDS < 0.9))
-    figure = restitution.figure(SPEEDS, of_jkr(SPEEDS), held, edges=edges, critical=CRITICAL)
+    figure = restitution_plot.figure(SPEEDS, of_jkr(SPEEDS), held, edges=edges, critical=CRITICAL)
     (axes,) = figure.axes
     assert sorted(upright(axes)) == pytest.approx([12.3, 200.0, 900.0])
     assert [high for _, high in shaded(axes)] == pytest.approx([12.3, 900.0])
@@ -387,10 +387,12 @@ def test_every_interval_of_captured_speeds_is_shaded_between_its_edges():
 
 def test_an_interval_that_no_speed_lies_in_is_shaded_too():
     edges = (1e-3, 1.01e-3)  # no speed of the table lies between
-    figure = restitution.figure(SPEEDS, of_jkr(SPEEDS), SPEEDS < 0.0, edges=edges, critical=1e-3)
+    figure = restitution_plot.figure(
+        SPEEDS, of_jkr(SPEEDS), SPEEDS < 0.0, edges=edges, critical=1e-3
+    )
     assert np.allclose(shaded(figure.axes[0]), [(1.0, 1.01)])
     fast = SPEEDS[SPEEDS > 0.02]  # the critical velocity lies below all of them
-    figure = restitution.figure(
+    figure = restitution_plot.figure(
         fast, of_jkr(fast), fast < 0.0, edges=(CRITICAL,), critical=CRITICAL
     )
     ((low, high),) = shaded(figure.axes[0])
@@ -399,7 +401,7 @@ def test_an_interval_that_no_speed_lies_in_is_shaded_too():
 
 def test_speeds_that_all_rebound_have_no_critical_velocity():
     fast = SPEEDS[SPEEDS > 1.0]
-    figure = restitution.figure(fast, of_jkr(fast), fast < 0.0)
+    figure = restitution_plot.figure(fast, of_jkr(fast), fast < 0.0)
     (axes,) = figure.axes
     assert upright(axes) == shaded(axes) == legend_of(figure) == []
     assert axes.get_xlabel() == "speed of approach [m/s]"
@@ -407,7 +409,7 @@ def test_speeds_that_all_rebound_have_no_critical_velocity():
 
 def test_speeds_that_gas_stops_are_left_out_and_counted():
     bounce = np.where(SPEEDS < 0.05, np.nan, of_jkr(SPEEDS))
-    figure = restitution.figure(SPEEDS, bounce, SPEEDS < 0.0)
+    figure = restitution_plot.figure(SPEEDS, bounce, SPEEDS < 0.0)
     (line, none) = figure.axes[0].lines
     assert np.count_nonzero(np.isfinite(line.get_ydata())) == np.count_nonzero(SPEEDS >= 0.05)
     assert none.get_xdata().size == 0
@@ -416,7 +418,9 @@ def test_speeds_that_gas_stops_are_left_out_and_counted():
 
 
 def test_restitution_is_a_png_and_an_svg_of_one_column():
-    files = restitution.pictures(restitution.figure(SPEEDS, of_jkr(SPEEDS), SPEEDS < CRITICAL))
+    files = restitution_plot.pictures(
+        restitution_plot.figure(SPEEDS, of_jkr(SPEEDS), SPEEDS < CRITICAL)
+    )
     assert list(files) == ["restitution.png", "restitution.svg"]
     assert size_mm(files["restitution.png"])[0] == pytest.approx(style.COLUMN, abs=0.2)
     assert b"speed of approach" in files["restitution.svg"]

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import chebyshev
 
 from asperity._jax import jax, jnp
-from asperity.polynomials import chebyshev_sum
+from asperity.numerics.polynomials import chebyshev_sum
 
 RANDOM = np.random.default_rng(7)
 

@@ -8,10 +8,10 @@ import equinox as eqx
 import jax
 import pytest
 
-from asperity import program
 from asperity._jax import jnp
 from asperity.laws import Hertz
-from asperity.program import Program, kept
+from asperity.numerics import compilation
+from asperity.numerics.compilation import Program, kept
 
 
 @kept
@@ -36,7 +36,7 @@ double.__module__ = "asperity.tests"  # only programs of the package are kept
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """An empty folder for kept programs, and no trace so far."""
-    monkeypatch.setattr(program, "_folder", lambda: tmp_path / "programs")
+    monkeypatch.setattr(compilation, "_folder", lambda: tmp_path / "programs")
     traced.clear()
     return tmp_path / "programs"
 
@@ -79,7 +79,7 @@ def test_a_damaged_file_is_made_anew(folder):
 
 def test_other_sources_have_other_names(folder, monkeypatch):
     answer()
-    monkeypatch.setattr(program, "_ground", lambda: "other sources")
+    monkeypatch.setattr(compilation, "_ground", lambda: "other sources")
     answer()
     assert traced == [2, 2]
     assert len(list(folder.iterdir())) == 2
@@ -109,7 +109,7 @@ def test_arguments_may_be_named(folder):
 def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):
     file = tmp_path / "file"
     file.touch()
-    monkeypatch.setattr(program, "_folder", lambda: file / "programs")
+    monkeypatch.setattr(compilation, "_folder", lambda: file / "programs")
     assert answer().twice.tolist() == [0.0, 2.0, 4.0]
 
 
@@ -128,7 +128,7 @@ def test_an_error_of_the_function_reaches_the_caller(folder):
 
 def test_a_long_session_keeps_only_the_kinds_used_last_in_memory(folder, monkeypatch):
     """Linux gives a process 65530 memory maps, and each compiled kind takes hundreds."""
-    monkeypatch.setattr(program, "HELD", 2)
+    monkeypatch.setattr(compilation, "HELD", 2)
     long_lived = Program(double)
     for factor in (2, 3, 2, 4, 2, 3):
         assert long_lived(LAW, X, factor).twice.tolist() == [0.0, factor, 2.0 * factor]

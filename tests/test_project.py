@@ -255,7 +255,7 @@ def command_names() -> set[str]:
 
 
 def test_case_in_the_pages_is_the_built_in_case():
-    from asperity.case import FIRST, builtin, load
+    from asperity.config import FIRST, builtin, load
 
     (shown,) = blocks(ROOT / "docs" / "cli.md", "toml")
     assert load(shown, file=None) == builtin(FIRST)

@@ -10,13 +10,13 @@ from scipy.special import ndtr
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import build
 from asperity.contact import Contact, PublishedContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import InputError, Outcome, Tolerance
-from asperity.impact import Body, simulate
 from asperity.laws import HeightFunctions, PublishedPressure
-from asperity.measures import measure
-from asperity.shapes import Sphere
+from asperity.model import build
+from asperity.results.measures import measure
 
 RADIUS, BETA, SIGMA, E, N, W = 50e-6, 0.25e-9, 10.5e-9, 56.814e9, 1.69e16, 0.03
 TENSION = 4.05 * 0.075 * cos(radians(73.0))
@@ -262,9 +262,9 @@ def test_conflicting_models_are_refused(case, key, value, rule):
 
 
 def test_a_published_case_reads_back_from_its_own_text(case):
-    from asperity.case import reading
+    from asperity.config import case_file
 
-    assert reading.load(case.toml()) == case
+    assert case_file.load(case.toml()) == case
 
 
 def test_the_built_in_case_rests_and_says_what_it_assumes(case):

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 import asperity
-from asperity.case import load_file
-from asperity.case.reading import load
+from asperity.config import load_file
+from asperity.config.case_file import load
 from asperity.errors import InputError
 
 W, RADIUS, MODULUS = 0.1, 1e-6, 1e9 / (2.0 * (1.0 - 0.2**2))

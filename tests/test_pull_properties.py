@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity._jax import jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import (
     Bradley,
     ByContact,
@@ -22,8 +22,8 @@ from asperity.laws import (
     Maugis,
     Meniscus,
 )
-from asperity.materials import LIQUIDS, kelvin_radius
-from asperity.roughness import Gaussian
+from asperity.materials.solids import LIQUIDS, kelvin_radius
+from asperity.surfaces.heights import Gaussian
 
 BETA, E, W, EPS = 50e-9, 50e9, 0.05, 0.3e-9
 WATER = LIQUIDS["water"].at(293.15)

@@ -12,7 +12,7 @@ import pytest
 
 import asperity
 from asperity import InputError
-from asperity.case import load
+from asperity.config import load
 from fake_result import bounce
 from test_pull_off import SMOOTH
 

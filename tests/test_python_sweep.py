@@ -10,10 +10,11 @@ import xarray
 
 import asperity
 from asperity import InputError, Outcome
-from asperity.case import load
-from asperity.studies.sweep import batch, grid
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.study import parse
+from asperity.config import load
+from asperity.sweeps import sweep
+from asperity.sweeps.compute import batch
+from asperity.sweeps.study.columns import OUTCOMES
+from asperity.sweeps.study.study import parse
 from test_pull_off import SMOOTH
 
 DMT = SMOOTH.replace('"jkr"', '"dmt"')
@@ -121,7 +122,7 @@ def test_a_sweep_of_a_case_without_an_impact_is_refused():
 
 
 def test_a_sweep_beyond_memory_is_refused(monkeypatch):
-    monkeypatch.setattr(grid, "MOST_CASES", 3)
+    monkeypatch.setattr(sweep, "MOST_CASES", 3)
     with pytest.raises(InputError, match=r"at most 3 cases in memory.*got 4"):
         asperity.sweep(load(SMOOTH), {"body.radius": [1e-6, 2e-6, 3e-6, 4e-6]})
 

@@ -7,11 +7,11 @@ from numpy.polynomial import chebyshev
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.height_quadrature import Near
+from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ConstantVolume, Jkr, Maugis
-from asperity.quadrature import Near
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 
 TIP, E, W = 50e-9, 50e9, 0.05
 LAWS = {

@@ -6,7 +6,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 from asperity._jax import jax
-from asperity.radiation import (
+from asperity.dynamics.wave_radiation import (
     WaveRadiation,
     hertz_share,
     radiated,

@@ -16,11 +16,11 @@ import xarray
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity import records
-from asperity.case import Case, builtin
+from asperity.config import Case, builtin
 from asperity.errors import InputError, Outcome, OutputError
-from asperity.records.decoding import read
-from asperity.result import Curve, Result
+from asperity.results import records
+from asperity.results.read_record import read
+from asperity.results.result import Curve, Result
 
 sys.path.insert(0, str(Path(__file__).parent))
 

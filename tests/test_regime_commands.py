@@ -14,11 +14,12 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import records, solver
-from asperity.case import Case
+from asperity import solver
 from asperity.cli import app
+from asperity.config import Case
 from asperity.plots import adhesion_map
 from asperity.regimes import Frame, Place
+from asperity.results import records
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 BOUNCE = str(EXAMPLES / "jkr-bounce.toml")

@@ -7,10 +7,10 @@ import pytest
 
 import asperity
 from asperity._jax import jnp
-from asperity.case.build import build
-from asperity.case.reading import load
-from asperity.studies.sweep.batch import evaluate
-from asperity.studies.sweep.study import parse
+from asperity.config.case_file import load
+from asperity.model import build
+from asperity.sweeps.compute.batch import evaluate
+from asperity.sweeps.study.study import parse
 
 WORK, SPACING, TIP, DENSITY, RMS = 0.03, 0.2e-9, 10e-9, 1e15, 2e-9
 WATER = """

@@ -14,13 +14,13 @@ from typer.testing import CliRunner
 
 from asperity.cli import app
 from asperity.errors import InputError
-from asperity.plots import publication
-from asperity.records import REPRODUCTION_FILES
-from asperity.studies import report
-from asperity.studies.comparison import problems_of
-from asperity.studies.refit import Inputs, Refit
-from asperity.studies.reproduce import Reproduction, reproduce
-from asperity.studies.tables import Entry, read_tables
+from asperity.plots import published_figures
+from asperity.publication import report
+from asperity.publication.comparison import problems_of
+from asperity.publication.parameter_estimation import Inputs, Refit
+from asperity.publication.published_tables import Entry, read_tables
+from asperity.publication.reproduce import Reproduction, reproduce
+from asperity.results.records import REPRODUCTION_FILES
 
 HEADER = (
     "table,asperity_radius_nm,rms_height_nm,stiction_time_us,power_loss_1e-4_nW,log_decrement\n"
@@ -44,7 +44,7 @@ def done():
 
 @pytest.fixture(scope="module")
 def files(done):
-    return {**report.files(done), **publication.files(done.drawings)}
+    return {**report.files(done), **published_figures.files(done.drawings)}
 
 
 def found_in(done, words):
@@ -183,7 +183,7 @@ def test_figures_are_85_mm_wide_and_hold_their_data(files, name):
 
 @pytest.mark.parametrize("name", ["1", "2", "3", "4", "5", "6", "7a", "7b", "8", "9"])
 def test_letters_lie_within_the_figure_and_apart(done, name):
-    figure = publication.figures({f"figure-{name}": done.drawings[f"figure-{name}"]})
+    figure = published_figures.figures({f"figure-{name}": done.drawings[f"figure-{name}"]})
     (figure,) = figure.values()
     renderer = figure.canvas.get_renderer()
     width, height = figure.canvas.get_width_height()
@@ -340,7 +340,7 @@ def test_tables_without_the_usual_surfaces_have_figures_too(tmp_path: Path, rows
     file = tmp_path / "t.csv"
     file.write_text(HEADER + rows)
     done = reproduce(tables=str(file))
-    assert set(publication.figures(done.drawings)) == set(done.drawings)
+    assert set(published_figures.figures(done.drawings)) == set(done.drawings)
     assert len(done.rows) == 3 * rows.count("\n")
 
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import asperity
 from asperity.cli import app
-from asperity.records import read
+from asperity.results.records import read
 from test_critical_velocity import CRITICAL
 from test_pull_off import SMOOTH, smooth
 

@@ -9,16 +9,16 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
-from asperity.contact.base import Held
+from asperity.contact.contact import Held
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, Limits, fly, prepare, start
+from asperity.dynamics.curve_table import FORCE, SIZE, all_rows, fit
+from asperity.dynamics.scanning_table import CLOSE
 from asperity.errors import Tolerance
-from asperity.impact import Body, Limits, fly, prepare, start
-from asperity.impact.reversals import CLOSE
-from asperity.impact.table import FORCE, SIZE, all_rows, fit
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Hertz, Meniscus
-from asperity.polynomials import chebyshev_sum
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.numerics.polynomials import chebyshev_sum
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.case.build import build
-from asperity.case.reading import load
+from asperity.config.case_file import load
 from asperity.contact.ring_error import ring_error
-from asperity.flying import first_impact
+from asperity.dynamics.curve_table import FORCE, SIZE, quantities, read_row
 from asperity.halfspace import ring_mesh
-from asperity.impact.table import FORCE, SIZE, quantities, read_row
+from asperity.integration import first_impact
+from asperity.model import build
 
 TEXT = """
 schema = 1

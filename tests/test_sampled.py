@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity._jax import jax, jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Bradley, Dmt, Hertz, Meniscus
-from asperity.roughness import Sampled, Spread, spread_of
+from asperity.surfaces.heights import Sampled, Spread, spread_of
 
 RADIUS, E, W, SIGMA = 2.5e-7, 5e9, 0.05, 4e-9
 HERTZ, DMT = Hertz(RADIUS, E), Dmt(RADIUS, W)

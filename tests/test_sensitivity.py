@@ -12,10 +12,10 @@ import pytest
 
 from asperity.cli.attributing import sensitivity as command
 from asperity.errors import InputError, Outcome, SimulationError
-from asperity.plots.sweep import bars
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.sensitivity import Sensitivity, sensitivity
-from asperity.studies.sweep.study import Study, parse
+from asperity.plots.study import bars
+from asperity.sweeps.analysis.sensitivity import Sensitivity, sensitivity
+from asperity.sweeps.study.columns import OUTCOMES
+from asperity.sweeps.study.study import Study, parse
 
 REST, FAILED = OUTCOMES.index(Outcome.REST), OUTCOMES.index(Outcome.FAILED)
 AXES = {
@@ -201,7 +201,7 @@ def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A study file in the current folder, and a law in place of the physics."""
     batch = types.ModuleType("batch")
     batch.evaluate = law_of_sum  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "asperity.studies.sweep.batch", batch)
+    monkeypatch.setitem(sys.modules, "asperity.sweeps.compute.batch", batch)
     monkeypatch.chdir(tmp_path)
     rows = "\n".join(f'"{key}" = {text}' for key, text in AXES.items())
     file = tmp_path / "sum.toml"

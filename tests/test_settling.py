@@ -8,15 +8,15 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.case.build import build
 from asperity.contact import ElasticContact
-from asperity.contact.krylov import CLOSE, nearly_solved
-from asperity.contact.settling import rates, rise_of, settle
+from asperity.contact.equilibrium import rates, rise_of, settle
+from asperity.contact.profile import Sphere
 from asperity.halfspace import ring_mesh
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Meniscus
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.model import build
+from asperity.numerics.krylov import CLOSE, nearly_solved
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity import summary
-from asperity.shares import percentages, share_texts
+from asperity.results import summary
+from asperity.results.shares import percentages, share_texts
 from fake_result import bounce
 
 PARTS = st.lists(st.floats(0.0, 1e-9), min_size=1, max_size=6).filter(lambda p: sum(p) > 1e-200)

@@ -6,9 +6,9 @@ import re
 import numpy as np
 
 import asperity
-from asperity.amounts import amount
-from asperity.case import load
-from asperity.studies.sweep.study import parse
+from asperity.config import load
+from asperity.config.amounts import amount
+from asperity.sweeps.study.study import parse
 from fake_result import bounce, loading
 from test_pull_off import SMOOTH
 

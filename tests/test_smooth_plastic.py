@@ -8,13 +8,13 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import SmoothContact, SmoothPlasticContact
+from asperity.dynamics import Body, simulate
+from asperity.dynamics.record import ENDS
 from asperity.errors import InputError, Outcome, Tolerance
-from asperity.impact import Body, simulate
-from asperity.impact.history import ENDS
 from asperity.laws import ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
-from asperity.laws.plastic.adhesive import AdhesiveThorntonNing
-from asperity.measures import measure
+from asperity.laws.plastic.adhesive_sphere import AdhesiveThorntonNing
+from asperity.results.measures import measure
 
 # A sphere of ammonium fluorescein on silicon
 RADIUS = 2.45e-6

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity import InputError, Outcome, SimulationError, flying, solver
+from asperity import InputError, Outcome, SimulationError, integration, solver
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -129,12 +129,12 @@ def test_progress_rises_to_one(case):
 
 def test_a_motion_that_fails_raises_with_what_was_computed_or_returns_it(case, monkeypatch):
     """The failure is put in: the flight itself has no case that fails."""
-    fly = flying._fly
+    fly = integration._fly
 
     def failing(*args):
         return fly(*args)._replace(outcome=Outcome.FAILED)
 
-    monkeypatch.setattr(flying, "_fly", failing)
+    monkeypatch.setattr(integration, "_fly", failing)
     kept = solver.solve(case, throw=False)
     assert kept.outcome is Outcome.FAILED
     with pytest.raises(SimulationError) as raised:

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from asperity._jax import jax, jnp
-from asperity.special import height_integral, integrals_at, normal_density
+from asperity.numerics.height_integrals import height_integral, integrals_at, normal_density
 
 ORDERS = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
 PLACES = np.concatenate([np.linspace(-8.0, 12.0, 41), [-1.0 - 1e-9, -0.9999, 0.123, 11.987]])

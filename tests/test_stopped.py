@@ -10,10 +10,10 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import asperity
-from asperity.case import load
+from asperity.config import load
+from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.errors import Outcome
-from asperity.film import SqueezeFilm
-from asperity.verdict import verdict
+from asperity.results.verdict import verdict
 
 RADIUS, DENSITY, VISCOSITY, RELEASE = 5e-6, 2500.0, 18.2e-6, 1e-6
 MASS = 4.0 / 3.0 * math.pi * RADIUS**3 * DENSITY

@@ -16,13 +16,13 @@ import zarr
 
 from asperity.cli.tallying import warnings
 from asperity.errors import InputError, OutputError
-from asperity.studies.sweep.array import metadata
-from asperity.studies.sweep.counting import first_failure, outcomes
-from asperity.studies.sweep.joining import Shard, join, shard, whole
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.mending import mend, remove
-from asperity.studies.sweep.running import Tally, fill
-from asperity.studies.sweep.store import Store, manifest_of
+from asperity.sweeps.compute.runner import Tally, fill
+from asperity.sweeps.store.array import metadata
+from asperity.sweeps.store.counting import first_failure, outcomes
+from asperity.sweeps.store.merge import Shard, join, shard, whole
+from asperity.sweeps.store.repair import mend, remove
+from asperity.sweeps.store.store import Store, manifest_of
+from asperity.sweeps.study.columns import OUTCOMES
 from fake_study import FakeStudy, backwards, compute, expected, in_order
 
 STUDY = FakeStudy()

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.case import builtin, load
+from asperity.config import builtin, load
 from asperity.errors import InputError
-from asperity.studies.sweep.layout import DEFAULT_KEEP, REASON_SIZE
-from asperity.studies.sweep.study import parse, read
+from asperity.sweeps.study.columns import DEFAULT_KEEP, REASON_SIZE
+from asperity.sweeps.study.study import parse, read
 from study_texts import GRID, HUMIDITY, RMS, sample, study
 
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.case import SIZE_LIMIT
-from asperity.case.reading import LINE_LIMIT
+from asperity.config import SIZE_LIMIT
+from asperity.config.case_file import LINE_LIMIT
 from asperity.errors import InputError
-from asperity.studies.sweep.listing import LIST_LIMIT
-from asperity.studies.sweep.study import parse, read
+from asperity.sweeps.study.axis_text import LIST_LIMIT
+from asperity.sweeps.study.study import parse, read
 from study_texts import GRID, HUMIDITY, RMS
 
 HEAD = 'base = "published"\n'

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.case import Case, builtin, load
-from asperity.case.problems import tables_of
-from asperity.case.writing import unit_of
-from asperity.studies.sweep import keys
-from asperity.studies.sweep.study import parse, read
+from asperity.config import Case, builtin, load
+from asperity.config.case_text import unit_of
+from asperity.config.problems import tables_of
+from asperity.sweeps.study import keys
+from asperity.sweeps.study.study import parse, read
 from study_texts import GRID, HUMIDITY, RMS, study
 
 

@@ -18,10 +18,10 @@ import pytest
 from typer.testing import CliRunner
 
 from asperity.cli import app
-from asperity.topography import Topography
-from asperity.topography.files.reading import read_topography
-from asperity.topography.files.writing import write_topography
-from asperity.topography.making.generation import self_affine
+from asperity.surfaces import Topography
+from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.write_surface import write_topography
+from asperity.surfaces.generation.generate import self_affine
 
 KEYS = {
     "rms_height", "skewness", "kurtosis", "summit_density", "summit_radius", "summit_rms_height",

@@ -12,16 +12,16 @@ import pytest
 from matplotlib.figure import Figure
 from scipy.special import ndtr
 
-from asperity.plots import height_map, publication, style, surface
+from asperity.plots import height_map, published_figures, style, surface
 from asperity.plots.height_map import coarse, colour_limits, legible, round_length
-from asperity.studies import surface_figures
-from asperity.studies.surfaces import Pair, Treatment, pair
-from asperity.studies.surfaces import surface as measured
-from asperity.topography import Topography
-from asperity.topography.describing.convolution import convolved
-from asperity.topography.files.writing import write_topography
-from asperity.topography.making.generation import self_affine
-from asperity.topography.preparing.preparation import Preparation
+from asperity.publication import surface_figures
+from asperity.surfaces import Topography
+from asperity.surfaces.description.convolution import convolved
+from asperity.surfaces.files.write_surface import write_topography
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.measured_surface import Pair, Treatment, pair
+from asperity.surfaces.measured_surface import surface as measured
+from asperity.surfaces.preparation.prepare import Preparation
 
 
 def gaussian(seed: int = 1, points: tuple[int, int] = (96, 64)) -> Topography:
@@ -196,9 +196,9 @@ def test_bins_of_a_convolution_hold_the_gaussians_share():
 def test_figures_2_and_3_name_the_files_and_are_85_mm_wide(two: Pair):
     drawings = {"figure-2": surface_figures.heights(two),
                 "figure-3": surface_figures.distribution(two)}  # fmt: skip
-    for figure in publication.figures(drawings).values():
+    for figure in published_figures.figures(drawings).values():
         assert_apart(figure)
-    contents = publication.files(drawings)
+    contents = published_figures.files(drawings)
     for name, drawing in drawings.items():
         assert "gaussian.nc + with spikes.nc" in drawing.title
         width = int.from_bytes(contents[f"{name}.png"][16:20], "big")

@@ -10,11 +10,11 @@ import pytest
 import asperity
 from asperity.errors import InputError
 from asperity.solver import solve
-from asperity.studies.sweep.batch import compute, evaluate
-from asperity.studies.sweep.building import built
-from asperity.studies.sweep.lanes import Stopped
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.study import parse
+from asperity.sweeps.compute.batch import compute, evaluate
+from asperity.sweeps.compute.batch_steps import Stopped
+from asperity.sweeps.compute.building import built
+from asperity.sweeps.study.columns import OUTCOMES
+from asperity.sweeps.study.study import parse
 
 KEEP = """keep = ["captured", "impact_speed", "restitution", "rebound_height", "log_decrement",
  "impact_time", "power_loss", "capture_time", "stiction_time", "end_time", "deepest",

@@ -15,10 +15,10 @@ from typing import Any
 
 import pytest
 
-from asperity.studies.sweep.files import beside
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.running import fill
-from asperity.studies.sweep.store import Store
+from asperity.sweeps.compute.runner import fill
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.store.whole_files import beside
+from asperity.sweeps.study.columns import OUTCOMES
 from fake_study import FakeStudy, expected, in_order
 from test_store import contents, flip
 

@@ -10,14 +10,14 @@ import pytest
 
 from asperity.errors import Outcome
 from asperity.solver import solve
-from asperity.studies.sweep.clients import local
-from asperity.studies.sweep.cluster import on_cluster
-from asperity.studies.sweep.counting import first_failure, outcomes
-from asperity.studies.sweep.joining import Shard, join
-from asperity.studies.sweep.layout import OUTCOMES
-from asperity.studies.sweep.running import fill, in_process
-from asperity.studies.sweep.store import Store
-from asperity.studies.sweep.study import Study, read
+from asperity.sweeps.compute.clients import local
+from asperity.sweeps.compute.cluster import on_cluster
+from asperity.sweeps.compute.runner import fill, in_process
+from asperity.sweeps.store.counting import first_failure, outcomes
+from asperity.sweeps.store.merge import Shard, join
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.columns import OUTCOMES
+from asperity.sweeps.study.study import Study, read
 from test_store import contents
 
 TEXT = """

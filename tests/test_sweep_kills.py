@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from asperity.studies.sweep.files import beside
-from asperity.studies.sweep.running import fill
-from asperity.studies.sweep.store import Store
+from asperity.sweeps.compute.runner import fill
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.store.whole_files import beside
 from fake_study import FakeStudy, in_order
 from test_store import contents
 

@@ -20,19 +20,19 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 import asperity
-from asperity.cli import exporting, looking
+from asperity.cli import exporting, study_plots
 from asperity.errors import InputError, OutputError
-from asperity.plots import style, sweep
-from asperity.plots.sweep.maps import boundary
-from asperity.plots.sweep.quantities import axis_quantity
-from asperity.result import Curve
-from asperity.studies.sweep import force_table, restitution_table
-from asperity.studies.sweep.dataset import open_study
-from asperity.studies.sweep.export import export
-from asperity.studies.sweep.pareto import Goal, front_of, goal_of, undominated
-from asperity.studies.sweep.store import Store
-from asperity.studies.sweep.study import parse
-from asperity.studies.sweep.view import at, view_of, words
+from asperity.plots import study, style
+from asperity.plots.study.drawn_quantities import axis_quantity
+from asperity.plots.study.maps import boundary
+from asperity.results.result import Curve
+from asperity.sweeps.analysis import force_table, restitution_table
+from asperity.sweeps.analysis.export import export
+from asperity.sweeps.analysis.pareto import Goal, front_of, goal_of, undominated
+from asperity.sweeps.analysis.view import at, view_of, words
+from asperity.sweeps.store.dataset import open_study
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.study import parse
 from study_results import GRID, KEEP, REST, SAMPLE, SPEEDS, law, stored
 
 ROUGH, HUMID, SPEED = "roughness.rms_height", "capillary.humidity", "impact.speed"
@@ -195,7 +195,7 @@ def test_axes_of_one_value_are_held_unasked(grid: xarray.Dataset, kind: str):
     wider[SPEED].attrs = {"units": "m/s", "long_name": "impact speed", "scale": "linear"}
     wider.attrs["axes"] = [ROUGH, SPEED, HUMID]
     held = {HUMID: "0.3"} if kind == "lines" else {}
-    assert sweep.pictures(wider, held=held) == sweep.pictures(grid, held=held)
+    assert study.pictures(wider, held=held) == study.pictures(grid, held=held)
 
 
 def test_held_axes_take_the_nearest_value_in_their_own_scale(grid: xarray.Dataset):
@@ -238,7 +238,7 @@ def test_pictures_that_cannot_be_are_refused(
     stores: dict[str, Path], name: str, options: dict[str, str], words: str
 ):
     with pytest.raises(InputError, match=words):
-        sweep.pictures(open_study(stores[name]), **options)
+        study.pictures(open_study(stores[name]), **options)
 
 
 def test_a_study_over_speed_spends_no_panel_on_the_speed_itself(stores: dict[str, Path]):
@@ -263,7 +263,7 @@ def test_a_measure_that_no_case_has_gets_no_panel(stores: dict[str, Path]):
 def test_panels_side_by_side_span_the_same_values(stores: dict[str, Path]):
     found = open_study(stores["speeds"])
     found["stiction_time"].values[9:] = np.nan  # these never come to rest
-    _, drawn = sweep.figure(found)
+    _, drawn = study.figure(found)
     first, second = (axes.get_xlim() for axes in drawn.axes)
     assert first == second
     assert first[0] < 50.0 < 500.0 < first[1]
@@ -289,7 +289,7 @@ def disagreeing(found: xarray.Dataset) -> xarray.Dataset:
 
 def test_lines_shade_capture_at_the_first_impact_and_not_rest(stores: dict[str, Path]):
     found = disagreeing(open_study(stores["speeds"]))
-    _, drawn = sweep.figure(found)
+    _, drawn = study.figure(found)
     (legend,) = drawn.legends
     assert [text.get_text() for text in legend.get_texts()] == ["captured at the first impact"]
     speeds = 1e3 * found[SPEED].values
@@ -301,14 +301,14 @@ def test_lines_shade_capture_at_the_first_impact_and_not_rest(stores: dict[str, 
 
 def test_maps_and_points_tell_capture_at_the_first_impact_from_rebound(stores: dict[str, Path]):
     found = disagreeing(open_study(stores["sample"]))
-    _, drawn = sweep.figure(found)
+    _, drawn = study.figure(found)
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert words == ["rebounds", "captured at the first impact"]
     assert [line.get_xdata().size for line in drawn.axes[0].lines] == [246, 10]
-    _, drawn = sweep.figure(open_study(stores["grid"]), measure="outcome")
+    _, drawn = study.figure(open_study(stores["grid"]), measure="outcome")
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert words == ["rest", "captured at the first impact | rebounds", "failed"]
-    _, drawn = sweep.figure(open_study(stores["grid"]), measure="captured")
+    _, drawn = study.figure(open_study(stores["grid"]), measure="captured")
     words = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert words == ["rebounds", "captured at the first impact", "failed"]
 
@@ -332,7 +332,7 @@ def test_the_boundary_runs_between_every_pair_of_cells_that_differ(held: np.ndar
 
 def test_a_map_draws_the_boundary_where_the_law_has_it(stores: dict[str, Path]):
     found = open_study(stores["grid"])
-    _, drawn = sweep.figure(found)
+    _, drawn = study.figure(found)
     lines = [c for c in drawn.axes[0].collections if type(c).__name__ == "LineCollection"]
     points = np.concatenate(lines[0].get_segments())
     # law: sticks where (0.1/0.2)^2 (humidity/0.2) > (rms height/10 nm)^4
@@ -344,7 +344,7 @@ def test_a_map_draws_the_boundary_where_the_law_has_it(stores: dict[str, Path]):
 
 
 def test_failed_cells_are_hatched_and_no_others(grid: xarray.Dataset):
-    _, drawn = sweep.figure(grid)
+    _, drawn = study.figure(grid)
     (hatched,) = (c for c in drawn.axes[0].collections if type(c).__name__ == "PolyCollection")
     centres = {
         (ROUGH_NUMBER, HUMID_NUMBER)
@@ -399,7 +399,7 @@ def test_goals_of_another_form_are_refused(text: str):
 def test_the_front_is_listed_with_the_axes_of_its_cases(stores: dict[str, Path]):
     found = open_study(stores["sample"])
     goals = (goal_of("min:stiction_time"), goal_of("max:restitution"))
-    listed = sweep.pictures(found, pareto=goals)["pareto.csv"].decode().splitlines()
+    listed = study.pictures(found, pareto=goals)["pareto.csv"].decode().splitlines()
     assert listed[0] == f"{ROUGH} [m],{HUMID} [1],adhesion.model,stiction_time [s],restitution [1]"
     for row in csv.reader(listed[1:]):
         values = {ROUGH: np.array([float(row[0])]), HUMID: np.array([float(row[1])]),
@@ -436,9 +436,9 @@ def drawable(stores: dict[str, Path], name: str) -> xarray.Dataset:
 def test_pictures_are_png_and_svg_and_the_same_twice(stores: dict[str, Path], what: str):
     name, options = DRAWN[what]
     found = drawable(stores, name)
-    pictures = sweep.pictures(found, **options)
+    pictures = study.pictures(found, **options)
     assert {file.rpartition(".")[2] for file in pictures} == {"png", "svg"}
-    assert pictures == sweep.pictures(found, **options)
+    assert pictures == study.pictures(found, **options)
     (png,) = (content for file, content in pictures.items() if file.endswith("png"))
     width = struct.unpack(">I", png[16:20])[0] / style.RESOLUTION * 25.4
     assert any(abs(width - wanted) < 0.2 for wanted in (style.COLUMN, style.PAGE))
@@ -464,7 +464,7 @@ def texts(figure: Figure) -> list[tuple[str, tuple[float, float, float, float]]]
 @pytest.mark.parametrize("what", DRAWN)
 def test_no_text_of_a_picture_leaves_it_or_lies_on_another(stores: dict[str, Path], what: str):
     name, options = DRAWN[what]
-    _, drawn = sweep.figure(drawable(stores, name), **options)
+    _, drawn = study.figure(drawable(stores, name), **options)
     placed = texts(drawn)
     width, height = drawn.bbox.size
     outside = [
@@ -482,7 +482,7 @@ def test_no_text_of_a_picture_leaves_it_or_lies_on_another(stores: dict[str, Pat
 
 def test_lines_stand_at_the_values_in_the_unit_of_the_label(stores: dict[str, Path]):
     found = open_study(stores["speeds"], ["restitution", "stiction_time"])
-    _, drawn = sweep.figure(found)
+    _, drawn = study.figure(found)
     speed, bounce = law({SPEED: found[SPEED].values})
     for axes, values in zip(drawn.axes, (bounce, 1e3 * 1e-3 * (1.0 + bounce)), strict=True):
         (line,) = axes.lines
@@ -506,7 +506,7 @@ def test_a_value_between_two_that_do_not_apply_is_drawn(grid: xarray.Dataset):
     with_gaps = grid.copy(deep=True)
     measure = with_gaps["restitution"]
     measure[{ROUGH: slice(0, None, 2)}] = np.nan
-    kind, drawn = sweep.figure(with_gaps, measure="restitution", held={HUMID: "0.1"})
+    kind, drawn = study.figure(with_gaps, measure="restitution", held={HUMID: "0.1"})
     assert kind == "lines"
     marked = [line for line in drawn.axes[0].lines if line.get_marker() == "o"]
     known = np.isfinite(measure.sel({HUMID: 0.1}, method="nearest").values.ravel())
@@ -515,7 +515,7 @@ def test_a_value_between_two_that_do_not_apply_is_drawn(grid: xarray.Dataset):
 
 def test_listed_values_are_drawn_in_the_order_of_their_size(tmp_path: Path):
     text = KEEP + '[axes]\n"impact.speed" = {values = ["0.3 m/s", "0.1 m/s", "0.2 m/s"]}\n'
-    _, drawn = sweep.figure(open_study(stored(tmp_path, text)), measure="restitution")
+    _, drawn = study.figure(open_study(stored(tmp_path, text)), measure="restitution")
     (line,) = drawn.axes[0].lines
     np.testing.assert_allclose(line.get_xdata(), [100.0, 200.0, 300.0])
     np.testing.assert_allclose(line.get_ydata(), law({SPEED: np.array([0.1, 0.2, 0.3])})[1])
@@ -528,7 +528,7 @@ def test_a_map_of_listed_values_has_each_case_in_its_own_cell(tmp_path: Path):
         f'"capillary.humidity" = {{values = {humid}}}\n'
     )
     found = open_study(stored(tmp_path, text))
-    _, drawn = sweep.figure(found, measure="restitution", x=SPEED, y=HUMID)
+    _, drawn = study.figure(found, measure="restitution", x=SPEED, y=HUMID)
     (mesh,) = (c for c in drawn.axes[0].collections if type(c).__name__ == "QuadMesh")
     x, y = np.meshgrid(sorted(speeds), sorted(humid))
     bounce = law({SPEED: x.ravel(), HUMID: y.ravel()})[1].reshape(x.shape)
@@ -536,13 +536,13 @@ def test_a_map_of_listed_values_has_each_case_in_its_own_cell(tmp_path: Path):
 
 
 def test_a_logarithmic_axis_is_drawn_so(grid: xarray.Dataset):
-    _, drawn = sweep.figure(grid)
+    _, drawn = study.figure(grid)
     assert drawn.axes[0].get_xscale() == "log"
     assert drawn.axes[0].get_yscale() == "linear"
 
 
 def test_a_picture_says_what_failed_and_what_was_held(grid: xarray.Dataset):
-    _, drawn = sweep.figure(grid, held={HUMID: "0.33"})
+    _, drawn = study.figure(grid, held={HUMID: "0.33"})
     assert drawn.texts[0].get_text() == "relative humidity 0.34, 1 of 41 cases failed"
 
 
@@ -798,7 +798,7 @@ def test_plot_writes_a_folder_beside_the_store_and_says_what_failed(
 ):
     store = stored(tmp_path, GRID, LOST)
     for _ in range(2):  # drawn again in place
-        looking.plot_store(str(store), output=None, force=False)
+        study_plots.plot_store(str(store), output=None, force=False)
     out, error = capsys.readouterr()
     assert sorted(path.name for path in (tmp_path / "study-out").iterdir()) == [
         "map.png",
@@ -812,7 +812,7 @@ def test_plot_lists_the_front(
     stores: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     goals = ("max:impact_speed", "max:restitution")
-    looking.plot_store(str(stores["speeds"]), output=str(tmp_path), force=False, pareto=goals)
+    study_plots.plot_store(str(stores["speeds"]), output=str(tmp_path), force=False, pareto=goals)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "Pareto front of max:impact_speed, max:restitution: 1 of 19 cases"
     assert lines[3].split() == ["500", "mm/s", "500", "mm/s", "0.9798"]
@@ -824,7 +824,7 @@ def test_held_axes_of_the_command_are_key_and_value(
     stores: dict[str, Path], tmp_path: Path, given: str
 ):
     with pytest.raises(InputError, match="KEY=VALUE"):
-        looking.plot_store(str(stores["grid"]), output=str(tmp_path), force=False, at=[given])
+        study_plots.plot_store(str(stores["grid"]), output=str(tmp_path), force=False, at=[given])
 
 
 def test_export_wants_one_kind_of_file(stores: dict[str, Path]):

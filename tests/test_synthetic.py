@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.roughness.synthetic import gaussian_surface, length_for_density, summits
+from asperity.surfaces.generation.synthetic import gaussian_surface, length_for_density, summits
 
 DENSITY, RMS = 1.69e16, 10.5e-9
 LENGTH = length_for_density(DENSITY)

@@ -9,8 +9,8 @@ import pytest
 
 from asperity.errors import InputError
 from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Law, Meniscus, TruncatedPower
-from asperity.laws.base import Real, quantity
-from asperity.testing import check_law
+from asperity.laws.law import Real, quantity
+from asperity.laws.testing import check_law
 
 HERTZ = Hertz(25e-9, 5.7e10)
 

@@ -10,24 +10,24 @@ import pytest
 from scipy import integrate, stats
 
 from asperity.errors import InputError
-from asperity.roughness.synthetic import gaussian_surface
-from asperity.topography import Topography
-from asperity.topography.describing.adding import added, adding_in_words
-from asperity.topography.describing.composite import composite
-from asperity.topography.describing.convolution import convolved
-from asperity.topography.describing.description import describe
-from asperity.topography.describing.gaussianity import (
+from asperity.surfaces import Topography
+from asperity.surfaces.description.composite import composite
+from asperity.surfaces.description.convolution import convolved
+from asperity.surfaces.description.describe import describe
+from asperity.surfaces.description.gaussianity import (
     Independent,
     gaussianity,
     independent_heights,
     independent_summits,
     p_value,
 )
-from asperity.topography.describing.nayak import Nayak, mccool
-from asperity.topography.describing.resolution import discretisation_error, pixel_effect
-from asperity.topography.describing.spectrum import Moments, moments, profile_spectrum
-from asperity.topography.describing.summits import find_summits
-from asperity.topography.preparing.form import levelled
+from asperity.surfaces.description.nayak import Nayak, mccool
+from asperity.surfaces.description.pixel_size import discretisation_error, pixel_effect
+from asperity.surfaces.description.spectrum import Moments, moments, profile_spectrum
+from asperity.surfaces.description.sum_of_maps import added, adding_in_words
+from asperity.surfaces.description.summits import find_summits
+from asperity.surfaces.generation.synthetic import gaussian_surface
+from asperity.surfaces.preparation.form_removal import levelled
 
 PIXEL = (2e-9, 3e-9)
 RMS = 1e-9

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from asperity.errors import InputError, OutputError
-from asperity.topography import Topography
-from asperity.topography.files.reading import read_surface, read_topography
-from asperity.topography.files.writing import write_topography
+from asperity.surfaces import Topography
+from asperity.surfaces.files.read_surface import read_surface, read_topography
+from asperity.surfaces.files.write_surface import write_topography
 from vendor_files import gwyddion, x3p
 
 # Not square, no symmetry, one pixel missing: a transposed or flipped map differs.

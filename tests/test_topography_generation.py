@@ -8,9 +8,9 @@ from scipy import stats
 from scipy.integrate import quad
 
 from asperity.errors import InputError
-from asperity.topography.making.generation import self_affine
-from asperity.topography.making.height_shape import standard_heights
-from asperity.topography.making.selfaffine import spectrum_error
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.generation.height_shape import standard_heights
+from asperity.surfaces.generation.self_affine import spectrum_error
 
 PIXEL = 1e-8
 POINTS = 512

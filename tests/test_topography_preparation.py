@@ -7,14 +7,14 @@ import pytest
 from scipy.integrate import quad
 
 from asperity.errors import InputError
-from asperity.roughness.synthetic import gaussian_surface
-from asperity.topography.map import Topography
-from asperity.topography.preparing.alignment import lines_aligned
-from asperity.topography.preparing.filtering import band_limited
-from asperity.topography.preparing.form import levelled
-from asperity.topography.preparing.gaps import filled
-from asperity.topography.preparing.preparation import Preparation, prepared
-from asperity.topography.preparing.step import length
+from asperity.surfaces.generation.synthetic import gaussian_surface
+from asperity.surfaces.preparation.form_removal import levelled
+from asperity.surfaces.preparation.gaussian_filter import band_limited
+from asperity.surfaces.preparation.line_levelling import lines_aligned
+from asperity.surfaces.preparation.missing_pixels import filled
+from asperity.surfaces.preparation.prepare import Preparation, prepared
+from asperity.surfaces.preparation.step import length
+from asperity.surfaces.topography import Topography
 
 STEP = (10e-9, 15e-9)
 SHAPE = (90, 120)

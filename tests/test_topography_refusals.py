@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.topography import Topography
-from asperity.topography.files import netcdf
-from asperity.topography.files.reading import read_topography
-from asperity.topography.files.writing import write_topography
+from asperity.surfaces import Topography
+from asperity.surfaces.files import netcdf_heights
+from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.write_surface import write_topography
 from vendor_files import gwyddion, x3p
 
 HEAD = "# size[um] 4 3\n# unit nm\n"
@@ -253,7 +253,7 @@ def test_a_damaged_netcdf_that_never_ends_is_given_up(tmp_path, monkeypatch):
     """Found by mutation: the C library follows a loop in the file."""
     from pathlib import Path
 
-    monkeypatch.setattr(netcdf, "_LONGEST", 3)
+    monkeypatch.setattr(netcdf_heights, "_LONGEST", 3)
     content = Path(__file__).with_name("data").joinpath("surfaces", "endless.nc").read_bytes()
     assert "must be whole; got a netCDF-4 file" in refused(written(tmp_path, "a.nc", content))
 
@@ -302,7 +302,7 @@ def test_a_file_that_may_not_be_read_says_why(tmp_path, monkeypatch):
 
 
 def test_a_packed_file_is_unpacked_within_bounds(tmp_path, monkeypatch):
-    monkeypatch.setattr("asperity.topography.files.content.MOST_BYTES", 10**5)
+    monkeypatch.setattr("asperity.surfaces.files.content.MOST_BYTES", 10**5)
     path = written(tmp_path, "a.csv.gz", gzip.compress(bytes(10**6)))
     assert "must have at most 100000 bytes, unpacked" in refused(path)
     assert "cannot be unpacked" in refused(written(tmp_path, "b.csv.gz", b"not packed"))

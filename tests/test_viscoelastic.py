@@ -9,16 +9,16 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 from asperity.contact import SmoothContact
-from asperity.contact.creep import Creep
+from asperity.contact.viscoelastic import Creep
+from asperity.dynamics import Body, Limits
+from asperity.dynamics.curve_table import FORCE, STORED
+from asperity.dynamics.motion import prepare
+from asperity.dynamics.viscoelastic import fly_creeping
+from asperity.dynamics.viscoelastic.sphere_motion import LEFT, TURNED, Bounce
 from asperity.errors import Outcome, Tolerance
-from asperity.impact import Body, Limits
-from asperity.impact.creeping import fly_creeping
-from asperity.impact.creeping.bounce import LEFT, TURNED, Bounce
-from asperity.impact.creeping.foundation import Solid
-from asperity.impact.motion import prepare
-from asperity.impact.table import FORCE, STORED
+from asperity.halfspace.viscoelastic_paraboloid import Solid
 from asperity.laws import Hertz
-from asperity.program import Program
+from asperity.numerics.compilation import Program
 
 # In units of its elastic impact a sphere meets the force 5/4 depth^(3/2).
 STIFFNESS = 1.25

@@ -9,13 +9,14 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import colours, solver
-from asperity.case import load
-from asperity.case.build import build
+from asperity import solver
 from asperity.cli import app
-from asperity.colours import COLOURS
-from asperity.contact.creep import CreptContact
-from asperity.materials import contact_modulus
+from asperity.config import load
+from asperity.contact.viscoelastic import CreptContact
+from asperity.materials.solids import contact_modulus
+from asperity.model import build
+from asperity.results import colours
+from asperity.results.colours import COLOURS
 
 CREEPS = """
 [viscoelasticity]

@@ -5,18 +5,18 @@ import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, SmoothContact
-from asperity.contact.creep import Creep
+from asperity.contact.profile import Sphere
+from asperity.contact.viscoelastic import Creep
+from asperity.dynamics import Body, Limits, simulate
+from asperity.dynamics.motion import prepare
+from asperity.dynamics.viscoelastic import fly_creeping, rough_phase
+from asperity.dynamics.viscoelastic.ring_step import step
+from asperity.dynamics.viscoelastic.ring_system import Here
 from asperity.errors import Outcome, Tolerance
-from asperity.impact import Body, Limits, simulate
-from asperity.impact.creeping import fly_creeping, rough
-from asperity.impact.creeping.bulk import Here
-from asperity.impact.creeping.rings import step
-from asperity.impact.motion import prepare
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Meniscus
-from asperity.program import Program
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.numerics.compilation import Program
+from asperity.surfaces.heights import Gaussian
 
 RADIUS, MODULUS, MASS = 50e-6, 3.3e9, 5.5e-10
 SIGMA, DENSITY, TIP = 5e-9, 1e13, 100e-9
@@ -106,7 +106,7 @@ def test_rings_bind_and_break_as_the_elastic_ones_do(creeping, elastic):
 def test_tighter_steps_close_the_ledger_better(monkeypatch):
     off = []
     for tolerance in (1e-7, 1e-9):
-        monkeypatch.setattr(rough, "TOLERANCE", tolerance)
+        monkeypatch.setattr(rough_phase, "TOLERANCE", tolerance)
         motion = flown(0.5, 3e-7)[0]
         off.append(float(motion.impacts.closure[0] / motion.impacts.fastest[0]))
     assert off[1] < 0.1 * off[0]

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity._jax import jax
-from asperity.case import load
-from asperity.case.build import build
+from asperity.config import load
 from asperity.errors import InputError
-from asperity.wave_limits import wave_warnings
+from asperity.model import build
+from asperity.regimes.wave_limits import wave_warnings
 
 ROUGH = load("""
 schema = 1

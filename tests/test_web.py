@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from asperity.case import FIRST
 from asperity.cli import app
+from asperity.config import FIRST
 from asperity.web.app import application
 
 with warnings.catch_warnings():

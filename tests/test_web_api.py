@@ -24,17 +24,17 @@ from schemathesis.engine.events import FatalError, NonFatalError, ScenarioFinish
 from schemathesis.python import asgi
 
 import asperity
-from asperity import records
-from asperity.case import BUILTINS, Case, load
-from asperity.case.fields import Length, Number, entry
-from asperity.case.problems import tables_of
-from asperity.case.reading import builtin_text
-from asperity.case.table import Table
+from asperity.config import BUILTINS, Case, load
+from asperity.config.base_table import Table
+from asperity.config.case_file import builtin_text
+from asperity.config.fields import Length, Number, entry
+from asperity.config.problems import tables_of
 from asperity.errors import Outcome
-from asperity.records.layout import json_object
-from asperity.result import Result
+from asperity.results import records
+from asperity.results.record_layout import json_object
+from asperity.results.result import Result
+from asperity.results.verdict import sentence, verdict
 from asperity.solver import explore
-from asperity.verdict import sentence, verdict
 from asperity.web.answer import _seen
 from asperity.web.app import LOCAL, application
 from asperity.web.exploring import FILES

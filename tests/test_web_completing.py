@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
-from asperity.case import BUILTINS, FIRST, Case, load
-from asperity.case.labels import label
-from asperity.case.problems import check
-from asperity.case.reading import builtin_text, tables
+from asperity.config import BUILTINS, FIRST, Case, load
+from asperity.config.case_file import builtin_text, tables
+from asperity.config.key_labels import label
+from asperity.config.problems import check
 from asperity.errors import InputError
 from asperity.web.app import application
-from asperity.web.completing import completed, remedies
 from asperity.web.form import form
+from asperity.web.missing_keys import completed, remedies
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it would rather have another client

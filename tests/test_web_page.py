@@ -12,13 +12,13 @@ import pytest
 from playwright.sync_api import Error, Page, expect
 
 import asperity
-from asperity.case import Case, load
-from asperity.case.labels import label
-from asperity.case.problems import check, tables_of
-from asperity.case.reading import builtin_text
-from asperity.colours import COLOURS
-from asperity.flying import COMPILATION
-from asperity.shares import share_texts
+from asperity.config import Case, load
+from asperity.config.case_file import builtin_text
+from asperity.config.key_labels import label
+from asperity.config.problems import check, tables_of
+from asperity.integration import COMPILATION
+from asperity.results.colours import COLOURS
+from asperity.results.shares import share_texts
 from asperity.web.form import form
 from browser import needed, served
 

@@ -19,17 +19,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from asperity import records
-from asperity.case import load_file
-from asperity.case.reading import builtin_text, tables
+from asperity.config import load_file
+from asperity.config.case_file import builtin_text, tables
 from asperity.errors import InputError
-from asperity.records.layout import json_object
+from asperity.results import records
+from asperity.results.record_layout import json_object
 from asperity.solver import explore
-from asperity.topography.making.generation import self_affine
-from asperity.web import surfaces as dropped
+from asperity.surfaces.generation.generate import self_affine
+from asperity.web import surface_uploads as dropped
 from asperity.web.app import application
-from asperity.web.asking import Asked
-from asperity.web.surfaces import MOST_FILES, Surfaces
+from asperity.web.requests import Asked
+from asperity.web.surface_uploads import MOST_FILES, Surfaces
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it would rather have another client

@@ -23,40 +23,40 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import os
 
-    from .case import Case
+    from .config import Case
+    from .dynamics import Body, simulate
     from .errors import InputError, Outcome, SimulationError, Tolerance
-    from .impact import Body, simulate
-    from .measures import measure
-    from .records.decoding import read
-    from .restitution import RestitutionCurve, restitution_curve
-    from .result import Curve, Result
+    from .publication.reproduce import Reproduction, reproduce
+    from .results.measures import measure
+    from .results.read_record import read
+    from .results.result import Curve, Result
     from .solver import curve, solve
-    from .studies.reproduce import Reproduction, reproduce
-    from .studies.sweep.dataset import open_study
-    from .studies.sweep.grid import sweep
+    from .sweeps.restitution_curve import RestitutionCurve, restitution_curve
+    from .sweeps.store.dataset import open_study
+    from .sweeps.sweep import sweep
 
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Body": "impact",
-    "Case": "case",
-    "Curve": "result",
+    "Body": "dynamics",
+    "Case": "config",
+    "Curve": "results.result",
     "InputError": "errors",
     "Outcome": "errors",
-    "Reproduction": "studies.reproduce",
-    "RestitutionCurve": "restitution",
-    "Result": "result",
+    "Reproduction": "publication.reproduce",
+    "RestitutionCurve": "sweeps.restitution_curve",
+    "Result": "results.result",
     "SimulationError": "errors",
     "Tolerance": "errors",
     "curve": "solver",
-    "measure": "measures",
-    "open_study": "studies.sweep.dataset",
-    "read": "records.decoding",
-    "reproduce": "studies.reproduce",
-    "restitution_curve": "restitution",
-    "simulate": "impact",
+    "measure": "results.measures",
+    "open_study": "sweeps.store.dataset",
+    "read": "results.read_record",
+    "reproduce": "publication.reproduce",
+    "restitution_curve": "sweeps.restitution_curve",
+    "simulate": "dynamics",
     "solve": "solver",
-    "sweep": "studies.sweep.grid",
+    "sweep": "sweeps.sweep",
 }
 
 __all__ = [
@@ -97,7 +97,7 @@ def load(source: str | os.PathLike[str]) -> Case:
     InputError
         If there is none, or it breaks a rule.
     """
-    from .sources import source_of
+    from .results.case_source import source_of
 
     return source_of(source).case
 

@@ -7,14 +7,14 @@ import dataclasses
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
+from .dynamics import Body, Table
+from .dynamics.curve_table import FORCE
+from .dynamics.problem import CLEARANCE, Problem
+from .dynamics.static_equilibrium import find_datum
 from .errors import InputError, SimulationError
-from .flying import prepared
-from .impact import Body, Table
-from .impact.datum import find_datum
-from .impact.problem import CLEARANCE, Problem
-from .impact.table import FORCE
-from .laws.base import as_float64
-from .program import AT_ONCE, Program
+from .integration import prepared
+from .laws.law import as_float64
+from .numerics.compilation import AT_ONCE, Program
 
 _LEAST, _FACTOR, _STEPS = 1e-24, 8.0, 40  # J: energies of curves, until they reach far enough
 _HELD = 2.0  # times the largest force holds a body back that attraction draws in

@@ -7,19 +7,19 @@ import math
 import threading
 from typing import Any
 
-from .capture import sought
-from .case import Case
-from .case.build import build
-from .conversion import Assessment, Flight, assessment_of, first_restitution, result_of
+from .config import Case
+from .critical_velocity import sought
+from .dynamics import Limits
+from .dynamics.problem import Problem
+from .dynamics.quasi_static import trace
 from .errors import InputError, Outcome, SimulationError
-from .flying import Report, cut_in_steps, first_impact, flown, silently
-from .impact import Limits
-from .impact.problem import Problem
+from .integration import Report, cut_in_steps, first_impact, flown, silently
 from .loading import turning_at
-from .result import Curve, Result
-from .sources import CaseLike, case_of
-from .trace import trace
-from .validity import pull_warnings
+from .model import build
+from .regimes.validity import pull_warnings
+from .results.case_source import CaseLike, case_of
+from .results.conversion import Assessment, Flight, assessment_of, first_restitution, result_of
+from .results.result import Curve, Result
 
 
 def solve(
@@ -124,7 +124,7 @@ def critical_velocity(
 
     Returns
     -------
-    As :func:`asperity.capture.critical_measures`.
+    As :func:`asperity.critical_velocity.critical_measures`.
 
     Raises
     ------

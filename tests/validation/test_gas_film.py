@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.film import SqueezeFilm, gas_decrement
+from asperity.dynamics.gas_film import SqueezeFilm, gas_decrement
 from figures import Figure, misses
 
 FILE = Path(__file__).parent.parent / "data" / "gas_film.csv"

@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 
 from asperity._jax import jnp
 from asperity.contact import ElasticContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import Hertz
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 from figures import Figure
 
 FILE = Path(__file__).parent.parent / "data" / "greenwood_tripp.csv"

@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 
 from asperity._jax import jnp
 from asperity.contact import ElasticContact, State
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import Hertz
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 
 RADIUS = 1e8  # in units of the rms height and of E*
 MU = (0.001, 0.03, 1.0, 4.0, 17.0, 100.0, 1000.0)

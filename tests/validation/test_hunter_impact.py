@@ -6,11 +6,11 @@ from scipy.integrate import solve_ivp
 
 from asperity._jax import jax
 from asperity.contact import SmoothContact
+from asperity.dynamics import Body, simulate
+from asperity.dynamics.wave_radiation import WaveRadiation, hertz_share, radiated
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
 from asperity.laws import Hertz
-from asperity.measures import measure
-from asperity.radiation import WaveRadiation, hertz_share, radiated
+from asperity.results.measures import measure
 from figures import Figure, misses
 
 YOUNG, POISSON, DENSITY, RADIUS = 200e9, 0.25, 7800.0, 1e-3

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from asperity import restitution_curve
-from asperity.case import load
+from asperity.config import load
 from asperity.contact import SmoothContact
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
 from asperity.laws import Jkr
-from asperity.materials import contact_modulus
-from asperity.measures import measure
+from asperity.materials.solids import contact_modulus
+from asperity.results.measures import measure
 from asperity.solver import curve
 from figures import Figure, misses
 

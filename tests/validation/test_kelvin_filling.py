@@ -8,10 +8,10 @@ from scipy.stats import norm
 
 from asperity._jax import jnp
 from asperity.contact import RigidContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import ByContact, ByKelvinGap, KelvinFilling, Meniscus
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
+from asperity.surfaces.heights import Gaussian
 from figures import Figure
 
 RADIUS, TENSION, ANGLE = 10e-6, 0.0728, radians(30.0)

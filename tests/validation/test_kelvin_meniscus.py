@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from asperity._jax import jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import ByKelvinGap, Meniscus
-from asperity.materials import Liquid, kelvin_radius
-from asperity.roughness import Gaussian
+from asperity.materials.solids import Liquid, kelvin_radius
+from asperity.surfaces.heights import Gaussian
 from figures import Figure
 
 WATER = Liquid("water", tension=0.075, molar_volume=1.805e-5, source="the publication's Table 1")

@@ -9,7 +9,7 @@ import pytest
 
 import young_laplace as yl
 from asperity._jax import jax, jnp
-from asperity.laws import bridge
+from asperity.laws.liquid import bridge
 from figures import Figure, misses
 
 FILE = Path(__file__).parent.parent / "data" / "liquid_bridge.csv"

@@ -13,19 +13,19 @@ from scipy.special import ndtri
 
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact
+from asperity.contact.profile import Sphere
+from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
-from asperity.impact import Body, simulate
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
+from asperity.interface.measured_summits import measured_surface
 from asperity.laws import Dmt, Hertz, Meniscus
-from asperity.measures import measure
-from asperity.roughness import Gaussian, Sampled, Spread, spread_of
-from asperity.roughness.synthetic import gaussian_surface
-from asperity.shapes import Sphere
-from asperity.summits import measured_surface
-from asperity.topography import Topography
-from asperity.topography.describing.nayak import Nayak
-from asperity.topography.describing.summits import find_summits
-from asperity.topography.making.generation import self_affine
+from asperity.results.measures import measure
+from asperity.surfaces import Topography
+from asperity.surfaces.description.nayak import Nayak
+from asperity.surfaces.description.summits import find_summits
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.generation.synthetic import gaussian_surface
+from asperity.surfaces.heights import Gaussian, Sampled, Spread, spread_of
 from figures import Figure, misses
 
 E, W = 50e9, 0.03

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.case.build import build
-from asperity.studies.evidence import PRINTED
+from asperity.model import build
+from asperity.publication.evidence import PRINTED
 from figures import Figure
 
 FILE = Path(__file__).parents[2] / "benchmarks" / "published_method.py"

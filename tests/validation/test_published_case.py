@@ -6,9 +6,9 @@ import equinox as eqx
 
 import asperity
 from asperity._jax import jnp
-from asperity.case.build import build
-from asperity.impact import prepare
-from asperity.materials import contact_modulus
+from asperity.dynamics import prepare
+from asperity.materials.solids import contact_modulus
+from asperity.model import build
 from figures import Figure, misses
 
 SOURCE = "independent computation"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import asperity
-from asperity.studies.comparison import mean_power_loss
-from asperity.studies.tables import read_tables
+from asperity.publication.comparison import mean_power_loss
+from asperity.publication.published_tables import read_tables
 from figures import Figure, misses
 
 FILE = Path(__file__).parents[1] / "data" / "publication_tables.csv"

@@ -5,8 +5,8 @@ from math import pi
 
 import pytest
 
-from asperity.case import load
-from asperity.materials import contact_modulus
+from asperity.config import load
+from asperity.materials.solids import contact_modulus
 from asperity.solver import curve
 from figures import Figure, misses
 

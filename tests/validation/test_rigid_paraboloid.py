@@ -8,11 +8,11 @@ import pytest
 
 from asperity._jax import jnp
 from asperity.contact import RigidContact
-from asperity.interface import Interface
+from asperity.contact.profile import Sphere
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz
-from asperity.roughness import Gaussian
-from asperity.shapes import Sphere
-from asperity.special import height_integral
+from asperity.numerics.height_integrals import height_integral
+from asperity.surfaces.heights import Gaussian
 from figures import Figure, misses
 
 RADIUS, BETA, SIGMA, E, W, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 0.03, 1.69e16

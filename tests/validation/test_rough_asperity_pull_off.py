@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from asperity._jax import jnp
-from asperity.interface import Interface
+from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Jkr
-from asperity.roughness import Gaussian
+from asperity.surfaces.heights import Gaussian
 from figures import Figure
 
 FILE = Path(__file__).parent.parent / "data" / "rough_asperity_pull_off.csv"

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy import fft
 
-from asperity.topography import Topography
-from asperity.topography.describing.nayak import Nayak
-from asperity.topography.describing.spectrum import moments, profile_spectrum
-from asperity.topography.describing.summits import find_summits
+from asperity.surfaces import Topography
+from asperity.surfaces.description.nayak import Nayak
+from asperity.surfaces.description.spectrum import moments, profile_spectrum
+from asperity.surfaces.description.summits import find_summits
 from figures import Figure, misses
 
 PIXEL = 2e-9

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from asperity.cli import completing
+from asperity.cli import shell_completion
 from asperity.cli.arguments import (
     CaseName,
     Cases,
@@ -62,7 +62,7 @@ def asperity(
     install_completion: InstallCompletion = None,
 ) -> None:
     """Impact of a small body on a rough surface: bounce or stick, and where the energy goes."""
-    from asperity.cli.asking import answer
+    from asperity.cli.program_options import answer
 
     answer(context, version, as_json, show_completion, install_completion)
 
@@ -226,7 +226,7 @@ def init(
 
     An existing file is never overwritten.
     """
-    from asperity.cli.listing import write_template
+    from asperity.cli.starting import write_template
 
     write_template(file, as_json=as_json)
 
@@ -237,7 +237,7 @@ def materials(
     as_json: OnlyJson = False,
 ) -> None:
     """List solids, liquids, gases and works of adhesion; of those named, their sources."""
-    from asperity.cli.listing import list_materials
+    from asperity.cli.starting import list_materials
 
     list_materials(names or (), as_json=as_json)
 
@@ -249,7 +249,7 @@ def web(
         typer.Argument(
             help="Case to begin with: as for run, but no record.",
             show_default=False,
-            autocompletion=completing.case,
+            autocompletion=shell_completion.case,
         ),
     ] = None,
     port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
@@ -275,7 +275,7 @@ def web(
 
     It listens on this machine alone unless --host says otherwise, until Ctrl-C.
     """
-    from asperity.cli.showing import show
+    from asperity.cli.page import show
 
     show(case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet)
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from asperity.cli import completing
+from asperity.cli import shell_completion
 from asperity.errors import InputError
 
 
@@ -23,7 +23,7 @@ CaseName = Annotated[
     typer.Argument(
         help="Name of a built-in case (glass-bead), a FILE.toml, or a record.nc to repeat.",
         show_default=False,
-        autocompletion=completing.case,
+        autocompletion=shell_completion.case,
     ),
 ]
 Cases = Annotated[
@@ -32,7 +32,7 @@ Cases = Annotated[
         metavar="CASE...",
         help="As for run.",
         show_default=False,
-        autocompletion=completing.case,
+        autocompletion=shell_completion.case,
     ),
 ]
 Materials = Annotated[
@@ -41,7 +41,7 @@ Materials = Annotated[
         metavar="[NAME]...",
         help="Only these.",
         show_default=False,
-        autocompletion=completing.material,
+        autocompletion=shell_completion.material,
     ),
 ]
 Folder = Annotated[
@@ -114,21 +114,21 @@ VersionJson = Annotated[bool, typer.Option("--json", help="With --version: one J
 ShowCompletion = Annotated[
     str | None,
     typer.Option(
-        completing.SHOW,
+        shell_completion.SHOW,
         metavar="[SHELL]",
         help="Print the script that completes words in bash, zsh or fish.",
         show_default=False,
-        autocompletion=completing.one_of(*completing.SHELLS),
+        autocompletion=shell_completion.one_of(*shell_completion.SHELLS),
     ),
 ]
 InstallCompletion = Annotated[
     str | None,
     typer.Option(
-        completing.INSTALL,
+        shell_completion.INSTALL,
         metavar="[SHELL]",
         help="Install it for this user.",
         show_default=False,
-        autocompletion=completing.one_of(*completing.SHELLS),
+        autocompletion=shell_completion.one_of(*shell_completion.SHELLS),
     ),
 ]
 
@@ -145,7 +145,7 @@ def optional(
 
 def choice(name: str, metavar: str, words: str, note: str, *values: str) -> Any:
     """An option that takes one of some words."""
-    return optional(name, metavar, words, note, values=completing.one_of(*values))
+    return optional(name, metavar, words, note, values=shell_completion.one_of(*values))
 
 
 Size = Annotated[

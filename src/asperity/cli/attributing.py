@@ -8,12 +8,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from asperity.cli.looking import done
-from asperity.cli.voice import Voice
+from asperity.cli.reporter import Voice
+from asperity.cli.study_plots import done
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
-    from asperity.studies.sweep.sensitivity import Sensitivity
+    from asperity.sweeps.analysis.sensitivity import Sensitivity
 
 SENSITIVITY_FILES = ("sensitivity.png", "sensitivity.svg", "sensitivity.json")
 """Names of the files that the command may write."""
@@ -40,7 +40,7 @@ def sensitivity(
     **manner : bool
         As `Voice` takes them.
     """
-    from asperity.records import check_folder, write_folder
+    from asperity.results.records import check_folder, write_folder
 
     voice = Voice(**manner)
     folder = None
@@ -52,7 +52,7 @@ def sensitivity(
     if folder is not None:
         with voice.step("pictures and files"):
             files = done(
-                lambda: importlib.import_module("asperity.plots.sweep.bars").pictures(found)
+                lambda: importlib.import_module("asperity.plots.study.bars").pictures(found)
             )
             text = json.dumps(found.json_object(), allow_nan=False)
             files["sensitivity.json"] = text.encode() + b"\n"
@@ -64,9 +64,9 @@ def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
     """The indices, computed in a thread of its own."""
     import dataclasses
 
-    from asperity.studies.sweep.sensitivity import check, measured
-    from asperity.studies.sweep.sensitivity import sensitivity as indices
-    from asperity.studies.sweep.study import read
+    from asperity.sweeps.analysis.sensitivity import check, measured
+    from asperity.sweeps.analysis.sensitivity import sensitivity as indices
+    from asperity.sweeps.study.study import read
 
     # A study keeps what is measured and no more; its other measures would cost time alone.
     study = dataclasses.replace(read(file), keep=(measured(measure).name,), motions=False)
@@ -75,7 +75,7 @@ def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
     except InputError as error:
         error.file = error.file or file
         raise
-    batch = importlib.import_module("asperity.studies.sweep.batch")
+    batch = importlib.import_module("asperity.sweeps.compute.batch")
     cases, computed = study.size * (len(study.axes) + 2), 0
     with voice.watch() as progress:
 
@@ -94,7 +94,7 @@ def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
 
 def _index_lines(found: Sensitivity) -> list[str]:
     """The indices as a table."""
-    from asperity.studies.sweep.sensitivity import CONFIDENCE
+    from asperity.sweeps.analysis.sensitivity import CONFIDENCE
 
     wide = min(max(len(key) for key in found.keys), _WIDEST)
     lines = [

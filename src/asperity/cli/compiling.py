@@ -8,7 +8,7 @@ from collections import Counter, defaultdict
 from functools import cache
 from typing import Any
 
-from asperity.program import KEPT, TRACED
+from asperity.numerics.compilation import KEPT, TRACED
 
 _COMPILED = "/jax/core/compile/backend_compile_duration"
 _READ = "/jax/compilation_cache/cache_retrieval_time_sec"

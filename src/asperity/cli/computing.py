@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity import summary
+from asperity.cli.reporter import Voice, files_of, written_to
 from asperity.cli.terminal import say
-from asperity.cli.voice import Voice, files_of, written_to
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
-from asperity.records import (
+from asperity.results import summary
+from asperity.results.case_source import Source, source_of
+from asperity.results.read_record import read
+from asperity.results.records import (
     CURVE_FILES,
     RESTITUTION_FILES,
     RUN_FILES,
@@ -26,12 +28,10 @@ from asperity.records import (
     json_object,
     write_folder,
 )
-from asperity.records.decoding import read
-from asperity.result import Curve, Result
-from asperity.sources import Source, source_of
+from asperity.results.result import Curve, Result
 
 if TYPE_CHECKING:
-    from asperity.restitution import RestitutionCurve
+    from asperity.sweeps.restitution_curve import RestitutionCurve
 
     Answer = Result | Curve | RestitutionCurve
 
@@ -147,7 +147,7 @@ def _importing(progress: Progress | None) -> Progress:
 
     Sooner it would keep Python from tracing, later it would be waited for.
     """
-    from asperity.flying import COMPILATION
+    from asperity.integration import COMPILATION
 
     imports = threading.Thread(target=_import_ahead, daemon=True)
 
@@ -162,7 +162,7 @@ def _importing(progress: Progress | None) -> Progress:
 
 def _import_ahead() -> None:
     """Import what writes and draws: a second less to wait for in the end."""
-    for name in ("asperity.plots", "asperity.records", "matplotlib.backends.backend_agg"):
+    for name in ("asperity.plots", "asperity.results.records", "matplotlib.backends.backend_agg"):
         importlib.import_module(name)
 
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.cli.looking import done, held_axes, is_store
-from asperity.cli.voice import Voice
+from asperity.cli.reporter import Voice
+from asperity.cli.study_plots import done, held_axes, is_store
 from asperity.cli.working import Progress
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
-    from asperity.result import Curve
+    from asperity.results.result import Curve
 
 Exported = tuple[Path, dict[str, Any]]
 """A file that was written, and what is in it."""
@@ -70,8 +70,8 @@ def export(
 
 
 def _export_table(source: str, output: str, voice: Voice, *, force: bool) -> Exported:
-    from asperity.studies.sweep.dataset import open_results
-    from asperity.studies.sweep.export import export as write
+    from asperity.sweeps.analysis.export import export as write
+    from asperity.sweeps.store.dataset import open_results
 
     with voice.step("table"):
         path: Path = done(lambda: write(source, output, force=force))
@@ -84,9 +84,9 @@ def _export_table(source: str, output: str, voice: Voice, *, force: bool) -> Exp
 def _export_restitution(
     source: str, file: str, held: dict[str, str], voice: Voice, *, force: bool
 ) -> Exported:
-    from asperity.studies.sweep.dataset import dataset_of, open_results
-    from asperity.studies.sweep.restitution_table import restitution_of, write_restitution
-    from asperity.studies.sweep.view import at
+    from asperity.sweeps.analysis.restitution_table import restitution_of, write_restitution
+    from asperity.sweeps.analysis.view import at
+    from asperity.sweeps.store.dataset import dataset_of, open_results
 
     with voice.step("restitution"):
         found = open_results(source)
@@ -100,8 +100,8 @@ def _export_restitution(
 
 
 def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Exported:
-    from asperity.sources import source_of
-    from asperity.studies.sweep.force_table import check_force_table, write_force_table
+    from asperity.results.case_source import source_of
+    from asperity.sweeps.analysis.force_table import check_force_table, write_force_table
 
     if is_store(source):
         raise InputError(f"{source}: a table of forces must be of a case; got a store", file=source)

@@ -13,21 +13,21 @@ import numpy as np
 import typer
 
 from asperity.cli.options import in_options
+from asperity.cli.reporter import Voice
 from asperity.cli.terminal import WIDTH, say
-from asperity.cli.voice import Voice
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, OutputError, one_line
-from asperity.records import check_folder
-from asperity.studies.surface_report import pixel_in_words, rows
-from asperity.summary import amount
-from asperity.topography import Topography
-from asperity.topography.describing.description import Description, describe
-from asperity.topography.files.content import MOST_PIXELS, content_of, cut_short, refusal, suffix_of
-from asperity.topography.files.reading import read_topography
-from asperity.topography.files.writing import check_target, write_topography
-from asperity.topography.making.generation import self_affine
-from asperity.topography.making.selfaffine import SpectrumError, spectrum_error
-from asperity.topography.preparing.form import levelled
+from asperity.results.records import check_folder
+from asperity.results.summary import amount
+from asperity.results.surface_report import pixel_in_words, rows
+from asperity.surfaces import Topography
+from asperity.surfaces.description.describe import Description, describe
+from asperity.surfaces.files.content import MOST_PIXELS, content_of, cut_short, refusal, suffix_of
+from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.write_surface import check_target, write_topography
+from asperity.surfaces.generation.generate import self_affine
+from asperity.surfaces.generation.self_affine import SpectrumError, spectrum_error
+from asperity.surfaces.preparation.form_removal import levelled
 from asperity.units import lengths, quantity, shown
 
 _POINTS = re.compile(r"([0-9]{1,9})(?:\s*[x×]\s*([0-9]{1,9}))?")

@@ -70,7 +70,7 @@ def surface(
     With two files the options hold for both. Writes a one-page picture, surface.txt and
     surface.json to DIR, ./NAME-out unless given.
     """
-    from asperity.cli.surfaces import describe
+    from asperity.cli.surface_command import describe
 
     describe(
         files, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,

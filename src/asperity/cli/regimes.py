@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from asperity.cli.reporter import Voice
 from asperity.cli.terminal import say
-from asperity.cli.voice import Voice
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, SimulationError
-from asperity.records import check_folder, plain, write_folder
 from asperity.regimes import LAW_NAMES, Boundary, Frame, Place, Verdict, region
-from asperity.sources import Source, source_of
-from asperity.summary import WIDTH, amount, warning_lines
+from asperity.results.case_source import Source, source_of
+from asperity.results.records import check_folder, plain, write_folder
+from asperity.results.summary import WIDTH, amount, warning_lines
 
 if TYPE_CHECKING:
-    from asperity.conversion import Assessment
+    from asperity.results.conversion import Assessment
 
 MAP_FILE = "adhesion-map.png"
 """The map's picture unless another is named."""

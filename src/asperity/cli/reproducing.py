@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from asperity.cli.reporter import Voice
 from asperity.cli.terminal import say
-from asperity.cli.voice import Voice
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
-from asperity.records import REPRODUCTION_FILES, check_folder, write_folder
-from asperity.studies import report
-from asperity.studies.reproduce import Reproduction, reproduce
-from asperity.studies.tables import read_tables
-from asperity.summary import amount
+from asperity.publication import report
+from asperity.publication.published_tables import read_tables
+from asperity.publication.reproduce import Reproduction, reproduce
+from asperity.results.records import REPRODUCTION_FILES, check_folder, write_folder
+from asperity.results.summary import amount
 
 if TYPE_CHECKING:
-    from asperity.studies.surfaces import Pair
+    from asperity.surfaces.measured_surface import Pair
 
 FOLDER = "reproduce-out"
 """Folder of the files unless another is named."""
@@ -109,7 +109,7 @@ def _computed(
 
 def _pair(surfaces: tuple[str, str], options: dict[str, Any]) -> Pair:
     """The measured surfaces, read before anything is computed."""
-    from asperity.cli.surfaces import pair_of, treatment
+    from asperity.cli.surface_command import pair_of, treatment
 
     return pair_of(surfaces, treatment(options))
 
@@ -138,9 +138,9 @@ def _keep(
 
 
 def _figures(done: Reproduction) -> dict[str, bytes]:
-    from asperity.plots import publication
+    from asperity.plots import published_figures
 
-    return publication.files(done.drawings)
+    return published_figures.files(done.drawings)
 
 
 def _written(paths: list[Path], done: Reproduction) -> str:

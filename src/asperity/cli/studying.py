@@ -9,14 +9,14 @@ from typing import Annotated
 
 import typer
 
-from asperity.cli import completing
+from asperity.cli import shell_completion
 from asperity.cli.arguments import Folder, Json, OnlyJson, Quiet, Verbose, optional
 
 StudyFile = Annotated[
     str,
     typer.Argument(
         metavar="STUDY.toml", help="The study.", show_default=False,
-        autocompletion=completing.study,
+        autocompletion=shell_completion.study,
     ),
 ]  # fmt: skip
 StoreName = Annotated[
@@ -91,7 +91,7 @@ def merge(
             metavar="STORE...",
             help="Stores of shards.",
             show_default=False,
-            autocompletion=completing.store,
+            autocompletion=shell_completion.store,
         ),
     ],
     output: StoreName = None,
@@ -113,14 +113,14 @@ def plot(
         str,
         typer.Argument(
             metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.",
-            autocompletion=completing.record_or_store,
+            autocompletion=shell_completion.record_or_store,
         ),
     ],
     output: Folder = None,
     measure: Annotated[
         str | None,
         optional(
-            "measure", "NAME", "Of a store: what to draw.", values=completing.column
+            "measure", "NAME", "Of a store: what to draw.", values=shell_completion.column
         ),
     ] = None,
     x: Annotated[str | None, optional("x", "KEY", "Of a store: the axis to the right.")] = None,
@@ -142,7 +142,7 @@ def plot(
 
     Beside the record, in place of those there, unless DIR is given; of a store to NAME-out.
     """
-    from asperity.cli.looking import is_store, plot_store
+    from asperity.cli.study_plots import is_store, plot_store
 
     if is_store(record):
         plot_store(
@@ -164,7 +164,7 @@ def export(
     source: Annotated[
         str,
         typer.Argument(metavar="STORE|CASE", help="A store, or a case for --force-table.",
-                       show_default=False, autocompletion=completing.store_or_case),
+                       show_default=False, autocompletion=shell_completion.store_or_case),
     ],
     output: Annotated[
         str | None,

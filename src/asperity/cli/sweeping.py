@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
 
+from asperity.cli.reporter import Voice
 from asperity.cli.tallying import about, lines, lines_of, progress_of, took, warnings
 from asperity.cli.terminal import exit_code_of, say
-from asperity.cli.voice import Voice
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
-    from asperity.studies.sweep.joining import Shard
-    from asperity.studies.sweep.running import Runner, Tally
-    from asperity.studies.sweep.store import Store
-    from asperity.studies.sweep.study import Study
+    from asperity.sweeps.compute.runner import Runner, Tally
+    from asperity.sweeps.store.merge import Shard
+    from asperity.sweeps.store.store import Store
+    from asperity.sweeps.study.study import Study
 
 MOST_CASES = 10_000_000
 MOST_BYTES = 2_000_000_000
@@ -79,7 +79,7 @@ def sweep(
     **manner : bool
         As `Voice` takes them.
     """
-    from asperity.studies.sweep.running import one_thread
+    from asperity.sweeps.compute.runner import one_thread
 
     voice = Voice(**manner)
     one_thread(at_once=True)
@@ -109,10 +109,10 @@ def _refuse_both(**options: bool) -> None:
 def _request(
     study: str, output: str | None, part: str | None, workers: int | None, scheduler: str | None
 ) -> _Request:
-    from asperity.studies.sweep import joining
-    from asperity.studies.sweep.study import read
+    from asperity.sweeps.store import merge
+    from asperity.sweeps.study.study import read
 
-    shard = None if part is None else joining.shard(part)
+    shard = None if part is None else merge.shard(part)
     path = Path(output or f"{Path(study).stem}.zarr")
     return _Request(
         read(study),
@@ -145,8 +145,8 @@ def _opened(
     request: _Request, voice: Voice, *, resume: bool, repair: bool, force: bool
 ) -> tuple[Store, Sequence[int]]:
     """The store, open for writing, and the tasks wanted of it."""
-    from asperity.studies.sweep.mending import remove
-    from asperity.studies.sweep.store import Store
+    from asperity.sweeps.store.repair import remove
+    from asperity.sweeps.store.store import Store
 
     study, path = request.study, request.path
     tasks = range(study.tasks) if request.shard is None else request.shard.tasks(study.tasks)
@@ -162,7 +162,7 @@ def _opened(
 
 def _is_empty(path: Path, study: Study) -> bool:
     """Whether a store is this study's and holds nothing: one that could not begin left it."""
-    from asperity.studies.sweep.store import Store
+    from asperity.sweeps.store.store import Store
 
     try:
         return not Store.open(path, study).done
@@ -172,8 +172,8 @@ def _is_empty(path: Path, study: Study) -> bool:
 
 def _mended(request: _Request, voice: Voice) -> tuple[Store, Sequence[int]]:
     """The store with nothing in it that is not as it was written, and the tasks that went."""
-    from asperity.studies.sweep.mending import mend
-    from asperity.studies.sweep.store import Store
+    from asperity.sweeps.store.repair import mend
+    from asperity.sweeps.store.store import Store
 
     for file in mend(request.path, request.study):
         voice.note(f"asperity: {file}: written again")
@@ -192,12 +192,12 @@ def _mended(request: _Request, voice: Voice) -> tuple[Store, Sequence[int]]:
 def _runner(request: _Request) -> Iterator[Runner]:
     """What computes."""
     if request.workers is None and request.scheduler is None:
-        from asperity.studies.sweep.running import in_process
+        from asperity.sweeps.compute.runner import in_process
 
         yield in_process
         return
-    from asperity.studies.sweep.clients import connected, local
-    from asperity.studies.sweep.cluster import on_cluster
+    from asperity.sweeps.compute.clients import connected, local
+    from asperity.sweeps.compute.cluster import on_cluster
 
     with (
         local(request.workers) if request.workers is not None else connected(str(request.scheduler))
@@ -209,9 +209,9 @@ def _filled(
     request: _Request, store: Store, tasks: Sequence[int], voice: Voice
 ) -> tuple[Tally | None, int]:
     """What the run did, None where it did not stop in time; and its exit code."""
-    from asperity.studies.sweep.files import beside
-    from asperity.studies.sweep.log import Log
-    from asperity.studies.sweep.running import fill
+    from asperity.sweeps.compute.log import Log
+    from asperity.sweeps.compute.runner import fill
+    from asperity.sweeps.store.whole_files import beside
 
     log = Log(beside(request.path, ".log"))
     log.begin(f"{len(store.done)} of {store.tasks} tasks are finished")
@@ -281,7 +281,7 @@ def merge(
     **manner : bool
         As `Voice` takes them.
     """
-    from asperity.studies.sweep.joining import join, whole
+    from asperity.sweeps.store.merge import join, whole
 
     voice = Voice(**manner)
     path = Path(output) if output is not None else whole(Path(stores[0]))

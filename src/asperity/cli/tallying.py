@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from asperity.errors import Outcome
 
 if TYPE_CHECKING:
-    from asperity.studies.sweep.running import Tally
-    from asperity.studies.sweep.store import Store
+    from asperity.sweeps.compute.runner import Tally
+    from asperity.sweeps.store.store import Store
 
 
 def progress_of(tally: Tally) -> str:
@@ -34,7 +34,7 @@ def duration(seconds: float) -> str:
 
 def about(store: Store) -> dict[str, Any]:
     """What a store holds, as plain numbers."""
-    from asperity.studies.sweep.counting import outcomes
+    from asperity.sweeps.store.counting import outcomes
 
     found = outcomes(store)
     return {
@@ -68,7 +68,7 @@ def warnings(tally: Tally | None) -> list[str]:
 
 def lines(store: Store) -> list[str]:
     """What a store holds, for a human."""
-    from asperity.studies.sweep.counting import first_failure, outcomes
+    from asperity.sweeps.store.counting import first_failure, outcomes
 
     lines = [f"{store.path}: {store.cases_done:,} of {store.size:,} cases"]
     found = {name: count for name, count in outcomes(store).items() if count}

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
-from asperity.cli.completing import ASKED, with_shell
+from asperity.cli.shell_completion import ASKED, with_shell
 from asperity.errors import (
     EXIT_INPUT,
     EXIT_INTERRUPTED,

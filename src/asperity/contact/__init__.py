@@ -1,8 +1,19 @@
-"""Force between two bodies: laws, roughness and bulk put together."""
+"""Force between two bodies: laws, heights, profile and half-space put together.
 
-from .base import Contact, State
+`contact`: what the equation of motion asks of every contact. `profile`: shapes of bodies.
+`smooth`, `smooth_plastic`: one law for the whole body. `rigid`: a rough paraboloid without bulk
+deformation. `elastic`: the same on a half-space (`equilibrium` solves one separation,
+`continuation` follows a path of them, `ring_error` estimates the mesh error).
+`viscoelastic`, `delayed_formation`: contacts whose force depends on time.
+`published_conjunction`: the publication's own. `resolution`: panel lengths of the force curves.
+`scanning_curve`: separations along a scanning curve.
+
+A contact is immutable; its memory is passed in and out.
+"""
+
+from .contact import Contact, State
 from .elastic import ElasticContact, RingMemory
-from .published import PublishedContact
+from .published_conjunction import PublishedContact
 from .rigid import RigidContact
 from .smooth import SmoothContact
 from .smooth_plastic import SmoothPlasticContact

@@ -10,16 +10,16 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh, rings_of_mesh
-from ..interface import Memory as Thresholds
-from ..laws.base import Real, quantity
-from ..layers import Surfaces
-from ..program import kept
-from ..shapes import Sphere
-from .base import Contact, Held, State, Way
-from .following import descend, first_size, fitted, retrace
+from ..interface.interface import Memory as Thresholds
+from ..interface.layers import Surfaces
+from ..laws.law import Real, quantity
+from ..numerics.compilation import kept
+from .contact import Contact, Held, State, Way
+from .continuation import descend, first_size, fitted, retrace
+from .equilibrium import Rest, resting, rise_of, settle
+from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
-from .settling import Rest, resting, rise_of, settle
 
 _ALIKE = 3.0  # rms heights between reversals whose ways are interpolated, at most
 

@@ -7,11 +7,11 @@ from math import asinh, ceil, hypot
 from typing import NamedTuple
 
 from .._jax import jax, jnp
+from ..interface.height_quadrature import EVEN
+from ..interface.layers import Surfaces
 from ..laws import KelvinFilling
-from ..laws.base import Law
-from ..layers import Surfaces
-from ..program import AT_ONCE, Program
-from ..quadrature import EVEN
+from ..laws.law import Law
+from ..numerics.compilation import AT_ONCE, Program
 
 LINEAR = 8.0
 """Panels are even in asinh(separation / (LINEAR rms))."""

@@ -10,15 +10,15 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
-from ..interface import Means
-from ..interface import Memory as Thresholds
-from ..layers import Layers, Surfaces
-from ..plastic_interface import PlasticInterface
-from ..quadrature import Near
-from ..shapes import Sphere
-from .base import Contact, State, Way
+from ..interface.height_quadrature import Near
+from ..interface.interface import Means
+from ..interface.interface import Memory as Thresholds
+from ..interface.layers import Layers, Surfaces
+from ..interface.plastic_interface import PlasticInterface
+from .contact import Contact, State, Way
+from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
-from .ways import first_out_of_reach, pieces_to, way_points
+from .scanning_curve import first_out_of_reach, pieces_to, way_points
 
 Left = tuple[Thresholds, jax.Array, Any]
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from .._jax import jnp
 from ..halfspace import PANEL_COUNT, finer_rings, ring_mesh
-from ..program import AT_ONCE, Program
+from ..numerics.compilation import AT_ONCE, Program
 from .elastic import ElasticContact
-from .settling import pressed
+from .equilibrium import pressed
 
 
 def ring_error(contact: ElasticContact, separation: float, size: float, lift: np.ndarray) -> float:

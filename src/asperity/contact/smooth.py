@@ -9,9 +9,9 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
-from ..laws.base import Law, terms
-from .base import Contact, State
-from .ways import first_out_of_reach, panels_around
+from ..laws.law import Law, terms
+from .contact import Contact, State
+from .scanning_curve import first_out_of_reach, panels_around
 
 Flags = jax.Array
 

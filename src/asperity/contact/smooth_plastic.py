@@ -10,11 +10,11 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import InputError
-from ..laws.base import Law, Sum, terms
 from ..laws.jkr import Jkr
+from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .base import Contact, State
-from .ways import first_out_of_reach, panels_around
+from .contact import Contact, State
+from .scanning_curve import first_out_of_reach, panels_around
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""

@@ -1,5 +1,12 @@
-"""Displacement of an elastic half-space under pressure."""
+"""Displacement of an elastic or viscoelastic half-space under a pressure.
 
-from .rings import PANEL_COUNT, Rings, finer_rings, ring_mesh, rings_of_mesh
+`ring_displacement`: axisymmetric displacement by rings of constant pressure (Boussinesq).
+`viscoelastic_paraboloid`: a paraboloid pressed into a standard linear solid, for any history.
+`residual_indentation`: what such a half-space still shows where it was pressed.
+
+Nothing here knows where the pressure comes from.
+"""
+
+from .ring_displacement import PANEL_COUNT, Rings, finer_rings, ring_mesh, rings_of_mesh
 
 __all__ = ["PANEL_COUNT", "Rings", "finer_rings", "ring_mesh", "rings_of_mesh"]

@@ -1,15 +1,26 @@
-"""One asperity, or one smooth body, against a plane: one law a file."""
+"""One asperity, or one smooth sphere, against a plane: one law a file.
 
-from .base import Law, Powers, Sum, TruncatedPower
+`law`: what a law is, two branches of force and energy over the gap, and how laws add up.
+`hertz`, `bradley`, `dmt`, `jkr`, `maugis`: elastic contact and dry adhesion; `adhesive_zone`
+solves the Maugis-Dugdale equations. `liquid`: menisci. `plastic`: contacts that yield.
+`published_pressures`: the publication's equations as printed.
+`testing`: `check_law`, which proves of any law that force = -d(energy)/d(gap) and that no bond
+gains energy; a law from outside the package is tested by it too.
+
+A new law is a new file, its tests, and its line in this list. A law knows no heights, no body
+and no case.
+"""
+
 from .bradley import Bradley
-from .constant_volume import ConstantVolume
 from .dmt import Dmt
-from .filling import KelvinFilling
 from .hertz import Hertz
 from .jkr import Jkr
+from .law import Law, Powers, Sum, TruncatedPower
+from .liquid.constant_volume import ConstantVolume
+from .liquid.kelvin_filling import KelvinFilling
+from .liquid.meniscus import ByContact, ByKelvinGap, Meniscus
 from .maugis import Maugis
-from .meniscus import ByContact, ByKelvinGap, Meniscus
-from .published import HeightFunctions, PublishedPressure
+from .published_pressures import HeightFunctions, PublishedPressure
 
 __all__ = [
     "Bradley",

@@ -6,7 +6,7 @@ from math import pi
 from typing import ClassVar
 
 from .._jax import jax, jnp
-from .base import Law, Powers, Real, TruncatedPower, quantity
+from .law import Law, Powers, Real, TruncatedPower, quantity
 
 
 class Dmt(Law):

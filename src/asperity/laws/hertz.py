@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from .._jax import jax, jnp
-from .base import Law, Powers, Real, TruncatedPower, quantity
+from .law import Law, Powers, Real, TruncatedPower, quantity
 
 
 class Hertz(Law):

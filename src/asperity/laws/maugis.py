@@ -6,8 +6,18 @@ from math import pi
 from typing import ClassVar
 
 from .._jax import jax, jnp
-from .base import Law, Real, quantity
-from .zone import SOFT, Radii, Zone, contact_end, falling_apart, last, of_radii, radii, slopes
+from .adhesive_zone import (
+    SOFT,
+    Radii,
+    Zone,
+    contact_end,
+    falling_apart,
+    last,
+    of_radii,
+    radii,
+    slopes,
+)
+from .law import Law, Real, quantity
 
 RANGE_PER_SPACING = 9.0 * 3.0**0.5 / 16.0
 """Range h_0 per spacing: stress and work are then those of the 3-9 potential's peak."""

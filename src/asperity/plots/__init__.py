@@ -5,9 +5,9 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from asperity.errors import InputError
-from asperity.plots import curve, energy, forces, motion, style
+from asperity.plots import curve, energy, forces, motion_plot, style
 from asperity.plots.style import Row
-from asperity.result import Curve, Result
+from asperity.results.result import Curve, Result
 
 __all__ = ["figure", "pictures"]
 
@@ -58,7 +58,7 @@ def _rows(result: Result | Curve) -> dict[str, Row]:
             "(`output.motion` is false, or nothing was computed)"
         )
     return {
-        "motion": motion.panels(result),
+        "motion": motion_plot.panels(result),
         "forces": forces.panels(result),
         "energy": energy.panels(result),
     }

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from asperity.colours import colour
 from asperity.plots import style
-from asperity.plots.labels import name_points
+from asperity.plots.point_labels import name_points
 from asperity.plots.style import Panel
+from asperity.publication.figure_data import Drawing
 from asperity.regimes import Boundary, Frame, Place, regions
-from asperity.studies.drawing import Drawing
+from asperity.results.colours import colour
 
 REGIONS = {
     "Bradley": (0.0045, 1.5),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from asperity.colours import colour
 from asperity.plots import impacts, style
 from asperity.plots.style import Panel, Row
-from asperity.result import Result
+from asperity.results.colours import colour
+from asperity.results.result import Result
 
 _MANY = 3
 _MARKED = 40

@@ -14,8 +14,8 @@ from matplotlib.image import AxesImage
 
 from asperity.errors import one_line
 from asperity.plots import style
-from asperity.summary import amount
-from asperity.topography import Topography
+from asperity.results.summary import amount
+from asperity.surfaces import Topography
 
 _FINEST = 640
 """Pixels a side that a picture shows; of a map with twice as many or more, blocks are averaged."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.result import Result
+from asperity.results.result import Result
 
 _SEEN = 2e-3
 _MARGIN = 0.15

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
-from asperity.summary import scaled
+from asperity.results.summary import scaled
 
 COLUMN, PAGE = 85.0, 170.0
 """Widths of a picture [mm]: one column and a whole page of a journal."""

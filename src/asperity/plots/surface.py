@@ -20,12 +20,12 @@ from asperity.plots.surface_panels import (
     draw_spectrum,
     draw_summit_heights,
 )
-from asperity.studies.surface_report import size_in_words
-from asperity.studies.surfaces import Pair, Surface
-from asperity.summary import amount
-from asperity.topography import Topography
-from asperity.topography.describing.composite import Composite
-from asperity.topography.describing.description import Description
+from asperity.results.summary import amount
+from asperity.results.surface_report import size_in_words
+from asperity.surfaces import Topography
+from asperity.surfaces.description.composite import Composite
+from asperity.surfaces.description.describe import Description
+from asperity.surfaces.measured_surface import Pair, Surface
 
 _TALL = 230.0
 _INCH = 25.4

@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from asperity.colours import colour
 from asperity.plots import style
-from asperity.studies.surface_figures import in_bins
-from asperity.topography.describing.composite import Composite
-from asperity.topography.describing.convolution import HeightDistribution
-from asperity.topography.describing.description import Description
-from asperity.topography.describing.spectrum import ProfileSpectrum
+from asperity.publication.surface_figures import in_bins
+from asperity.results.colours import colour
+from asperity.surfaces.description.composite import Composite
+from asperity.surfaces.description.convolution import HeightDistribution
+from asperity.surfaces.description.describe import Description
+from asperity.surfaces.description.spectrum import ProfileSpectrum
 
 _REACH = 6.0
 """Standard deviations on either side that a histogram shows at most."""

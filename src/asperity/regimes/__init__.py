@@ -1,14 +1,15 @@
-"""Which model holds: dimensionless numbers, the choice of the law, the adhesion map, verdicts."""
+"""Which model holds: dimensionless numbers, the choice of law, the adhesion map, every warning.
+
+`dimensionless_numbers`: Tabor number, plasticity index and the like. `choice`: the adhesion law
+for a Tabor number. `boundaries`: the adhesion map of Johnson and Greenwood. `verdicts`: what a
+number says, in words. `liquid_regime`: dry, isolated menisci, coalesced, flooded.
+`validity` collects the warnings of `accuracy`, `ambient`, `model_domain`, `plastic_validity` and
+`wave_limits`: each threshold is a constant beside the warning that uses it.
+"""
 
 from .boundaries import Boundary, Frame, Place, adhesion_map, hertz_load, region, regions
-from .choice import (
-    BORDER_FACTOR,
-    DMT_BELOW,
-    JKR_ABOVE,
-    LAW_NAMES,
-    choose_adhesion,
-)
-from .parameters import (
+from .choice import BORDER_FACTOR, DMT_BELOW, JKR_ABOVE, LAW_NAMES, choose_adhesion
+from .dimensionless_numbers import (
     ELASTICITY_PER_TABOR,
     Regime,
     load_parameter,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..laws.adhesion_choice import AdhesionChoice
 from .boundaries import SHARE
-from .parameters import ELASTICITY_PER_TABOR
+from .dimensionless_numbers import ELASTICITY_PER_TABOR
 
 DMT_BELOW = 0.1
 """Tabor number below which adhesion leaves the shape of a contact alone; the publication's rule."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from .boundaries import hertz_load, region
 from .choice import DMT_BELOW, JKR_ABOVE
-from .parameters import Regime
+from .dimensionless_numbers import Regime
 
 ELASTIC_BELOW = 0.6
 """Plasticity index below which asperities stay elastic at ordinary loads (Greenwood and

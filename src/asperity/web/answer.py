@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from asperity.colours import colour
-from asperity.records.layout import json_object, plain
 from asperity.regimes import Frame, Place, region
-from asperity.result import Curve, Result
-from asperity.verdict import sentence
+from asperity.results.colours import colour
+from asperity.results.record_layout import json_object, plain
+from asperity.results.result import Curve, Result
+from asperity.results.verdict import sentence
 
 DRAWN = 12
 """Impacts whose course the page draws."""

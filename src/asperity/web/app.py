@@ -20,20 +20,20 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
-from asperity.case import BUILTINS, FIRST, Case
-from asperity.case.problems import check
-from asperity.case.reading import SIZE_LIMIT, builtin_text, tables
-from asperity.case.writing import text_of
+from asperity.config import BUILTINS, FIRST, Case
+from asperity.config.case_file import SIZE_LIMIT, builtin_text, tables
+from asperity.config.case_text import text_of
+from asperity.config.problems import check
 from asperity.errors import InputError, OutputError, SimulationError, one_line
 from asperity.web.answer import adhesion_map
-from asperity.web.asking import Asked, asked, changed, refuse_depth
-from asperity.web.completing import completed, remedies
 from asperity.web.exploring import FILES, ahead, critical, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
 from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
+from asperity.web.missing_keys import completed, remedies
 from asperity.web.openapi import DESCRIPTION
-from asperity.web.surfaces import Surfaces
+from asperity.web.requests import Asked, asked, changed, refuse_depth
+from asperity.web.surface_uploads import Surfaces
 
 LOCAL = ("127.0.0.1", "localhost", "::1")
 """Names of a server that only this machine can reach."""

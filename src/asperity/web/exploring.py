@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from asperity.case import Case
+from asperity.config import Case
 from asperity.errors import InputError, SimulationError
 from asperity.regimes.choice import CHOSEN
-from asperity.result import Curve, Result
+from asperity.results.result import Curve, Result
 from asperity.web.answer import DRAWN, answer
-from asperity.web.asking import Asked
 from asperity.web.jobs import Report
-from asperity.web.surfaces import Surfaces, Upload, renamed, retold
+from asperity.web.requests import Asked
+from asperity.web.surface_uploads import Surfaces, Upload, renamed, retold
 
 FILES = {
     "record.nc": "application/x-netcdf",
@@ -148,7 +148,7 @@ def picture(made: Result | Curve, part: str) -> bytes:
 
 def table(made: Result | Curve) -> bytes:
     """The series of a result as CSV, a column a quantity, named with its unit."""
-    from asperity.records.layout import variables
+    from asperity.results.record_layout import variables
 
     columns = [one for one in variables(made) if one.dimensions in (("time",), ("point",))]
     out = io.StringIO()

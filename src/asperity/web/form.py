@@ -8,11 +8,11 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.case import Case
-from asperity.case.fields import Number, Quantity
-from asperity.case.labels import label
-from asperity.case.problems import tables_of
-from asperity.case.writing import ordered, unit_of
+from asperity.config import Case
+from asperity.config.case_text import ordered, unit_of
+from asperity.config.fields import Number, Quantity
+from asperity.config.key_labels import label
+from asperity.config.problems import tables_of
 
 _LEFT_OUT = ("schema", "output")
 """What a page has no use for."""

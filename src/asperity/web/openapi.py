@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from asperity.case import BUILTINS
-from asperity.case.reading import builtin_text, tables
+from asperity.config import BUILTINS
+from asperity.config.case_file import builtin_text, tables
 from asperity.web.exploring import FILES
 
 _TEXT = {"type": "string", "maxLength": 100}

@@ -14,7 +14,7 @@ from typing import Any
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from asperity.case import load
+from asperity.config import load
 from asperity.errors import InputError, OutputError, SimulationError
 from asperity.web.answer import DRAWN
 from asperity.web.app import LOCAL, application

@@ -11,9 +11,9 @@ import typer
 
 from asperity.cli.doctor import cache, machine
 from asperity.cli.doctor.requirements import unmet
+from asperity.cli.reporter import Voice, seconds
 from asperity.cli.stack import NOT_INSTALLED, versions
 from asperity.cli.terminal import say, tell, wrapped
-from asperity.cli.voice import Voice, seconds
 from asperity.cli.working import Work
 from asperity.errors import InputError, SimulationError
 

@@ -9,13 +9,13 @@ from math import gamma, inf, log, pi, sqrt
 import numpy as np
 
 from asperity._jax import jax, jnp
-from asperity.case import Case, builtin
-from asperity.case.build import build
-from asperity.flying import first_impact
-from asperity.impact import Motion
+from asperity.config import Case, builtin
+from asperity.dynamics import Motion
+from asperity.integration import first_impact
 from asperity.laws import Jkr
-from asperity.program import AT_ONCE, Program
-from asperity.special import height_integrals
+from asperity.model import build
+from asperity.numerics.compilation import AT_ONCE, Program
+from asperity.numerics.height_integrals import height_integrals
 
 LOSSLESS = {"capillary.contact_angle": "89.99999999 deg", "adhesion.work": "1e-9 J/m^2"}
 """Menisci and adhesion that hardly pull: nothing is left that takes energy."""

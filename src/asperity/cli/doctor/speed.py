@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from typing import NamedTuple
 
-from asperity.case import BUILTINS, builtin
 from asperity.cli.compiling import Compilation, compilation
+from asperity.config import BUILTINS, builtin
 from asperity.solver import solve
 
 _REPEATS = 3

@@ -7,8 +7,8 @@ from math import pi
 import numpy as np
 
 from ..._jax import jax, jnp
-from ..base import Real, quantity
-from .base import EtsionUnloading, power
+from ..law import Real, quantity
+from .plastic_contact import EtsionUnloading, power
 
 _CHANGE = 1.9  # over the critical overlap: where the published law changes from Hertz's to the fit
 _STEPS = 10  # of Newton's method; seven reach rounding for Poisson ratios of 0 to 0.5

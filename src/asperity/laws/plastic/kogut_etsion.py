@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import log, pi
 
 from ..._jax import jax, jnp
-from ..base import Real, quantity
-from .base import EtsionUnloading, power
+from ..law import Real, quantity
+from .plastic_contact import EtsionUnloading, power
 
 _CORNER, _LAST = 6.0, 110.0  # over the critical overlap: change of fit, end of the published range
 _UPPER, _UPPER_EXPONENT = 1.40, 1.263

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import pi
 
 from ..._jax import jax, jnp
-from ..base import Real, quantity
-from .base import PlasticContact, power
+from ..law import Real, quantity
+from .plastic_contact import PlasticContact, power
 
 
 class ThorntonNing(PlasticContact):

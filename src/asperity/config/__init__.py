@@ -1,0 +1,50 @@
+"""Case files: the schema, its reading and writing. Strings of a case live in this room alone.
+
+`schema`: a case and the rules between its tables (`rules`, `limits`); one file a table: `bodies`,
+`roughness`, `adhesion_tables`, `plasticity`, `gas`, `waves`, `viscoelasticity`, `run_tables`,
+`publication`. `fields`: kinds of value; `key_labels`: every key in words.
+`case_file`: text to case; `case_text`: case to text; `replacing`: a case with other values;
+`problems`: what is wrong with a case, in one line. `asperities`: heights from numbers or files.
+`plastic_law`: the yielding law that a case names. `cases`: the built-in cases.
+
+A new key is a field with its unit, meaning and example; form, template and help follow from it.
+"""
+
+from asperity.config.adhesion_tables import Adhesion, Capillary
+from asperity.config.asperities import Asperities
+from asperity.config.bodies import Body, Counterface, Material
+from asperity.config.case_file import (
+    BUILTINS,
+    FIRST,
+    SIZE_LIMIT,
+    builtin,
+    load,
+    load_file,
+    template,
+)
+from asperity.config.publication import Publication
+from asperity.config.roughness import Roughness
+from asperity.config.run_tables import Impact, Numerics, Output
+from asperity.config.schema import Case
+
+__all__ = [
+    "BUILTINS",
+    "FIRST",
+    "SIZE_LIMIT",
+    "Adhesion",
+    "Asperities",
+    "Body",
+    "Capillary",
+    "Case",
+    "Counterface",
+    "Impact",
+    "Material",
+    "Numerics",
+    "Output",
+    "Publication",
+    "Roughness",
+    "builtin",
+    "load",
+    "load_file",
+    "template",
+]

@@ -1,0 +1,160 @@
+"""A case as text: canonical TOML with SI units, and the commented template."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from asperity.config.problems import tables_of
+from asperity.errors import InputError
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
+
+def toml(model: BaseModel) -> str:
+    """A model as TOML: values first, then its tables; every quantity with its SI unit."""
+    return "\n".join(_lines(model, ())).strip() + "\n"
+
+
+def _lines(model: BaseModel, place: tuple[str, ...]) -> list[str]:
+    values, tables = [], []
+    for name, field in ordered(type(model)).items():
+        value = getattr(model, name)
+        key = field.alias or name
+        if isinstance(value, BaseModel):
+            tables += _lines(value, (*place, key))
+        elif isinstance(value, dict):
+            for inner, table in value.items():
+                tables += _lines(table, (*place, key, inner))
+        elif value is not None:
+            values.append(f"{key} = {_value(value, field)}")
+    header = [f"[{'.'.join(_key(part) for part in place)}]"] if place else []
+    return [*header, *values, "", *tables]
+
+
+def text_of(tables: Mapping[str, Any]) -> str:
+    """The tables of a case as TOML, values as they were given; keys that are None are left out.
+
+    Parameters
+    ----------
+    tables : mapping
+        As :func:`tomllib.loads` gives them.
+    """
+    return "\n".join(_given(tables, ())).strip() + "\n"
+
+
+def _given(tables: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
+    inner = {key: value for key, value in tables.items() if isinstance(value, Mapping)}
+    lines = [
+        f"{_key(key)} = {_literal(value)}"
+        for key, value in tables.items()
+        if key not in inner and value is not None
+    ]
+    if place and (lines or not inner):
+        lines = [f"[{'.'.join(_key(part) for part in place)}]", *lines]
+    rest = [line for key, table in inner.items() for line in _given(table, (*place, key))]
+    return [*lines, "", *rest]
+
+
+def ordered(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Fields of a model, those that it declares itself before the inherited ones."""
+    fields = model.model_fields
+    own = [name for name in inspect.get_annotations(model) if name in fields]
+    return {name: fields[name] for name in (*own, *(f for f in fields if f not in own))}
+
+
+def unit_of(field: FieldInfo) -> str:
+    """SI unit of a field's values; ``"1"`` for plain numbers, ``""`` for text and switches."""
+    extra = field.json_schema_extra
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+
+
+def _value(value: object, field: FieldInfo) -> str:
+    unit = unit_of(field)
+    if isinstance(value, float) and unit not in ("", "1"):
+        return f'"{value!r} {unit}"'
+    return _literal(value)
+
+
+def _literal(value: object) -> str:
+    """A value in TOML's notation."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return f"[{', '.join(_literal(each) for each in value)}]"
+    if isinstance(value, str):
+        return '"' + "".join(_escaped(character) for character in value) + '"'
+    return repr(value)
+
+
+def _escaped(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    code = ord(character)
+    return f"\\u{code:04x}" if code < 0x20 or code == 0x7F else character
+
+
+def _key(name: str) -> str:
+    return name if _BARE.fullmatch(name) else _literal(name)
+
+
+def changed(source: str, changes: Mapping[str, object]) -> dict[str, Any]:
+    """The tables of a TOML text with other values at dotted keys; None removes a key."""
+    tables = tomllib.loads(source)
+    for dotted, value in changes.items():
+        *above, last = dotted.split(".")
+        table = tables
+        for part in above:
+            table = table.setdefault(part, {})
+            if not isinstance(table, dict):
+                raise InputError(f"`{dotted}` is not a key: `{part}` is no table", key=dotted)
+        if value is None:
+            table.pop(last, None)
+        else:
+            table[last] = value
+    return tables
+
+
+def commented(model: type[BaseModel], heading: str) -> str:
+    """A commented file with every key of a model, from the models' own descriptions.
+
+    Keys that a case may do without stand behind a ``#``.
+    """
+    lines = [f"# {line}" for line in heading.splitlines()]
+    plain = {n: f for n, f in ordered(model).items() if not tables_of(f.annotation)}
+    lines += _commented_keys(plain)
+    for name, field in ordered(model).items():
+        for table in tables_of(field.annotation):
+            lines += ["", *_commented_table(name, field, table)]
+    return "\n".join(lines) + "\n"
+
+
+def _commented_table(name: str, field: FieldInfo, table: type[BaseModel]) -> list[str]:
+    about = [f"# {line}" for line in textwrap.wrap(inspect.getdoc(table) or "", 90)]
+    if "dict" in str(field.annotation):
+        return [*about, f"# [{name}.NAME]", *_commented_keys(ordered(table), active=False)]
+    extra = field.json_schema_extra
+    if isinstance(extra, dict) and extra.get("rare"):
+        return [*about, f"# [{name}]", *_commented_keys(ordered(table), active=False)]
+    return [*about, f"[{name}]", *_commented_keys(ordered(table))]
+
+
+def _commented_keys(fields: Mapping[str, FieldInfo], *, active: bool = True) -> list[str]:
+    lines = []
+    for name, field in fields.items():
+        extra = field.json_schema_extra
+        shown = isinstance(extra, dict) and extra.get("shown")
+        set_here = field.is_required() or shown or field.get_default() is not None
+        example = _literal((field.examples or [None])[0])
+        start = f"{'' if active and set_here else '# '}{field.alias or name} = {example}"
+        line = f"{start:<38}  # {field.description}"
+        lines += [line] if len(line) <= 100 else [f"# {field.description}", start]
+    return lines

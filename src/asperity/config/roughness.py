@@ -1,0 +1,139 @@
+"""The table [roughness]: a few numbers, or files of measured surfaces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from asperity.config import fields
+from asperity.config.base_table import Table
+from asperity.config.fields import Number, entry
+from asperity.errors import InputError, refuse_all
+from asperity.units import lengths
+
+if TYPE_CHECKING:
+    from asperity.surfaces.preparation.prepare import Preparation
+
+NUMBERS = ("asperity_density", "asperity_radius", "rms_height")
+
+
+class Roughness(Table):
+    """Composite roughness of both surfaces; without this table the body is smooth.
+
+    Either three numbers, or `files` of one or two measured surfaces to take them from.
+    """
+
+    asperity_density: fields.AreaDensity | None = entry(
+        "1/m^2", "Asperities per area.", "6.3e13 1/m^2", default=None, shown=True
+    )
+    asperity_radius: fields.Length | None = entry(
+        "m", "Radius of the asperities' tips.", "450 nm", default=None, shown=True
+    )
+    rms_height: fields.Length | None = entry(
+        "m", "Standard deviation of the asperities' heights, Gaussian.", "1.64 nm",
+        default=None, shown=True,
+    )  # fmt: skip
+    files: Annotated[list[str], Field(min_length=1, max_length=2)] | None = entry(
+        "", "One or two measured surfaces, in place of the numbers; from the case's folder.",
+        ["surface.csv"], default=None,
+    )  # fmt: skip
+    source: Literal["gaussian", "summits"] | None = entry(
+        "", "With `files`: 'gaussian', fitted to the summits (default), or the 'summits' "
+        "themselves, each with its height and radius.", "gaussian", default=None,
+    )  # fmt: skip
+    size: str | None = entry(
+        "", "Size of the maps along x and y, where the files do not say it.", "10 um x 10 um",
+        default=None,
+    )  # fmt: skip
+    unit: str | None = entry(
+        "", "Unit of the heights, where the files do not say it.", "nm", default=None
+    )
+    channel: str | int | None = entry(
+        "", "Channel of an instrument's file, by name or number.", "ZSensor", default=None
+    )
+    missing: Literal["refuse", "keep", "fill"] | None = entry(
+        "", "Missing pixels: 'refuse' (default), 'keep' or 'fill'.", "fill", default=None
+    )
+    remove: Literal["none", "mean", "tilt", "curvature", "sphere"] | None = entry(
+        "", "Form that is removed: 'tilt' (default), 'none', 'mean', 'curvature' or 'sphere'.",
+        "tilt", default=None,
+    )  # fmt: skip
+    align: Literal["none", "median", "median-difference", "polynomial"] | None = entry(
+        "", "Scan lines: 'none' (default), 'median', 'median-difference' or 'polynomial'.",
+        "none", default=None,
+    )  # fmt: skip
+    direction: Literal["rows", "columns"] | None = entry(
+        "", "What a scan line is: 'rows' (default) or 'columns'.", "rows", default=None
+    )
+    degree: Annotated[int, Number("[0, 5]", whole=True)] | None = entry(
+        "1", "Degree of a scan line's polynomial; 1.", 1, default=None
+    )
+    short: fields.Length | None = entry(
+        "m", "Wavelength below which waves are cut.", "10 nm", default=None
+    )
+    long: fields.Length | None = entry(
+        "m", "Wavelength above which waves are cut.", "5 um", default=None
+    )
+    radius_classes: Annotated[int, Number("[1, 64]", whole=True)] | None = entry(
+        "1", "With 'summits': classes of tip radius of the laws that need them; 6.", 6,
+        default=None,
+    )  # fmt: skip
+
+    of_files: ClassVar[tuple[str, ...]] = (
+        "source", "size", "unit", "channel", "missing", "remove", "align", "direction", "degree",
+        "short", "long", "radius_classes",
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _numbers_or_files(self) -> Self:
+        numbers = [key for key in NUMBERS if getattr(self, key) is not None]
+        if self.files is None:
+            self._without_files()
+        elif numbers:
+            raise InputError(
+                f"`{numbers[0]}` and `files` exclude each other: the numbers are taken from the "
+                "files; got both",
+                key=numbers[0],
+            )
+        if self.radius_classes is not None and self.source != "summits":
+            raise InputError(
+                "`radius_classes` must be absent without source = 'summits'; got "
+                f"{self.radius_classes}",
+                key="radius_classes",
+            )
+        if self.size is not None:
+            lengths(self.size, 2, "size")
+        if self.files is not None:
+            _ = self.preparation  # which refuses what it cannot do
+        return self
+
+    def _without_files(self) -> None:
+        missing = [key for key in NUMBERS if getattr(self, key) is None]
+        beside = [key for key in self.of_files if getattr(self, key) is not None]
+        rule = "is missing; give it, or `files` of measured surfaces"
+        only = "must be absent without `files`, which it is for"
+        refuse_all(
+            [
+                *(InputError(f"`{key}` {rule}", key=key) for key in missing),
+                *(InputError(f"`{k}` {only}; got {getattr(self, k)!r}", key=k) for k in beside),
+            ]
+        )
+
+    @property
+    def preparation(self) -> Preparation:
+        """What is done to the files' maps."""
+        # Here, since few cases have files, and SciPy's filters take 0.2 s to import.
+        from asperity.surfaces.preparation.prepare import Preparation
+
+        keys = ("missing", "remove", "align", "direction", "degree", "short", "long")
+        given = {key: getattr(self, key) for key in keys}
+        return Preparation(**{key: value for key, value in given.items() if value is not None})
+
+    @property
+    def map_size(self) -> tuple[float, float] | None:
+        """Size (x, y) of the maps [m], where the case gives it."""
+        if self.size is None:
+            return None
+        width, length = lengths(self.size, 2, "size")
+        return width, length

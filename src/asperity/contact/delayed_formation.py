@@ -1,0 +1,243 @@
+"""Contacts whose menisci take time to form."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from math import comb
+from typing import Any
+
+import equinox as eqx
+
+from .._jax import jax, jnp
+from ..errors import InputError
+from ..interface.interface import Interface
+from ..interface.layers import Layer, Layers, Surfaces
+from ..laws.law import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
+from .contact import Contact, Memory, State
+from .elastic import ElasticContact
+from .resolution import Resolution
+from .rigid import RigidContact
+from .smooth import SmoothContact
+
+LATE = "capillary"
+"""The mechanism of the bonds that take time; all others form at once."""
+
+_HIGHEST = 1.0  # m: no asperity is higher
+
+
+class Told(Law):
+    """A law whose bonds form when they are told to, at any gap.
+
+    Parameters
+    ----------
+    law
+        The law. Where a meniscus of it is missing there is no force, overlap or not.
+    holds
+        Whether its bonds also break only when told (static).
+    """
+
+    law: Law
+    holds: bool = eqx.field(static=True)
+
+    @property
+    def mechanism(self) -> str:  # type: ignore[override]
+        return self.law.mechanism
+
+    @property
+    def counts(self) -> frozenset[str]:  # type: ignore[override]
+        return self.law.counts
+
+    @property
+    def radius_power(self) -> float:  # type: ignore[override]
+        return self.law.radius_power
+
+    @property
+    def hysteretic(self) -> bool:
+        return True
+
+    @property
+    def only_bonded(self) -> bool:
+        return self.mechanism == LATE or self.law.only_bonded
+
+    @property
+    def forming_gap(self) -> jax.Array | float:
+        return -jnp.inf
+
+    @property
+    def breaking_gap(self) -> jax.Array | float:
+        return jnp.inf if self.holds else self.law.breaking_gap
+
+    @property
+    def kinks(self) -> tuple[jax.Array | float, ...]:
+        return self.law.kinks
+
+    @property
+    def reach(self) -> jax.Array:
+        return self.law.reach
+
+    @property
+    def length(self) -> jax.Array | float:
+        return self.law.length
+
+    def force(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap) if self.mechanism == LATE else self.law.force(gap)
+
+    def energy(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap) if self.mechanism == LATE else self.law.energy(gap)
+
+    def bonded_force(self, gap: jax.Array) -> jax.Array:
+        return self.law.bonded_force(gap)
+
+    def bonded_energy(self, gap: jax.Array) -> jax.Array:
+        return self.law.bonded_energy(gap)
+
+    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        if self.mechanism == LATE:
+            return super().components(gap, bonded)
+        return self.law.components(gap, bonded)
+
+    def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers] | None:
+        bond_gap = jnp.maximum(bond_gap, -_HIGHEST)  # where there is no meniscus at all
+        whole = self.law.powers(jnp.maximum(bond_gap, self.law.forming_gap))
+        if whole is None:
+            return None
+        force, energy = (tuple(p for t in part for p in _within(t, bond_gap)) for part in whole)
+        return force, energy
+
+
+def _within(term: TruncatedPower, end: jax.Array) -> Powers:
+    """A power of a whole exponent, cut off above the gap ``end`` [m], as a sum of powers."""
+    n = int(term.exponent)
+    assert n == term.exponent
+    rest = jnp.maximum(term.edge - end, 0.0)
+    edge = jnp.minimum(term.edge, end)
+    return tuple(
+        TruncatedPower(term.coefficient * comb(n, k) * rest ** (n - k), float(k), edge)
+        for k in range(n + 1)
+    )
+
+
+class LateContact(eqx.Module):
+    """A contact whose menisci take time to form.
+
+    Parameters
+    ----------
+    contact
+        The contact, a :class:`RigidContact`, an :class:`ElasticContact` or a
+        :class:`SmoothContact`, with menisci that form at once.
+    time
+        Formation time [s], above 0.
+
+    Notes
+    -----
+    Asperities higher than a threshold b have a meniscus. With the separation d of the rigid
+    body, b falls towards d - g_form while it is above: db/dt = (d - g_form - b)/time. It rises
+    at once to d - g_break. A smooth body is one asperity of height 0: it has a meniscus while
+    b < 0. On a half-space each ring has its own b and d. All other bonds are those of
+    ``contact``.
+    """
+
+    told: Contact
+    laws: tuple[Law, ...]
+    late: int = eqx.field(static=True)
+    time: Real = quantity()
+
+    def __init__(self, contact: RigidContact | ElasticContact | SmoothContact, time: Real) -> None:
+        smooth = isinstance(contact, SmoothContact)
+        self.laws = (
+            tuple(law for law in terms(contact.law) if law.hysteretic)
+            if isinstance(contact, SmoothContact)
+            else contact.interface.hysteretic
+        )
+        self.told = _told_smooth(contact) if smooth else _told_rough(contact)
+        self.late = contact.mechanisms.index(LATE)
+        self.time = jnp.asarray(time, dtype=jnp.float64)
+
+    @property
+    def law(self) -> Law:
+        """The law of the menisci."""
+        return self.laws[self.late]
+
+    def state(self, separation: jax.Array, memory: Memory, threshold: jax.Array) -> State:
+        """The contact at a separation [m], with a threshold [m] of the menisci.
+
+        ``memory`` is that of the other bonds after the last reversal; of a smooth body, which
+        bonds there are, of menisci too.
+        """
+        return self.told.state(separation, self.with_threshold(memory, threshold))
+
+    def with_threshold(self, memory: Memory, threshold: jax.Array) -> Memory:
+        """The memory of all bonds."""
+        if self.told.discrete:
+            return memory
+        k = self.late
+        return (*memory[:k], threshold, *memory[k + 1 :])
+
+    @property
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost at one stroke when a bond of each law forms, and when it breaks.
+
+        Nothing of menisci that form: :meth:`loss` tells that.
+        """
+        formed = [jnp.asarray(law.formation_loss) for law in self.laws]
+        formed[self.late] = jnp.zeros(())
+        return jnp.stack(formed), jnp.stack([jnp.asarray(law.rupture_loss) for law in self.laws])
+
+    def loss(self, gap: jax.Array) -> jax.Array:
+        """Energy [J] lost when one meniscus forms at a gap [m]."""
+        return -self.law.bonded_energy(gap)
+
+
+_UNUSED = Resolution(panels=1, nodes=8, pieces=1)
+"""No curves are made of a contact that is told: one program serves, however its forces reach."""
+
+
+def _told_smooth(contact: Any) -> SmoothContact:
+    law = _replaced(contact.law, lambda law: law.hysteretic, holds=True)
+    return dataclasses.replace(contact, law=law)
+
+
+def _told_rough(contact: Any) -> RigidContact | ElasticContact:
+    told = _told_surfaces(contact.interface)
+    answer: RigidContact | ElasticContact = dataclasses.replace(
+        contact, interface=told, resolved=_UNUSED
+    )
+    return answer
+
+
+def _told_surfaces(surfaces: Surfaces) -> Surfaces:
+    if isinstance(surfaces, Layers):
+        return Layers([_told_part(part) for part in surfaces.parts])
+    return _told_part(surfaces)
+
+
+def _told_part(part: Layer) -> Layer:
+    if isinstance(part, Interface):
+        return _told_interface(part)
+    if part.yields:
+        raise InputError(
+            "`formation_time` must be absent where asperities yield: which of them have a meniscus "
+            "would need a history in time; take plasticity.model = 'none'",
+            key="capillary.formation_time",
+        )
+    if LATE in part.mechanisms:
+        raise InputError(
+            "`formation_time` must be absent where the bridges of each class of tip radius would "
+            "need a history of their own; take model = 'equilibrium' or source = 'gaussian'",
+            key="capillary.formation_time",
+        )
+    return part
+
+
+def _told_interface(interface: Interface) -> Interface:
+    def is_late(law: Law) -> bool:
+        return law.hysteretic and law.mechanism == LATE
+
+    return dataclasses.replace(interface, law=_replaced(interface.law, is_late, holds=False))
+
+
+def _replaced(law: Law, chosen: Callable[[Law], bool], *, holds: bool) -> Law:
+    """The law with those of its parts that are ``chosen`` told."""
+    parts = [Told(part, holds) if chosen(part) else part for part in terms(law)]
+    return parts[0] if len(parts) == 1 else Sum(parts)

@@ -1,0 +1,237 @@
+"""First impacts at other speeds: the critical velocity, below which a body is captured."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .dynamics import Limits
+from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
+from .dynamics.problem import CLEARANCE, Problem
+from .errors import SimulationError, Tolerance
+from .integration import fly_prepared, prepared, silently
+from .results.conversion import Flight, contact_end, measured
+from .results.measures import least_peak
+from .results.summary import amount
+
+_ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
+
+
+class Rebound(NamedTuple):
+    """The first impact of a body with one speed of approach.
+
+    Attributes
+    ----------
+    speed
+        Speed of approach at the end of contact [m/s]; NaN where it could not be computed.
+    restitution
+        Coefficient of restitution; 0 where it is captured, NaN where gas alone holds it.
+    captured
+        Whether it is captured.
+    excess
+        Kinetic energy left at the end of contact [J], as in
+        :class:`asperity.dynamics.capture_edges.FirstImpacts`.
+    """
+
+    speed: float
+    restitution: float
+    captured: bool
+    excess: float
+
+
+_STEPPED = (
+    "not sought: each impact of a motion that is stepped on a half-space takes seconds; "
+    "`asperity restitution` seeks it"
+)
+
+_UNKNOWN = Rebound(np.nan, np.nan, False, np.nan)
+
+
+class Launcher:
+    """First impacts of the body of a problem, launched where the forces on it begin.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    flight
+        A motion of it: its contact, its curves and its forces are taken.
+    limits
+        Ends of its motion.
+    many
+        As for :func:`asperity.integration.flown`: it names the programs that are compiled already.
+    finer
+        Factors on the panels of the curves that are tried where these are not fine enough. Each
+        is compiled anew.
+    stop
+        Set from another thread, it ends the search: no impact is computed after.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        flight: Flight,
+        limits: Limits,
+        *,
+        many: bool = False,
+        finer: tuple[int, ...] = (),
+        stop: threading.Event | None = None,
+    ) -> None:
+        body = dataclasses.replace(problem.body, release=_launched_from(flight, problem, many=many))
+        self._problem, self._many, self._stop = problem._replace(body=body), many, stop
+        self._contacts = [flight.contact, *(flight.contact.refined(n) for n in finer)]
+        self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
+
+    def __call__(self, speed: float) -> Rebound:
+        """The first impact of a body launched with a speed [m/s]."""
+        if self._stop is not None and self._stop.is_set():
+            return _UNKNOWN
+        return self._launched(float(speed))
+
+    def _launched(self, speed: float) -> Rebound:
+        body = dataclasses.replace(self._problem.body, speed=speed)
+        problem = self._problem._replace(body=body)
+        for contact in self._contacts:
+            curves = prepared(contact, body, many=self._many)
+            allowed = max(_ERROR, contact.blur)
+            if float(curves[0].error) <= allowed and float(curves[0].residual) <= _ERROR:
+                break
+        else:
+            return _UNKNOWN
+        try:
+            flight = fly_prepared(problem, contact, curves, self._limits, silently, self._stop)
+        except SimulationError:
+            return _UNKNOWN
+        measures = measured(flight, body)
+        if not np.isfinite(measures.reference):  # contact reaches beyond where it was launched
+            return _UNKNOWN
+        leaving = float(np.asarray(flight.motion.impacts.leaving)[0])
+        return Rebound(
+            float(measures.impact_speed),
+            float(np.asarray(measures.restitution)[0]),
+            bool(measures.captured),
+            leaving - float(body.weight) * float(measures.reference),
+        )
+
+    def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
+        """First impacts with several speeds [m/s], one after the other; there is one case."""
+        found = [self(speed) for speed in speeds.tolist()]
+        return FirstImpacts.of(
+            np.array([rebound.speed for rebound in found]),
+            np.array([rebound.captured for rebound in found]),
+            np.array([rebound.excess for rebound in found]),
+            float(self._problem.body.mass),
+        )
+
+    def edges(self, flight: Flight) -> Edges | None:
+        """The edges of capture about a motion; None where nothing can take energy.
+
+        Raises
+        ------
+        SimulationError
+            If it was stopped.
+        """
+        body, impacts = self._problem.body, flight.motion.impacts
+        if not flight.contact.mechanisms and not body.damped:
+            return None
+        lost = float(flight.motion.release) - float(impacts.leaving[0])
+        if not np.isfinite(lost):
+            lost = float(np.sum(impacts.lost[0]))
+        ends = speeds_about(np.asarray(impacts.fastest[:1]), np.asarray([lost]), float(body.mass))
+        found = capture_edges(self.together, *ends)[0]
+        if self._stop is not None and self._stop.is_set():
+            raise SimulationError("stopped while the critical velocity was sought")
+        return found
+
+
+def _launched_from(flight: Flight, problem: Problem, *, many: bool) -> float:
+    """A separation [m] just outside the end of contact of even the gentlest impact.
+
+    It is where any force ends for a contact that yields, whose curves are those after one impact.
+    """
+    reach, body = float(flight.contact.reach), flight.body or problem.body
+    if flight.contact.yields:
+        return reach + CLEARANCE
+    measures = measured(flight, body)
+    outset = float(measures.outset)
+    if outset >= float(body.release):  # its curves do not tell of what lies beyond
+        further = dataclasses.replace(body, release=reach + CLEARANCE)
+        force = abs(float(flight.motion.impacts.force[0]))
+        least = least_peak(body, measures.pull_off, force)
+        outset = contact_end(prepared(flight.contact, further, many=many)[0], float(least))
+    return min(reach, outset) + CLEARANCE
+
+
+def critical_measures(edges: Edges | None) -> dict[str, Any]:
+    """The critical velocity as measures of a result.
+
+    Parameters
+    ----------
+    edges
+        The edges of capture; None where nothing can take energy.
+
+    Returns
+    -------
+    ``critical_velocity``, the lowest edge [m/s] or None; ``capture_edges``, all of them; and
+    ``critical_velocity_note``: why there is none, or which speeds are captured where they are not
+    just those below it.
+    """
+    note: str | None = None
+    if edges is None:
+        note = "every speed rebounds: nothing takes energy"
+    elif not np.isfinite(edges.tried[0]):
+        note = "not known: no first impact at another speed could be computed"
+    elif not edges.speeds:
+        low, high = (amount(speed, "m/s") for speed in edges.tried)
+        note = f"every speed tried {'is captured' if edges.lowest else 'rebounds'}, {low} to {high}"
+    elif len(edges.speeds) > 1 or not edges.lowest:
+        note = _intervals(edges)
+    speeds = [] if edges is None else list(edges.speeds)
+    return {
+        "critical_velocity": speeds[0] if speeds else None,
+        "capture_edges": speeds,
+        "critical_velocity_note": note,
+    }
+
+
+def _intervals(edges: Edges) -> str:
+    """Which speeds are captured."""
+    ends = [""] * edges.lowest + [amount(speed, "m/s") for speed in edges.speeds]
+    parts = []
+    for low, high in zip(ends[::2], [*ends[1::2], ""], strict=False):
+        both = f"from {low} to {high}" if low and high else ""
+        parts.append(both or (f"below {high}" if high else f"above {low}"))
+    return "captured " + ", ".join(parts)
+
+
+def sought(
+    flight: Flight,
+    problem: Problem,
+    limits: Limits,
+    stop: threading.Event | None,
+    *,
+    many: bool = False,
+) -> dict[str, Any]:
+    """The critical velocity beside a motion, as :func:`critical_measures` says it.
+
+    Parameters
+    ----------
+    flight, problem, limits, stop, many
+        As for :class:`Launcher`.
+    """
+    if not flight.outcome.ok:
+        return _without("not sought: the motion did not come to its end")
+    if flight.trajectory is not None and flight.contact.lagging:
+        return _without(_STEPPED)
+    try:
+        launcher = Launcher(problem, flight, limits, many=many, stop=stop)
+        return critical_measures(launcher.edges(flight))
+    except SimulationError as error:
+        return _without(f"not known: {error}")
+
+
+def _without(note: str) -> dict[str, Any]:
+    return {"critical_velocity": None, "capture_edges": [], "critical_velocity_note": note}

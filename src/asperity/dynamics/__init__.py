@@ -1,0 +1,28 @@
+"""The equation of motion of one body that falls, touches and rebounds.
+
+`problem`: what moves. `record`: what is kept of a motion. `motion`: impacts in a row.
+`phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`:
+the same with gas (`gas_film`) or radiated waves (`wave_radiation`).
+`delayed_motion`, `stepped_phase`, `time_stepping`, `time_collocation`: motions stepped in time;
+`viscoelastic`: those on a viscoelastic half-space.
+`curve_table`, `scanning_table`: force curves as Chebyshev polynomials.
+`static_equilibrium`, `release`, `unloading`, `capture_edges`: single questions to the curves.
+"""
+
+from .curve_table import Table, tabulate
+from .motion import fly, prepare, simulate, start
+from .record import Body, Impacts, Limits, Motion, Progress
+
+__all__ = [
+    "Body",
+    "Impacts",
+    "Limits",
+    "Motion",
+    "Progress",
+    "Table",
+    "fly",
+    "prepare",
+    "simulate",
+    "start",
+    "tabulate",
+]

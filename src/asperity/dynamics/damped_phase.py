@@ -1,0 +1,303 @@
+"""The phases of a motion with drag: one piece after the other, until the body turns."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..laws.law import Real
+from ..numerics.compilation import kept
+from .curve_table import Pieces
+from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
+from .phase import Turn, Work, time_along, work_along
+from .record import Body
+
+STILL = 1e-9
+"""Share of a body's energy at its release: a force that could not give it so much moves it no more
+once it has stopped."""
+
+_PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
+_CUTS, _RATIO = 12, 4.0  # of the way by the film's gaps: how many, each so much wider
+_SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thins without end
+
+
+class Gone(NamedTuple):
+    """A body on its way through a phase."""
+
+    kinetic: jax.Array
+    time: jax.Array
+    heat: jax.Array
+    going: jax.Array
+    piece: jax.Array
+    fastest: jax.Array
+
+
+@kept
+class Passage(NamedTuple):
+    """A phase with drag.
+
+    Attributes
+    ----------
+    turn
+        Its end.
+    duration
+        Time that it takes [s].
+    lost
+        Energy taken by each drag [J].
+    kinetic, times, heats
+        Kinetic energy [J], time since the start [s] and energy taken by each drag [J] where each
+        piece is entered.
+    crept
+        Whether the body came so close to rest without a turn that the phase ends there.
+    followed
+        Whether it turned because it was pushed back: speeds that a drag changes within a
+        thousandth of a piece are too much for its points, and it seems to turn too early.
+    stopped
+        Whether the film alone stopped it: where nothing pushes it on or back.
+    """
+
+    turn: Turn
+    duration: jax.Array
+    lost: jax.Array
+    kinetic: jax.Array
+    times: jax.Array
+    heats: jax.Array
+    crept: jax.Array
+    followed: jax.Array
+    stopped: jax.Array
+
+
+def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
+    """Pieces, wide ones cut where the film thins by a factor, and which one each is a part of.
+
+    A film's drag goes as one over the gap, which no polynomial follows over decades.
+
+    Parameters
+    ----------
+    body
+        The body; without a film nothing is cut.
+    pieces
+        The polynomials ahead of it.
+    """
+    count = pieces.low.shape[0]
+    if body.film is None:
+        return pieces, jnp.arange(count)
+    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
+    ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
+    widest = jnp.max(ends)
+    narrow = jnp.maximum(body.film.closest, _SPAN * jnp.abs(widest))
+    cuts = jax.lax.stop_gradient(narrow * _RATIO ** np.arange(_CUTS))
+    cuts = jnp.clip(cuts, jnp.min(ends), widest)
+    here = jnp.clip(jnp.searchsorted(ahead * pieces.leave, ahead * cuts), 0, count - 1)
+    near = jnp.minimum(pieces.enter, pieces.leave)[here]
+    far = jnp.maximum(pieces.enter, pieces.leave)[here]
+    cuts = jnp.where(far > _RATIO * jnp.maximum(near, narrow), cuts, pieces.leave[here])
+    places = jnp.sort(ahead * jnp.concatenate([ends, cuts]))
+    middles = 0.5 * (places[1:] + places[:-1])
+    part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
+    low, high, _, _, values = (leaf[part] for leaf in pieces)
+    return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
+
+
+def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
+    """Follow the pieces of a phase, entered with a kinetic energy [J], to where the body turns.
+
+    Parameters
+    ----------
+    body
+        The body, with its film or its waves.
+    pieces
+        The polynomials ahead of it, all that there are.
+    kinetic
+        Kinetic energy at the start [J].
+    """
+    work = work_along(pieces, kinetic, body.weight)
+    count = pieces.low.shape[0]
+    none = jnp.zeros(len(body.mechanisms))
+    first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
+    gone, entered = jax.lax.scan(
+        lambda gone, k: _over(body, work, gone, k), first, jnp.arange(count)
+    )
+    piece = Stretch.of(work, gone.piece)
+    found = jnp.logical_not(gone.going)
+    stop = turning_place(body, piece, gone.kinetic)
+    stopped = found & _left_alone(body, piece, stop)
+    stop = jnp.where(stopped, _spent(body, piece, gone.kinetic, stop), stop)
+    course = course_on(body, piece, gone.kinetic, stop)
+    turn = Turn(
+        piece=gone.piece,
+        place=jnp.where(found, stop, pieces.leave[-1]),
+        found=found,
+        fastest=jnp.maximum(gone.fastest, jnp.where(found, course.fastest, 0.0)),
+        kinetic=jnp.where(found, 0.0, gone.kinetic),
+    )
+    duration = gone.time + jnp.where(found, course.duration, 0.0)
+    lost = gone.heat + jnp.where(found, course.lost, 0.0)
+    followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.weight)
+    return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
+
+
+def _over(
+    body: Body, work: Work, gone: Gone, k: jax.Array
+) -> tuple[Gone, tuple[jax.Array, jax.Array, jax.Array]]:
+    """Piece ``k``, passed by a body that still goes; and kinetic, time, heat at its entry."""
+    piece = Stretch.of(work, k)
+    course = course_on(body, piece, gone.kinetic, piece.leave)
+    on = gone.going & course.passed
+    after = Gone(
+        kinetic=jnp.where(on, course.kinetic, gone.kinetic),
+        time=gone.time + jnp.where(on, course.duration, 0.0),
+        heat=gone.heat + jnp.where(on, course.lost, 0.0),
+        going=on,
+        piece=jnp.where(gone.going, k, gone.piece),
+        fastest=jnp.maximum(gone.fastest, jnp.where(on, course.fastest, 0.0)),
+    )
+    return after, (gone.kinetic, gone.time, gone.heat)
+
+
+def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Array:
+    """Whether contact and weight push a body back at a place of a piece."""
+    push = piece.push(place, weight)
+    return piece.ahead * push <= _PUSHED * (jnp.abs(push + weight) + weight)
+
+
+def _left_alone(body: Body, piece: Stretch, place: jax.Array) -> jax.Array:
+    """Whether nothing moves a body that the film has stopped at a place of a piece."""
+    if body.film is None:
+        return jnp.asarray(False)
+    push = jnp.abs(piece.push(place, body.weight)) * jnp.abs(body.release)
+    return (body.weight == 0.0) & (push <= STILL * body.kinetic)
+
+
+def _spent(body: Body, piece: Stretch, kinetic: jax.Array, place: jax.Array) -> jax.Array:
+    """Where on a piece, entered with a kinetic energy [J], the film has taken all momentum [m].
+
+    By Newton's method from a place near by. Energies, which are squares of momenta, tell a place
+    to half as many digits.
+    """
+    momentum = jnp.sqrt(2.0 * body.mass * jnp.maximum(kinetic, 0.0))
+    for _ in range(2):
+        places = piece.enter + (place - piece.enter) * SHARES
+        drag = piece.drags(body, jnp.append(places, place), jnp.ones(POINTS + 1))[0]
+        taken = jnp.abs(place - piece.enter) * whole_of(drag[:-1])
+        place = place + piece.ahead * (momentum - taken) / drag[-1]
+    return place
+
+
+def fall_to_rest(
+    body: Body, pieces: Pieces, kinetic: jax.Array, resting: jax.Array, goal: jax.Array
+) -> Passage:
+    """Like :func:`pass_through`, for a fall that may creep to rest.
+
+    A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
+    time. Such a phase ends at ``goal``, where what is left of the energy goes to the gas too.
+    Waves alone never do that: their drag acts in contact, and is weak.
+
+    Parameters
+    ----------
+    body, pieces, kinetic
+        As for :func:`pass_through`.
+    resting
+        Separation of the equilibrium [m], or NaN.
+    goal
+        Separation, a little outside it, that counts as rest [m].
+    """
+    whole = pass_through(body, pieces, kinetic)
+    if body.film is None:
+        return whole
+    turn = whole.turn
+    here = jnp.argmax(pieces.leave <= goal)
+    near = turn.place > resting - (goal - resting)
+    crept = turn.found & near & (turn.piece >= here) & (goal < pieces.enter[0])
+    place = jnp.where(crept, goal, pieces.leave[here])
+    work = work_along(pieces, kinetic, body.weight)
+    course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
+    # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
+    still = slow_at(body, course.kinetic, turn.fastest, (resting, goal))
+    crept = crept & (still | jnp.logical_not(whole.followed)) & jnp.logical_not(whole.stopped)
+    stop = Turn(here, goal, jnp.asarray(True), turn.fastest, jnp.zeros(()))
+    lost = whole.heats[here] + course.lost
+    ends = (stop, whole.times[here] + course.duration, lost.at[0].add(course.kinetic))
+    turned = (turn, whole.duration, whole.lost)
+    turn, duration, lost = jax.tree_util.tree_map(lambda a, b: jnp.where(crept, a, b), ends, turned)
+    followed = crept | whole.followed
+    return whole._replace(turn=turn, duration=duration, lost=lost, crept=crept, followed=followed)
+
+
+def slow_at(body: Body, kinetic: Real, fastest: Real, rest: tuple[Real, Real]) -> jax.Array:
+    """Whether a body comes to ``rest[1]`` too slowly to rise far from its rest again.
+
+    Parameters
+    ----------
+    body
+        The body.
+    kinetic, fastest
+        Kinetic energy there, and the largest on the way [J].
+    rest
+        Separations of the equilibrium and of what counts as there [m].
+    """
+    height = rest[1] - rest[0]
+    share = height / (body.release - rest[0])
+    return kinetic < jnp.maximum(body.weight * height, share * fastest)
+
+
+def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, ...]:
+    """A body on pieces that it passes: places, times, speeds; and by drag energy taken and drag.
+
+    Each of shape (pieces, POINTS + 1), the last two with an axis of drags more, at SHARES of
+    every piece and at its end.
+    """
+    work = work_along(pieces, kinetic, body.weight)
+    entered = pass_through(body, pieces, kinetic).kinetic
+
+    def one(k: jax.Array, entry: jax.Array) -> tuple[jax.Array, ...]:
+        piece = Stretch.of(work, k)
+        course = course_on(body, piece, entry, piece.leave)
+        places = piece.enter + (piece.leave - piece.enter) * SHARES
+        last = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
+        places, speeds = jnp.append(places, piece.leave), jnp.append(course.speed, last)
+        return (
+            places,
+            jnp.append(course.time, course.duration),
+            speeds,
+            jnp.column_stack([course.heat, course.lost]).T,
+            piece.drags(body, places, speeds).T,
+        )
+
+    places, times, speeds, heats, drags = jax.vmap(one)(jnp.arange(entered.shape[0]), entered)
+
+    def summed(values: jax.Array) -> jax.Array:
+        before = jnp.cumsum(values[:, -1], axis=0) - values[:, -1]
+        return values + before[:, None]
+
+    return places, summed(times), speeds, summed(heats), drags
+
+
+def cut(pieces: Pieces, parting: jax.Array, place: jax.Array) -> Pieces:
+    """The pieces until a place [m]; those beyond it are empty."""
+
+    def until(end: jax.Array) -> jax.Array:
+        return jnp.where(parting, jnp.minimum(end, place), jnp.maximum(end, place))
+
+    return pieces._replace(enter=until(pieces.enter), leave=until(pieces.leave))
+
+
+def kinetic_at(
+    body: Body, pieces: Pieces, kinetic: jax.Array, parting: jax.Array, place: jax.Array
+) -> jax.Array:
+    """Kinetic energy [J] with which a body passes a place [m] of a phase."""
+    pieces, _ = resolved(body, pieces)
+    return pass_through(body, cut(pieces, parting, place), kinetic).turn.kinetic
+
+
+def time_to(
+    body: Body, pieces: Pieces, kinetic: jax.Array, parting: bool, place: jax.Array
+) -> jax.Array:
+    """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
+    passed = cut(pieces, jnp.asarray(parting), place)
+    if body.damped:
+        return pass_through(body, passed, kinetic).duration
+    work = work_along(passed, kinetic, body.weight)
+    return time_along(work, (passed.enter, passed.leave), body.mass)

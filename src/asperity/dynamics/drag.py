@@ -1,0 +1,308 @@
+"""A phase of a motion with drag, of a gas or of radiated waves: it takes energy on the way.
+
+Along a piece of the way the speed v obeys m v^2/2 + (work of the drag c v) = energy, E(x), that
+the other forces give. With x = L sin^2(pi y/2) both ends of a phase, where v starts or ends as
+the square root of the distance, are smooth in y: the equation is met at Gauss's points of each
+piece, by Newton's method, one piece after the other.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
+from .curve_table import CENTRAL
+from .phase import Work
+from .phase_time import NEAR, missed_time
+from .record import Body
+
+POINTS = 24
+_CLOSE = 1e-13  # relative change of the speeds that is small enough
+_DIRECT = 20  # steps of direct iteration, before Newton's
+_STEPS = 40
+_TURNED = 1e-8  # of the energy of a piece: more than a turning place is off by
+_SEARCH = 80  # steps towards a turning point, at most
+
+_GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
+SHARES = np.sin(0.5 * np.pi * _GAUSS) ** 2
+"""Places on a piece, as fractions of what is passed of it."""
+_PACE = 0.5 * np.pi * np.sin(np.pi * _GAUSS)
+
+
+def _integrals(ends: np.ndarray) -> np.ndarray:
+    """Integrals from 0 to each end of the polynomials that are 1 at one Gauss point each."""
+    series = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * _GAUSS - 1.0, POINTS - 1))
+    whole = np.polynomial.legendre.legint(series, lbnd=-1, axis=0)
+    sums: np.ndarray = np.polynomial.legendre.legvander(2.0 * ends - 1.0, POINTS) @ whole
+    return 0.5 * sums
+
+
+_UNTIL = _integrals(_GAUSS)
+_WHOLE = _integrals(np.ones(1))[0]
+_FINE_PLACES = np.linspace(0.0, 1.0, 129)
+_FINE = np.polynomial.legendre.legvander(2.0 * _FINE_PLACES - 1.0, POINTS - 1) @ np.linalg.inv(
+    np.polynomial.legendre.legvander(2.0 * _GAUSS - 1.0, POINTS - 1)
+)
+
+
+def whole_of(values: jax.Array) -> jax.Array:
+    """Mean over a piece of what has these values at SHARES of it."""
+    return jnp.dot(_WHOLE, _PACE * values)
+
+
+class Course(NamedTuple):
+    """One piece, or the part of it that is passed.
+
+    Attributes
+    ----------
+    speed
+        Speed [m/s] at SHARES of it.
+    time, heat
+        Time [s], and energy taken by each drag [J], shape (drags, POINTS), until there.
+    duration, lost
+        The same over all of it.
+    kinetic
+        Kinetic energy at its end [J].
+    passed
+        Whether the body comes to its end.
+    fastest
+        Largest kinetic energy on it [J].
+    """
+
+    speed: jax.Array
+    time: jax.Array
+    heat: jax.Array
+    duration: jax.Array
+    lost: jax.Array
+    kinetic: jax.Array
+    passed: jax.Array
+    fastest: jax.Array
+
+
+class Stretch(NamedTuple):
+    """One of :class:`Pieces`, with the integral of its force."""
+
+    low: jax.Array
+    high: jax.Array
+    enter: jax.Array
+    leave: jax.Array
+    force: jax.Array
+    integral: jax.Array
+    central: jax.Array
+
+    @classmethod
+    def of(cls, work: Work, k: jax.Array) -> Stretch:
+        """Piece ``k`` of those that work is done along."""
+        p = work.pieces
+        return cls(
+            p.low[k], p.high[k], p.enter[k], p.leave[k], p.values[k, :, 0],
+            work.integral[:, k, 0], p.values[k, :, CENTRAL],
+        )  # fmt: skip
+
+    def energy(self, places: jax.Array, weight: jax.Array) -> jax.Array:
+        """What contact and weight add to the kinetic energy from the entry to there [J]."""
+        x = local(self.low, self.high, places)
+        first = local(self.low, self.high, self.enter)
+        gain = chebyshev_sum(self.integral, x) - chebyshev_sum(self.integral, first)
+        return gain - weight * (places - self.enter)
+
+    def push(self, place: jax.Array, weight: jax.Array) -> jax.Array:
+        """Force of contact and weight at a place [N], positive apart."""
+        return chebyshev_sum(self.force, local(self.low, self.high, place)) - weight
+
+    def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
+        """Each drag [N s/m] at places [m] and about these speeds [m/s], (drags, places)."""
+        x = local(self.low, self.high, places)
+        found = []
+        if body.film is not None:
+            found.append(body.film.drag(chebyshev_sum(self.central, x)))
+        if body.waves is not None:
+            width = self.high - self.low
+            rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
+            slope = rate * (DERIVATIVE @ self.force)
+            bend = rate * (DERIVATIVE[:-1, :-1] @ slope)
+            stiffness, change = chebyshev_sum(slope, x), chebyshev_sum(bend, x)
+            found.append(body.waves.drag(stiffness, change, speed))
+        return jnp.stack(found)
+
+    @property
+    def ahead(self) -> jax.Array:
+        """1 outwards, -1 inwards, 0 for an empty piece."""
+        return jnp.sign(self.leave - self.enter)
+
+
+def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -> Course:
+    """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
+    span = stop - piece.enter
+    places = piece.enter + span * SHARES
+    energy = kinetic + piece.energy(places, body.weight)
+    last = kinetic + piece.energy(stop, body.weight)
+    most = jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last))
+    most = jnp.where(most > 0.0, most, 1.0)
+    unit = jnp.sqrt(2.0 * most / body.mass)
+    length = jnp.abs(span) * _PACE
+    share = energy / most
+    # The speed that it would have without drag on this piece: no more than a cut-off needs.
+    free = unit * jnp.sqrt(jnp.where(share > 0.0, share, 1.0)) * (share > 0.0)
+    drags = 2.0 * piece.drags(body, places, free) * length / (body.mass * unit)
+    # u^2 + (the integral of the drags u) = share, in u = speed / unit.
+    u, solved = _reduced_speeds(share, jnp.sum(drags, axis=0))
+    heat = most * ((drags * u) @ _UNTIL.T)
+    lost = most * ((drags * u) @ _WHOLE)
+    left = last - jnp.sum(lost)
+    pace = jnp.where(u > 0.0, length / (unit * jnp.where(u > 0.0, u, 1.0)), 0.0)
+    empty = span == 0.0
+    return Course(
+        speed=unit * u,
+        time=jnp.asarray(_UNTIL) @ pace,
+        heat=heat,
+        duration=_WHOLE @ pace + _missed_time(body, piece, (kinetic, left), most * u**2, stop),
+        lost=jnp.where(empty, 0.0, lost),
+        kinetic=jnp.where(empty, kinetic, left),
+        passed=empty | (solved & (left > 0.0)),
+        fastest=jnp.where(empty, kinetic, jnp.max(_FINE @ (most * u**2))),
+    )
+
+
+def _missed_time(
+    body: Body,
+    piece: Stretch,
+    ends: tuple[jax.Array, jax.Array],
+    energies: jax.Array,
+    stop: jax.Array,
+) -> jax.Array:
+    """Time [s] that the quadrature misses where the body is nearly at rest at either end.
+
+    ``ends`` are its kinetic energies there, ``energies`` those at SHARES [J]. What is left at the
+    end counts from a part of the energy on that no turning place is off by.
+    """
+    span = stop - piece.enter
+    total = jnp.zeros(())
+    for energy, place, towards, beside, least in (
+        (ends[0], piece.enter, 1.0, energies[NEAR], 0.0),
+        (ends[1], stop, -1.0, energies[-1 - NEAR], _TURNED),
+    ):
+        gain = towards * piece.push(place, body.weight) * span
+        grown = energy + gain * SHARES[NEAR]
+        counts = (jnp.abs(beside - grown) < 0.1 * grown) & (energy > least * gain)
+        missed = missed_time(energy, gain, SHARES, _WHOLE * _PACE)
+        total = total + jnp.where(counts, missed, 0.0)
+    return total * jnp.abs(span) * jnp.sqrt(0.5 * body.mass)
+
+
+@jax.custom_jvp
+def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Solution u of u^2 + (the integral of drag u) = share, and whether it is one.
+
+    Direct iteration converges faster than any power where the drag is weak; Newton's method
+    takes over where it is strong. Where nothing but the drag acts, u falls by half its integral:
+    they begin there where it is closer, since they do not find a body that the drag stops.
+    """
+
+    def goes_on(carry: Any) -> jax.Array:
+        u, change, count = carry
+        return (change > _CLOSE * jnp.max(jnp.abs(u))) & (count > 0)
+
+    def iterate(carry: Any) -> Any:
+        u, _, count = carry
+        after = jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0))
+        return after, jnp.max(jnp.abs(after - u)), count - 1
+
+    def newton(carry: Any) -> Any:
+        u, _, count = carry
+        move = _solved(_slopes(u, drag), _missed(u, share, drag))
+        # Never past a tenth of itself: a speed that has no solution falls to nothing.
+        after = jnp.maximum(u - move, 0.1 * u)
+        return after, jnp.max(jnp.abs(after - u)), count - 1
+
+    def off(u: jax.Array) -> jax.Array:
+        return jnp.max(jnp.abs(_missed(u, share, drag)))
+
+    free = jnp.sqrt(jnp.maximum(share, 0.0))
+    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (_UNTIL @ drag)
+    coasts = jnp.all(coasting > 0.0) & (off(coasting) < off(free))
+    start = jnp.where(coasts, coasting, free)
+    turns = jnp.where(off(start) <= _CLOSE * POINTS, 0, _DIRECT)
+    u, _, _ = jax.lax.while_loop(goes_on, iterate, (start, jnp.asarray(jnp.inf), turns))
+    unsolved = off(u) > _CLOSE * POINTS
+    u = jnp.where(unsolved, start + 1e-6, u)
+    change = jnp.where(unsolved, jnp.inf, 0.0)
+    u, change, _ = jax.lax.while_loop(goes_on, newton, (u, change, _STEPS))
+    close = (change <= 1e-9 * jnp.max(u)) & (off(u) < 1e-9)
+    return u, close
+
+
+@_reduced_speeds.defjvp
+def _reduced_speeds_jvp(primals, tangents):  # type: ignore[no-untyped-def]
+    (share, drag), (dshare, ddrag) = primals, tangents
+    u, close = _reduced_speeds(share, drag)
+    sound = close & jnp.all(u > 0.0)  # else nothing moves, or nothing is solved
+    matrix = jnp.where(sound, _slopes(u, drag), jnp.eye(POINTS))
+    push = jnp.where(sound, dshare - _UNTIL @ (ddrag * u), 0.0)
+    moved = jax.lax.custom_linear_solve(
+        lambda x: matrix @ x,
+        push,
+        lambda _, right: _solved(matrix, right),
+        lambda _, right: _solved(matrix.T, right),
+    )
+    return (u, close), (moved, np.zeros(close.shape, jax.dtypes.float0))
+
+
+def _missed(u: jax.Array, share: jax.Array, drag: jax.Array) -> jax.Array:
+    return u**2 + _UNTIL @ (drag * u) - share
+
+
+def _slopes(u: jax.Array, drag: jax.Array) -> jax.Array:
+    return jnp.diag(2.0 * u) + _UNTIL * drag
+
+
+@jax.custom_batching.sequential_vmap
+def _solved(matrix: jax.Array, right: jax.Array) -> jax.Array:
+    return jnp.linalg.solve(matrix, right[:, None])[:, 0]
+
+
+@eqx.filter_custom_jvp
+def turning_place(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
+    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m]."""
+    ahead = piece.ahead
+    close = 4e-15 * jnp.maximum(jnp.abs(piece.enter), jnp.abs(piece.leave))
+
+    def go_on(carry: Any) -> jax.Array:
+        inside, outside, _, count = carry
+        return (jnp.abs(outside - inside) > close) & (count < _SEARCH)
+
+    def step(carry: Any) -> Any:
+        inside, outside, place, count = carry
+        course = course_on(body, piece, kinetic, place)
+        alive = course.passed
+        inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
+        falls = ahead * piece.push(place, body.weight)
+        target = place - ahead * course.kinetic / jnp.where(falls < 0.0, falls, -1.0)
+        # Past the root by a hair, so that it is enclosed from both sides.
+        target = target + ahead * close
+        between = (target - inside) * (target - outside) < 0.0
+        use = alive & (falls < 0.0) & between
+        return inside, outside, jnp.where(use, target, 0.5 * (inside + outside)), count + 1
+
+    middle = 0.5 * (piece.enter + piece.leave)
+    found: jax.Array = jax.lax.while_loop(go_on, step, (piece.enter, piece.leave, middle, 0))[0]
+    return found
+
+
+@turning_place.def_jvp
+def _turning_place_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
+    """By the implicit function theorem: the kinetic energy stays zero there."""
+    body, piece, _ = primals
+    place = turning_place(*primals)
+
+    def spent(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
+        return course_on(body, piece, kinetic, place).kinetic
+
+    _, change = eqx.filter_jvp(spent, primals, tangents)
+    falls = piece.ahead * piece.push(place, body.weight)
+    moved = -piece.ahead * change / jnp.where(falls < 0.0, falls, -1.0)
+    return place, jnp.where(falls < 0.0, moved, 0.0)

@@ -1,0 +1,295 @@
+"""Fall, touch, rebound, again: the phases of a motion in a row."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, cast
+
+from equinox.internal import unvmap_any
+
+from .._jax import jax, jnp
+from ..contact.contact import Contact, Held
+from ..errors import Outcome, Tolerance
+from .curve_table import (
+    FORCE,
+    SIZE,
+    STORED,
+    TOUCHING,
+    Table,
+    join,
+    outer_row,
+    quantities,
+    tabulate,
+    tabulate_again,
+)
+from .damped_phase import fall_to_rest, resolved
+from .phase import Turn, in_order, look_ahead, mechanical_at_end, pull_work, row_at, travel_time
+from .record import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
+from .scanning_table import inner_pieces, solve_reversals
+from .static_equilibrium import Datum, find_datum
+from .turning_point import find_turn
+
+LEAST_LOSS = 1e-9
+"""Share of the impact energy: a cycle that loses less repeats for ever."""
+
+LEAST_RISE = 1e-9
+"""Share of the fall: a body that rises less stays where it turned."""
+
+
+FEW = 8
+"""Impacts up to which each reversal is better solved as it comes."""
+
+
+def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Datum]:
+    """Tabulate a contact over all separations that a body can reach, and find its datum.
+
+    With the ways back from reversals where ``many`` impacts follow (static): fewer are flown
+    sooner without.
+    """
+    low = jax.lax.stop_gradient(contact.floor(body.release, body.kinetic, body.weight))
+    falls = body.weight > 0.0
+    rise = body.kinetic / jnp.where(falls, body.weight, 1.0)
+    top = body.release + jnp.where(falls, rise, 0.0)
+    high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
+    # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
+    low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
+    if contact.yields:
+        table = _worn_table(contact, body, low, high)
+    else:
+        table = tabulate(contact, low, high)
+    if contact.datum is None:
+        datum = find_datum(table, body.weight, contact.resting)
+    else:
+        datum = Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
+    if many and not contact.yields:
+        table = solve_reversals(contact, body, table, datum)
+    return table, datum
+
+
+def _worn_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
+    """The curves of a contact that yields, before its first impact and as that leaves it.
+
+    Nothing that follows goes deeper than the first impact: it has lost energy since.
+    """
+    before = tabulate(contact, low, high)
+    progress, _origin = start(contact, body, before)
+    rest = find_datum(before, body.weight, 0).equilibrium
+    after, _fall = _leg(contact, body, before, (rest, rest), progress, jnp.asarray(False))
+    return tabulate_again(contact, before, after.memory, after.place)
+
+
+def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:
+    """The state at the release, outside contact, and its mechanical energy [J]."""
+    zero = jnp.zeros(())
+    row = outer_row(table, 0, body.release)
+    progress = Progress(
+        memory=contact.fresh(),
+        place=body.release,
+        kinetic=body.kinetic,
+        time=zero,
+        lost=jnp.zeros(len(contact.mechanisms) + len(body.mechanisms)),
+        bonds=row[quantities(contact).bonds],
+        first=zero,
+        impact_energy=zero,
+        outcome=jnp.asarray(FLYING),
+        made=jnp.asarray(0),
+    )
+    return progress, row[STORED] + body.kinetic + body.weight * body.release
+
+
+def fly(
+    contact: Contact,
+    body: Body,
+    table: Table,
+    datum: Datum,
+    origin: jax.Array,
+    progress: Progress,
+    limits: Limits,
+    impacts: int,
+) -> tuple[Progress, Impacts]:
+    """Go on for at most ``impacts`` impacts (static), inert once the motion has ended."""
+
+    @jax.jit  # traced once, for its shapes and for itself
+    def one(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        return _impact(contact, body, table, datum, origin, progress, limits)
+
+    shapes = jax.eval_shape(one, progress, None)[1]
+
+    def none(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        empty = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+        return progress, empty
+
+    def step(progress: Progress, _: None) -> tuple[Progress, Impacts]:
+        active = progress.outcome == FLYING
+        after, row = jax.lax.cond(unvmap_any(active), one, none, progress, None)
+        keep = lambda new, old: jnp.where(active, new, old)  # noqa: E731
+        return (
+            jax.tree_util.tree_map(keep, after, progress),
+            row._replace(made=jnp.logical_and(active, row.made)),
+        )
+
+    return jax.lax.scan(step, progress, None, length=impacts)
+
+
+def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None) -> Motion:
+    """Motion of a body until it rests, escapes or reaches a limit.
+
+    Parameters
+    ----------
+    contact
+        The contact.
+    body
+        The body and its release, outside contact.
+    tolerance
+        Ends of the motion; ``max_impacts`` is static.
+
+    Notes
+    -----
+    Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
+    """
+    tolerance = tolerance or Tolerance()
+    table, datum = prepare(contact, body, tolerance.max_impacts > FEW)
+    progress, origin = start(contact, body, table)
+    end, impacts = fly(
+        contact, body, table, datum, origin, progress, Limits.of(tolerance), tolerance.max_impacts
+    )
+    return Motion(impacts, end, table, datum, origin)
+
+
+class _Leg(NamedTuple):
+    turn: Turn
+    phase: Phase
+    row: jax.Array
+    lost: jax.Array
+    time: jax.Array
+    bonds: jax.Array
+    pull_work: jax.Array
+    crept: jax.Array
+    followed: jax.Array
+    stopped: jax.Array
+    leaving: jax.Array
+
+
+def _leg(
+    contact: Contact,
+    body: Body,
+    table: Table,
+    rest: tuple[jax.Array, jax.Array],
+    progress: Progress,
+    parting: jax.Array,
+) -> tuple[Progress, _Leg]:
+    """One phase down or up, and the bonds that it makes or breaks.
+
+    ``rest`` is the equilibrium, and the separation that counts as there [m].
+    """
+    fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
+    inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
+    branch = contact.branch_of(progress.memory, parting)
+    ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
+    if not body.damped:
+        wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(parting))
+        turn, heat = find_turn(ahead, wanted), jnp.zeros(0)
+        time = progress.time + travel_time(ahead, turn, body.mass)
+    else:
+        way, part = resolved(body, join(table, branch, inner, progress.place, parting))
+        goal = jnp.where(parting, jnp.inf, rest[1])
+        passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
+        turn = passage.turn._replace(piece=part[passage.turn.piece])
+        turn, heat = in_order(ahead, turn), passage.lost
+        fate = passage.crept, passage.followed, passage.stopped
+        time = progress.time + passage.duration
+    row = row_at(ahead, turn)
+    layout = quantities(contact)
+    bonds = row[layout.bonds]
+    formed = jnp.maximum(bonds - progress.bonds, 0.0)
+    broken = jnp.maximum(progress.bonds - bonds, 0.0)
+    at_forming, at_breaking = contact.losses()
+    lost = jnp.concatenate([formed * at_forming + broken * at_breaking, heat]) + progress.lost
+    drawn = inner._replace(values=inner.values[..., : layout.components.stop])
+    phase = Phase(
+        progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
+        progress.lost, progress.bonds,
+    )  # fmt: skip
+    held = Held(turn.piece >= ahead.pieces, parting, row[SIZE], row[layout.field])
+    after = progress._replace(
+        memory=contact.turned(progress.memory, turn.place, held), place=turn.place,
+        kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
+    )  # fmt: skip
+    leg = _Leg(
+        turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
+        *fate, jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
+    )  # fmt: skip
+    return after, leg
+
+
+def _no_rise(fall: tuple[Progress, _Leg], rise: tuple[Progress, _Leg]) -> tuple[Progress, _Leg]:
+    """A way up that is none where the film stopped the body on its way down."""
+    after, here = fall
+    stay = here._replace(
+        phase=rise[1].phase._replace(stop=rise[1].phase.start), pull_work=jnp.zeros(())
+    )
+    kept = jax.tree_util.tree_map(
+        lambda a, b: jnp.where(here.stopped, a, b), (after, stay), rise
+    )  # fmt: skip
+    return cast("tuple[Progress, _Leg]", kept)
+
+
+def _impact(
+    contact: Contact,
+    body: Body,
+    table: Table,
+    datum: Datum,
+    origin: jax.Array,
+    progress: Progress,
+    limits: Limits,
+) -> tuple[Progress, Impacts]:
+    """Down to the deepest point and up to the next apex."""
+    resting = datum.equilibrium
+    rest = resting, resting + limits.rest * (body.release - resting)
+
+    def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
+        after, way = _leg(contact, body, table, rest, progress, parting)
+        return after, (after, way)
+
+    # One body of code for both directions: half to compile.
+    _, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
+    down, up = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
+    up = up if body.film is None else _no_rise(down, up)
+    fall, (end, rise) = down[1], up
+    legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
+    mechanical = legs.turn.kinetic + body.weight * legs.turn.place + legs.row[:, STORED]
+    closure = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
+    height = end.place - datum.equilibrium
+    first = jnp.where(progress.made == 0, height, progress.first)
+    energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
+    cycle = jnp.sum(rise.lost - progress.lost)
+    risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
+    sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
+    outcome = _outcome(
+        (
+            (jnp.logical_not(sound), Outcome.FAILED),
+            (fall.crept, Outcome.REST),
+            ((fall.stopped | rise.stopped) & (rise.time < limits.time), Outcome.STOPPED),
+            # Flattened tips may pull at once by more than what they press.
+            (jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen), Outcome.REST),
+            (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
+            (rise.time >= limits.time, Outcome.TIME_LIMIT),
+            (height < limits.rest * first, Outcome.REST),
+            (cycle < LEAST_LOSS * energy, Outcome.OSCILLATING),
+            (progress.made + 1 >= limits.impacts, Outcome.MAX_IMPACTS),
+        )
+    )
+    after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
+    row = Impacts(
+        jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
+        rise.leaving, fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
+        rise.pull_work, energy, fall.phase, rise.phase,
+    )  # fmt: skip
+    return after, row
+
+
+def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
+    """Code of the first rule that holds, or FLYING."""
+    code = jnp.asarray(FLYING)
+    for holds, outcome in reversed(rules):
+        code = jnp.where(holds, ENDS.index(outcome), code)
+    return code

@@ -1,0 +1,50 @@
+"""What the equation of motion needs: a contact, a body, and how they were chosen."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..contact import Contact
+from ..contact.delayed_formation import LateContact
+from ..contact.viscoelastic import Creep
+from ..laws.adhesion_choice import AdhesionChoice
+from .record import Body
+
+CLEARANCE = 1e-9
+"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap.
+
+A first place: a force that goes on beyond its reach has the body released further out.
+"""
+
+
+class Problem(NamedTuple):
+    """What the equation of motion needs.
+
+    Attributes
+    ----------
+    contact
+        Forces between the two bodies.
+    body
+        Mass and release; at rest outside contact where a case has no [impact] table.
+    modulus
+        Contact modulus E* [Pa].
+    tip_radius
+        Radius [m] of one asperity, or of the smooth body.
+    adhesion
+        The law of adhesion in use, and why where the program chose it.
+    late
+        The contact with menisci that take time to form; None where they form at once.
+    class_error
+        Relative error that classes of tip radius make in the work of bonds; 0 without classes.
+    creep
+        How the bulk creeps; ``contact`` is then that of the relaxed bulk. None where it does not.
+    """
+
+    contact: Contact
+    body: Body
+    modulus: float
+    tip_radius: float
+    adhesion: AdhesionChoice
+    late: LateContact | None = None
+    class_error: float = 0.0
+    creep: Creep | None = None

@@ -1,0 +1,138 @@
+"""Force against separation without motion: in to a depth, and out again."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from .._jax import jax
+from ..contact.contact import Contact
+from ..numerics.compilation import AT_ONCE, Program
+from .curve_table import CENTRAL, FORCE, Table, quantities
+from .record import Impacts
+from .unloading import Unloading, unloading
+
+_POINTS = 240
+
+
+class _Piece(NamedTuple):
+    low: float
+    high: float
+    values: np.ndarray
+
+
+def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, Any], float]:
+    """Both branches from where the forces begin to the depth of the first impact.
+
+    Parameters
+    ----------
+    contact
+        The contact.
+    table
+        Its curves.
+    impacts
+        A motion's impacts, of which the first is taken.
+
+    Returns
+    -------
+    The arrays and numbers of :class:`asperity.results.result.Curve`, and the expected number of
+    asperities that hold at pull-off.
+    """
+    deepest, pulled = float(impacts.deepest[0]), first_unloading(table, impacts)
+    reach = float(contact.reach)
+    top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
+    inward, outward = _branch(table, 0), _way_out(table, impacts)
+    places = _places([*inward, *outward], deepest, top)
+    approach, parting = _read(inward, places), _read(outward, places)
+    out = parting[:, FORCE]
+    layout = quantities(contact)
+    names = contact.components
+    found = {
+        "rigid_separation": places,
+        "central_separation": approach[:, CENTRAL],
+        "force_approach": approach[:, FORCE],
+        "force_parting": out,
+        "components_approach": dict(zip(names, approach[:, layout.components].T, strict=True)),
+        "components_parting": dict(zip(names, parting[:, layout.components].T, strict=True)),
+        "deepest": deepest,
+        "preload": float(impacts.force[0]) if pulled.depends else None,
+        "pull_off": float(pulled.pull_off),
+        "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
+        "work_of_separation": float(pulled.work),
+        "loss": _loss(contact, approach[:, layout.bonds], parting[:, layout.bonds]),
+    }
+    return found, float(pulled.held)
+
+
+def _branch(table: Table, branch: int) -> list[_Piece]:
+    """The panels of an outermost branch that are not empty, ascending."""
+    values = np.asarray(table.values)[branch]
+    ends = np.asarray(table.ends)
+    pairs = zip(ends[:-1], ends[1:], values, strict=True)
+    return [_Piece(low, high, rows) for low, high, rows in pairs if high > low]
+
+
+def _way_out(table: Table, impacts: Impacts) -> list[_Piece]:
+    """The pieces from the first deepest point to the branch, and then the branch."""
+    rise = impacts.rise
+    inner = [
+        _Piece(float(low), float(high), rows)
+        for low, high, rows in zip(
+            *(np.asarray(leaf[0]) for leaf in (rise.inner.low, rise.inner.high, rise.inner.values)),
+            strict=True,
+        )
+        if high > low
+    ]
+    begin = inner[-1].high if inner else float(rise.start[0])
+    rest = [p for p in _branch(table, int(rise.branch[0])) if p.high > begin]
+    return [*inner, *rest]
+
+
+def _read(pieces: list[_Piece], places: np.ndarray) -> np.ndarray:
+    """Rows of quantities at ascending places."""
+    ends = np.array([p.high for p in pieces])
+    index = np.minimum(np.searchsorted(ends, places), len(pieces) - 1)
+    width = min(p.values.shape[1] for p in pieces)
+    rows = np.empty((len(places), width))
+    for k in np.unique(index):
+        here = index == k
+        low, high, values = pieces[k]
+        local = (2.0 * places[here] - low - high) / (high - low)
+        rows[here] = chebyshev.chebval(local, values[:, :width]).T
+    return rows
+
+
+def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
+    """Separations from the deepest point up: even on each piece of the curves."""
+    ends = np.array([end for p in pieces for end in (p.low, p.high)])
+    inside = ends[(ends > deepest) & (ends < top)]
+    ends = np.unique(np.concatenate([[deepest], inside, [top]]))
+    share = max(3, _POINTS // (len(ends) - 1))
+    steps = [np.linspace(a, b, share, endpoint=False) for a, b in pairwise(ends)]
+    return np.concatenate([*steps, [top]])
+
+
+def first_unloading(table: Table, impacts: Impacts) -> Unloading:
+    """What the first of some impacts is pulled back by, as numbers."""
+    first = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[0], impacts.rise)
+    return unloading_of(table, first)
+
+
+unloading_of = Program(unloading, AT_ONCE)
+
+
+def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:
+    return contact.losses()
+
+
+losses = Program(_losses, AT_ONCE)
+"""What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
+
+
+def _loss(contact: Contact, approach: np.ndarray, parting: np.ndarray) -> float:
+    """Energy lost in and out: bonds made on the way in, and broken on the way out."""
+    formation, rupture = (np.asarray(x) for x in losses(contact))
+    return float((approach[0] - approach[-1]) @ formation + (parting[0] - parting[-1]) @ rupture)

@@ -1,0 +1,202 @@
+"""What moves, how it can end, and what is kept of a motion: its phases and impacts."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..contact.contact import Memory
+from ..errors import Outcome, Tolerance
+from ..laws.law import Real, as_float64, quantity
+from ..numerics.compilation import kept
+from .curve_table import Pieces, Table
+from .gas_film import SqueezeFilm
+from .static_equilibrium import Datum
+from .wave_radiation import WaveRadiation
+
+FLYING = -1
+ENDS = (
+    Outcome.REST,
+    Outcome.OSCILLATING,
+    Outcome.ESCAPED,
+    Outcome.TIME_LIMIT,
+    Outcome.MAX_IMPACTS,
+    Outcome.FAILED,
+    Outcome.STOPPED,
+)
+"""Outcomes in the order of their codes in :class:`Progress`."""
+
+
+class Body(eqx.Module):
+    """What moves, and how it starts.
+
+    Parameters
+    ----------
+    mass
+        Mass [kg].
+    gravity
+        Acceleration towards the surface [m/s^2], 0 or more.
+    release
+        Rigid separation at time 0 [m].
+    speed
+        Speed towards the surface at time 0 [m/s], 0 or more.
+    film
+        The gas that it squeezes; None in a vacuum.
+    waves
+        The waves that its contact radiates; None where they are left out.
+    """
+
+    mass: Real = quantity()
+    gravity: Real = quantity()
+    release: Real = quantity()
+    speed: Real = quantity(0.0)
+    film: SqueezeFilm | None = None
+    waves: WaveRadiation | None = None
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names of the losses that are not the contact's: drags, that of the gas first."""
+        gas = () if self.film is None else ("gas",)
+        return gas if self.waves is None else (*gas, "waves")
+
+    @property
+    def damped(self) -> bool:
+        """Whether a drag takes energy on the way."""
+        return bool(self.mechanisms)
+
+    @property
+    def weight(self) -> jax.Array:
+        """Weight [N]."""
+        return self.mass * self.gravity
+
+    @property
+    def kinetic(self) -> jax.Array:
+        """Kinetic energy at the release [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+
+@kept
+class Phase(NamedTuple):
+    """What a monotone phase started from; enough to draw it again."""
+
+    start: jax.Array
+    stop: jax.Array
+    kinetic: jax.Array
+    begun: jax.Array
+    branch: jax.Array
+    inner: Pieces
+    lost: jax.Array
+    bonds: jax.Array
+
+
+class Limits(NamedTuple):
+    """Ends of a motion as traced values: rest, time limit [s], largest number of impacts."""
+
+    rest: jax.Array
+    time: jax.Array
+    impacts: jax.Array
+
+    @classmethod
+    def of(cls, tolerance: Tolerance) -> Limits:
+        """The limits of a tolerance."""
+        return cls(
+            as_float64(tolerance.rest),
+            as_float64(tolerance.time_limit),
+            jnp.asarray(np.asarray(tolerance.max_impacts)),
+        )
+
+
+@kept
+class Progress(NamedTuple):
+    """A motion at the turning point before its next impact."""
+
+    memory: Memory
+    place: jax.Array
+    kinetic: jax.Array
+    time: jax.Array
+    lost: jax.Array
+    bonds: jax.Array
+    first: jax.Array
+    impact_energy: jax.Array
+    outcome: jax.Array
+    made: jax.Array
+
+
+@kept
+class Impacts(NamedTuple):
+    """One row an impact; rows after the last have ``made`` False.
+
+    Attributes
+    ----------
+    made
+        Whether the impact took place.
+    deepest, apex
+        Rigid separations [m] of the turning points; the apex of a body that escapes is
+        the end of the table.
+    deepest_time, apex_time
+        Times [s].
+    mechanical
+        Kinetic, potential and stored energy at the apex [J].
+    leaving
+        The same energy were the body to leave the contact, whether or not it has enough: a body
+        that is captured has less than its potential energy at the end of contact. NaN with drag
+        and for motions stepped in time, which tell it of no body that is captured.
+    force
+        Contact force at the deepest point [N].
+    touching, bonds
+        Expected asperities in contact, and bonds by law, at the deepest point.
+    lost
+        Energy lost until the apex, since the release [J]: by law, then by drag.
+    closure
+        Largest change of the sum of all energies since the release [J].
+    pull_work
+        Work of the attractive parts on the way out [J], as in the publication's eq. 23.
+    fastest
+        Largest kinetic energy on the first way in [J], the same in all rows.
+    fall, rise
+        The two phases.
+    """
+
+    made: jax.Array
+    deepest: jax.Array
+    apex: jax.Array
+    deepest_time: jax.Array
+    apex_time: jax.Array
+    mechanical: jax.Array
+    leaving: jax.Array
+    force: jax.Array
+    touching: jax.Array
+    bonds: jax.Array
+    lost: jax.Array
+    closure: jax.Array
+    pull_work: jax.Array
+    fastest: jax.Array
+    fall: Phase
+    rise: Phase
+
+
+class Motion(NamedTuple):
+    """A whole motion.
+
+    Attributes
+    ----------
+    impacts
+        One row an impact.
+    end
+        Where it ended.
+    table
+        The contact's outermost branches.
+    datum
+        Static equilibrium and the end of contact.
+    release
+        Mechanical energy at the release [J].
+    """
+
+    impacts: Impacts
+    end: Progress
+    table: Table
+    datum: Datum
+    release: jax.Array

@@ -1,0 +1,224 @@
+"""The ways back to the outermost branches, tabulated by the place of the reversal.
+
+What holds a body that turns on an outermost branch depends on where it turned and on nothing
+else. The turning points of a motion lie close together, and everything along the ways that lead
+back from them is a smooth function of their place: a polynomial, through a few ways that are
+solved before the motion begins. All but lengths are divided by the number of asperities that touch
+before they are fitted, since both fall off alike. Other reversals, on a way itself, are solved as
+they come.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from .._jax import jax, jnp
+from ..contact.contact import Contact, Held, Memory
+from ..numerics.compilation import kept
+from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local
+from .curve_table import (
+    CENTRAL,
+    FORCE,
+    SIZE,
+    TOUCHING,
+    Pieces,
+    Table,
+    all_rows,
+    fit,
+    outer_row,
+    quantities,
+)
+from .record import Body
+from .static_equilibrium import Datum
+
+CLOSE = 1e-8
+"""Error of the work along a way, over the impact energy, up to which the polynomial serves."""
+
+_FAR = 3  # ranges of the reversals outside, at most
+RANGES = 1 + _FAR
+"""Ranges of reversals: one where a body parts, the others outside."""
+
+_WIDE = 1.7  # rms heights that one of them spans, where that is enough
+_NONE = 1e-120  # touching asperities: their logarithm and its derivatives are finite
+_FALL = 0.1  # of the coefficients over the place of the reversal, from one to the next, at least
+_BEND = 2  # degree of the size of the mesh over that place
+
+
+@kept
+class Reversals(NamedTuple):
+    """Ways back from reversals within ranges: the first where a body parts, the others outside.
+
+    Attributes
+    ----------
+    low, high
+        The ranges [m], shape (ranges,).
+    length
+        Chebyshev coefficients over each of the ends of the pieces, from the reversal in the
+        direction of motion [m], shape (ranges, ways, pieces).
+    touching
+        Likewise those of the logarithm of the number of asperities that touch at the places of
+        each piece, shape (ranges, ways, pieces, places).
+    rows
+        Likewise those of all quantities there, over that number but for lengths, shape (ranges,
+        ways, pieces, places, rows).
+    error
+        Estimated error of the work along the way over the impact energy, shape (ranges,).
+    """
+
+    low: jax.Array
+    high: jax.Array
+    length: jax.Array
+    touching: jax.Array
+    rows: jax.Array
+    error: jax.Array
+
+    def _range(self, start: jax.Array, parting: jax.Array) -> jax.Array:
+        """Index of the range of a reversal at ``start`` [m]."""
+        return jnp.where(parting, 0, 1 + jnp.sum(self.high[1:-1] < start))
+
+    def cover(self, start: jax.Array, parting: jax.Array) -> jax.Array:
+        """Whether they hold for a reversal at ``start`` [m]."""
+        k = self._range(start, parting)
+        inside = jnp.logical_and(self.low[k] <= start, start <= self.high[k])
+        return jnp.logical_and(inside, self.error[k] <= CLOSE)
+
+    def pieces(self, start: jax.Array, parting: jax.Array) -> Pieces:
+        """The way back from ``start`` [m]."""
+        k = self._range(start, parting)
+        x = local(self.low[k], self.high[k], start)
+        leave = start + jnp.where(parting, 1.0, -1.0) * chebyshev_sum(self.length[k], x[None])
+        enter = jnp.concatenate([start[None], leave[:-1]])
+        touching = jnp.exp(chebyshev_sum(self.touching[k], x[None, None]))
+        rows = chebyshev_sum(self.rows[k], x[None, None, None])
+        rows = rows * _scales(touching, rows.shape[-1])
+        return _along(enter, leave, fit(rows), parting)
+
+
+def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) -> Table:
+    """A table with the ways back from where a body can turn on its outermost branches.
+
+    It turns between its deepest point and the static equilibrium on the way in, and between that
+    and its highest point, or where forces end, on the way out. Without weight it does not return.
+    """
+    ways = contact.reversals
+    if not ways:
+        return table
+    frozen, body, rest = jax.lax.stop_gradient((table, body, datum.equilibrium))
+    within = frozen.ends[0], frozen.ends[-1]
+    deepest, energy = _first_fall(frozen, body)
+    reach = jax.lax.stop_gradient(contact.reach)
+    ends = _ends(rest, jnp.minimum(within[1], reach), jax.lax.stop_gradient(contact.scale))
+    low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
+    wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
+    nodes, parted = chebyshev.chebpts1(ways), np.arange(RANGES) > 0
+    places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
+    rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
+    held = Held(
+        outer=jnp.ones((RANGES, ways), bool),
+        parting=jnp.broadcast_to(parted[:, None], (RANGES, ways)),
+        size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
+        field=rows[..., quantities(contact).field],
+    )
+    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, ways))
+    jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), jobs)
+    solved = jax.lax.map(lambda job: contact.way_from(job[0], job[1], job[2], within), jobs)
+    rows = jax.vmap(all_rows)(solved.states)
+    touching = jnp.where(rows[..., TOUCHING] > _NONE, rows[..., TOUCHING], _NONE)
+    rows = rows / _scales(touching, rows.shape[-1])
+    length = jnp.abs(solved.leave - jobs[0][:, None])
+    each = length, jnp.log(touching), rows
+    length, numbers, rows = (_over_places(x, nodes) for x in each)
+    most = jnp.max(touching.reshape(RANGES, -1), axis=1)
+    error = most * _error(length, numbers, rows) / jnp.where(energy > 0.0, energy, 1.0)
+    error = jnp.where(wanted, error, jnp.inf)
+    return table._replace(reversals=Reversals(low, high, length, numbers, rows, error))
+
+
+def _ends(low: jax.Array, high: jax.Array, rms: jax.Array) -> jax.Array:
+    """Ends of as many even ranges as are needed, the others empty at the upper end."""
+    width = jnp.maximum((high - low) / _FAR, jnp.minimum(_WIDE * rms, high - low))
+    count = jnp.ceil((high - low) / jnp.where(width > 0.0, width, 1.0) - 1e-9)
+    width = (high - low) / jnp.maximum(count, 1.0)
+    number = np.arange(1.0 + _FAR)
+    return jnp.where((number > 0.0) & (number >= count), high, low + width * number)
+
+
+def _scales(touching: jax.Array, count: int) -> jax.Array:
+    """What so many quantities are divided by: all but lengths fall off as the number does."""
+    return jnp.where(np.isin(np.arange(count), (CENTRAL, SIZE)), 1.0, touching[..., None])
+
+
+def _rows(table: Table, direction: int, places: jax.Array) -> jax.Array:
+    """All quantities at places of the branch on which a body comes there."""
+    branch = direction * (table.values.shape[0] - 1)
+    return jax.vmap(lambda place: outer_row(table, branch, place))(places)
+
+
+def _first_fall(table: Table, body: Body) -> tuple[jax.Array, jax.Array]:
+    """A place just below that of the first turn [m], and the largest energy before it [J]."""
+    places = table.looks.ravel()
+    work = table.works.looks[0].ravel()
+    panel = table.panel_at(body.release)
+    x = local(table.ends[panel], table.ends[panel + 1], body.release)
+    gained = work - chebyshev_sum(table.works.integral[0, panel, :, 0], x)
+    kinetic = body.kinetic + gained - body.weight * (places - body.release)
+    below = places < body.release
+    deepest = jnp.max(jnp.where(below & (kinetic < 0.0), places, table.ends[0]))
+    passed = below & (places > deepest)
+    return deepest, jnp.max(jnp.where(passed, kinetic, body.kinetic))
+
+
+def _to_degree(degree: int, nodes: np.ndarray) -> np.ndarray:
+    """From values at Chebyshev points to those of the polynomial of a degree that fits them."""
+    found: np.ndarray = chebyshev.chebvander(nodes, degree) @ from_points(len(nodes))[: degree + 1]
+    return found
+
+
+def _over_places(values: jax.Array, nodes: np.ndarray) -> jax.Array:
+    """Values at the places of all ranges as Chebyshev coefficients over these."""
+    each = values.reshape(-1, len(nodes), *values.shape[1:])
+    return jnp.einsum("kn,bn...->bk...", from_points(len(nodes)), each)
+
+
+def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array:
+    """Estimated error of the work along the ways [J] over the touching, shape (ranges,)."""
+    force = jnp.abs(rows[..., FORCE])
+    last = force[:, 2:] + force[:, :1] * jnp.abs(touching[:, 2:])
+    off = jnp.maximum(last[:, -1], _FALL * last[:, -2])
+    span = jnp.diff(length[:, 0], axis=1, prepend=0.0)
+    return jnp.sum(jnp.max(off, axis=2) * span, axis=1)
+
+
+def inner_pieces(
+    contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
+) -> Pieces:
+    """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
+    if not table.reversals:
+        return _solved(contact, table, memory, start, parting)
+    known = contact.on_branch(memory) & table.reversals.cover(start, parting)
+    return jax.lax.cond(
+        known,
+        lambda: table.reversals.pieces(start, parting),
+        lambda: _solved(contact, table, memory, start, parting),
+    )
+
+
+def _solved(
+    contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
+) -> Pieces:
+    now = contact.after(table.left) if table.left else contact
+    way = now.way(memory, start, parting, (table.ends[0], table.ends[-1]))
+    if way is None:
+        none = jnp.zeros(0)
+        return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
+    return _along(way.enter, way.leave, fit(all_rows(way.states)), parting)
+
+
+def _along(enter: jax.Array, leave: jax.Array, values: jax.Array, parting: jax.Array) -> Pieces:
+    """Pieces of polynomials in the direction of motion."""
+    odd = (-1.0) ** np.arange(NODES)[:, None]
+    values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
+    return Pieces(jnp.minimum(enter, leave), jnp.maximum(enter, leave), enter, leave, values)

@@ -1,0 +1,287 @@
+"""The way from one turning point to the next where menisci take time to form: a row of steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._jax import jax
+from ..contact.contact import Contact
+from ..contact.delayed_formation import LateContact
+from ..numerics.compilation import Program
+from .curve_table import FORCE, quantities
+from .damped_phase import STILL, slow_at
+from .static_equilibrium import Datum
+from .time_collocation import NODES_IN_TIME, Here
+from .time_stepping import BOND, MARK, SWITCH, TURN, Frame, Taken, take
+
+TURNED, LEFT, CREPT, FAILED = "turned", "left", "crept", "failed"
+STOPPED = "stopped"
+"""How a leg ends: by a turn, at the end of the table, at rest without a turn, not at all, or where
+the film alone stops the body."""
+
+_MOST_STEPS = 10_000
+_SLOW = 1e-7  # of the speed at the release: the film has stopped a body that is slower
+_SPENT = 1e-9  # of the energy with which a body came close to rest: with less it creeps
+
+
+def _remembered(contact: LateContact, here: Here) -> Any:
+    held = contact.with_threshold(here.memory, here.threshold)
+    return contact.told.remember(held, here.separation)
+
+
+_remember = Program(_remembered)
+_bond_loss = Program(LateContact.loss)
+
+
+class Ended(Exception):
+    """The motion was asked to end."""
+
+
+class Place(NamedTuple):
+    """A body between two steps: where, when [s], the next span [s], energy lost by name [J]."""
+
+    here: Here
+    time: float
+    span: float
+    lost: np.ndarray
+
+
+class Samples(NamedTuple):
+    """A motion at the points of its steps; the leading axis is the sample.
+
+    Attributes
+    ----------
+    time, separation, speed
+        [s], [m], [m/s].
+    rows
+        Quantities of the contact.
+    lost
+        Energy lost since the release, by law, then in the gas if any [J].
+    """
+
+    time: np.ndarray
+    separation: np.ndarray
+    speed: np.ndarray
+    rows: np.ndarray
+    lost: np.ndarray
+
+    @classmethod
+    def joined(cls, parts: list[Samples]) -> Samples:
+        """Samples one after the other."""
+        return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+class Leg(NamedTuple):
+    """The way from one turning point to the next.
+
+    Attributes
+    ----------
+    place
+        Its end.
+    fate
+        TURNED, LEFT, CREPT, FAILED or STOPPED.
+    fastest
+        Largest kinetic energy [J].
+    pull_work
+        Work of the attractive forces [J].
+    samples
+        The leg, without its start.
+    """
+
+    place: Place
+    fate: str
+    fastest: float
+    pull_work: float
+    samples: list[Samples]
+
+
+class Course(NamedTuple):
+    """What legs need to know.
+
+    Attributes
+    ----------
+    frame
+        What does not change.
+    losses
+        Energy lost by one bond that forms, and that breaks, by law [J].
+    rest
+        Separations of the equilibrium and of what counts as there [m].
+    asked
+        Called before each step; raises :class:`Ended` to stop.
+    """
+
+    frame: Frame
+    losses: tuple[np.ndarray, np.ndarray]
+    rest: tuple[float, float]
+    asked: Callable[[], None]
+
+    @classmethod
+    def of(
+        cls,
+        contact: Contact,
+        frame: Frame,
+        datum: Datum,
+        rest: float,
+        asked: Callable[[], None],
+    ) -> Course:
+        """The course on a contact; ``rest`` as in a tolerance."""
+        formed, broken = (np.asarray(x) for x in contact.losses())
+        still, release = float(datum.equilibrium), float(frame.body.release)
+        goal = still + rest * (release - still)
+        if frame.body.film is not None and np.isfinite(goal):
+            frame = frame._replace(marks=np.append(frame.marks, goal))
+        return cls(frame, (formed, broken), (still, goal), asked)
+
+
+def leg(course: Course, place: Place, sign: int) -> Leg:
+    """From a turning point, inwards (-1) or outwards (1), to the next."""
+    frame = course.frame
+    mass = float(frame.body.mass)
+    way = Leg(place, "", 0.5 * mass * float(place.here.speed) ** 2, 0.0, [])
+    near: Leg | None = None
+    while not way.fate:
+        course.asked()
+        taken = take(frame, way.place.here, sign, way.place.span, way.fastest)
+        if taken is None or len(way.samples) >= _MOST_STEPS:
+            return way._replace(fate=FAILED)
+        fastest = 0.5 * mass * float(np.max(taken.step.speed**2))
+        way = Leg(
+            _after(course, way.place, taken, sign),
+            _fate(frame, taken, sign),
+            max(way.fastest, fastest),
+            way.pull_work + float(taken.step.pull[-1]),
+            [*way.samples, _drawn(course, way.place, taken)],
+        )
+        if taken.event == MARK and taken.mark == course.rest[1] and sign < 0 and not near:
+            near = way
+        if near is not None and _creeps(course, near, way):
+            return _at_rest(course, near)
+        if not way.fate and _stands(frame, way):
+            return _at_rest(course, way)._replace(fate=STOPPED)
+    return way
+
+
+def _fate(frame: Frame, taken: Taken, sign: int) -> str:
+    if taken.event == TURN:
+        return TURNED
+    low, high = frame.ends
+    if taken.event == MARK and taken.mark == (low if sign < 0 else high):
+        return FAILED if sign < 0 else LEFT
+    return ""
+
+
+def _drawn(course: Course, place: Place, taken: Taken) -> Samples:
+    """The points of a step."""
+    done = taken.step
+    lost = place.lost + _lost(course, place.here, taken)
+    time = place.time + taken.span * NODES_IN_TIME
+    columns = done.separation, done.speed, done.rows, lost
+    return Samples(time, *(column[1:] for column in columns))
+
+
+def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
+    """Energy lost within a step, by name [J]."""
+    late, done = course.frame.contact.late, taken.step
+    formed, broken = course.losses
+    bonds = done.rows[:, quantities(course.frame.contact.told).bonds]
+    gone = np.maximum(bonds[0] - bonds, 0.0) * broken
+    by_law = np.maximum(bonds - bonds[0], 0.0) * formed + gone
+    by_law[:, late] = done.late if here.forming else gone[:, late]
+    gas = [done.heat[:, None]] if course.frame.body.film is not None else []
+    return np.concatenate([by_law, *gas], axis=1)
+
+
+def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
+    """Where a step leaves a body, with the bonds that its end makes and breaks."""
+    frame, done = course.frame, taken.step
+    goal = frame.forming[frame.contact.late]
+    here = place.here._replace(
+        separation=done.separation[-1],
+        speed=done.speed[-1],
+        acceleration=done.acceleration[-1],
+        threshold=done.threshold[-1],
+    )
+    lost = place.lost + _lost(course, place.here, taken)[-1]
+    if taken.event == TURN:
+        here = _turned(frame, here._replace(speed=np.zeros(())), sign)
+    elif taken.event == SWITCH:
+        here = here._replace(threshold=here.separation - goal, forming=np.asarray(False))
+    elif taken.event == MARK:
+        here = here._replace(separation=np.asarray(taken.mark))
+        if sign < 0 and here.separation <= here.threshold + goal + frame.close:
+            here = here._replace(forming=np.asarray(True))
+    if frame.contact.told.discrete and taken.event in (MARK, BOND):
+        here, gone = _snapped(course, here, taken.event, sign)
+        lost = lost + gone
+    return Place(here, place.time + taken.span, taken.wish, lost)
+
+
+def _turned(frame: Frame, here: Here, sign: int) -> Here:
+    """The memory after a turn."""
+    contact = frame.contact
+    memory = jax.tree_util.tree_map(np.asarray, _remember(contact, here))
+    goal = here.separation - frame.forming[contact.late]
+    breaking = here.separation - frame.breaking[contact.late]
+    # At the deepest point a threshold that follows at once is there already.
+    behind = here.forming & ((sign > 0) | (here.threshold > goal + frame.close))
+    threshold = np.maximum(here.threshold, breaking)
+    return here._replace(memory=memory, threshold=threshold, forming=behind)
+
+
+def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, np.ndarray]:
+    """A smooth body's bonds made or broken at a place, and the energy lost by name [J]."""
+    frame, late = course.frame, course.frame.contact.late
+    formed, broken = course.losses
+    place, held = here.separation, here.memory > 0.5
+    made = ~held & (place <= frame.forming + frame.close) & (sign < 0)
+    gone = held & (place >= frame.breaking - frame.close) & (sign > 0)
+    made[late] = event == BOND
+    lost = np.where(made, formed, 0.0) + np.where(gone, broken, 0.0)
+    if made[late]:
+        lost[late] = float(_bond_loss(frame.contact, place))
+        here = here._replace(threshold=np.zeros(()))
+    memory = np.where(made, 1.0, np.where(gone, 0.0, here.memory))
+    rest = np.zeros(len(frame.body.mechanisms))
+    return here._replace(memory=memory), np.concatenate([lost, rest])
+
+
+def _kinetic(frame: Frame, place: Place) -> float:
+    return 0.5 * float(frame.body.mass) * float(place.here.speed) ** 2
+
+
+def _stands(frame: Frame, way: Leg) -> bool:
+    """Whether the film has stopped a body where nothing moves it; see :data:`STILL`."""
+    body = frame.body
+    if body.film is None or float(body.weight) > 0.0:
+        return False
+    released = float(body.kinetic)
+    push = abs(float(way.samples[-1].rows[-1, FORCE]) * float(body.release))
+    return _kinetic(frame, way.place) <= _SLOW**2 * released and push <= STILL * released
+
+
+def _creeps(course: Course, near: Leg, way: Leg) -> bool:
+    """Whether a body that came near its rest stays there."""
+    still, goal = course.rest
+    place = float(way.place.here.separation)
+    kinetic = _kinetic(course.frame, near.place)
+    if way.fate == TURNED:
+        slow = bool(slow_at(course.frame.body, kinetic, way.fastest, course.rest))
+        return slow and place > still - (goal - still)
+    slow = _kinetic(course.frame, way.place) < _SPENT * kinetic
+    return slow and place > still
+
+
+def _at_rest(course: Course, near: Leg) -> Leg:
+    """A leg that ends where the body came near its rest; what is left goes to the gas."""
+    place = near.place
+    lost = place.lost.copy()
+    lost[-1] += _kinetic(course.frame, place)
+    last = near.samples[-1]
+    speed, losses = last.speed.copy(), last.lost.copy()
+    speed[-1], losses[-1] = 0.0, lost
+    place = place._replace(here=place.here._replace(speed=np.zeros(())), lost=lost)
+    samples = [*near.samples[:-1], last._replace(speed=speed, lost=losses)]
+    return near._replace(place=place, fate=CREPT, samples=samples)

@@ -1,0 +1,140 @@
+"""A motion that was stepped in time, as a time series."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import legval
+
+from .._jax import jnp
+from ..laws.law import as_float64
+from .curve_table import CENTRAL, FORCE, TOUCHING
+from .record import Body
+from .stepped_phase import Leg, Samples
+from .time_collocation import STAGES
+from .time_series import Series
+from .time_stepping import KNOTS, TO_SERIES
+from .unloading import Unloading
+
+
+class Trajectory(NamedTuple):
+    """A motion in time.
+
+    Attributes
+    ----------
+    series
+        Its samples.
+    lost
+        Energy lost since the release [J], by law, then by drag, shape (samples, names).
+    """
+
+    series: Series
+    lost: np.ndarray
+
+    @classmethod
+    def of(cls, body: Body, release: Samples, legs: list[Leg]) -> Trajectory:
+        """The trajectory of a motion from its release, two legs an impact."""
+        drags = len(body.mechanisms)
+        parts, heats, phases = [release], [np.zeros((1, drags))], [np.zeros(1, int)]
+        laws = release.lost.shape[1] - drags
+        for number, way in enumerate(legs):
+            begun = parts[-1].lost[-1, laws:]
+            for samples in way.samples:
+                parts.append(samples)
+                heats.append(samples.lost[:, laws:] - begun)
+                phases.append(np.full(samples.time.size, number))
+        whole = Samples.joined(parts)
+        drag = np.zeros((whole.time.size, drags))
+        if body.film is not None:
+            drag[:, 0] = body.film.drag(whole.rows[:, CENTRAL])
+        series = Series(
+            whole.time, whole.separation, whole.speed, whole.rows, np.concatenate(heats), drag,
+            np.concatenate(phases),
+        )  # fmt: skip
+        return cls(series, whole.lost)
+
+    def until(self, limit: float) -> Trajectory:
+        """The samples up to a time limit [s]."""
+        kept = self.series.time <= limit
+        series = Series(*(column[kept] for column in self.series))
+        return Trajectory(series, self.lost[kept])
+
+    def passing(self, place: float, mass: float) -> tuple[np.ndarray, np.ndarray]:
+        """Kinetic energies [J] at a separation [m] on each way in and out; NaN where not passed."""
+        x, phase = self.series.separation, self.series.phase
+        count = 2 * (1 + int(phase[-1]) // 2)
+        found = np.full(count, np.nan)
+        passed = np.flatnonzero((x[:-1] - place) * (x[1:] - place) <= 0.0)
+        for k in passed[::-1]:
+            found[phase[k + 1]] = self._kinetic(k, place, mass)
+        return found[0::2], found[1::2]
+
+    def contact_time(self, place: float) -> float:
+        """Time between passing a separation [m] on the first way in and out [s]; NaN where not.
+
+        Between samples by Hermite's cubic of separation and speed.
+        """
+        from scipy.interpolate import CubicHermiteSpline
+
+        along, found = self.series, []
+        for phase in (0, 1):
+            x = along.separation - place
+            passed = np.flatnonzero((x[:-1] * x[1:] <= 0.0) & (along.phase[1:] == phase))
+            if not passed.size:
+                return np.nan
+            k = passed[-1 if phase else 0]
+            here = slice(k, k + 2)
+            cubic = CubicHermiteSpline(along.time[here], x[here], along.speed[here])
+            roots = cubic.roots(extrapolate=False)
+            found.append(roots[0] if roots.size else along.time[k + 1])
+        return float(found[1] - found[0])
+
+    def unloading(self, bonds: slice) -> Unloading:
+        """The tension on the first way out, as it was met: it depends on load and rate.
+
+        Between samples force, speed and separation are Akima's polynomials of time. ``bonds`` are
+        the columns of the bonds.
+        """
+        from scipy.interpolate import Akima1DInterpolator
+
+        there = np.flatnonzero(self.series.phase == 1)
+        points = np.concatenate([there[:1] - 1, there])
+        time, first = np.unique(self.series.time[points], return_index=True)
+        points = points[first]
+        force = self.series.rows[points, FORCE]
+        if time.size < 2 or not np.min(force) < 0.0:
+            return _unloading(0.0, np.nan, 0.0, 0.0, False)
+        along = Akima1DInterpolator(time, force)
+        power = Akima1DInterpolator(time, force * self.series.speed[points]).antiderivative()
+        rates = along.derivative().roots(extrapolate=False)
+        turns = np.concatenate([time, rates[np.isfinite(rates)]])
+        lowest = turns[np.argmin(along(turns))]
+        zeros = along.roots(extrapolate=False)
+        begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
+        place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
+        work = float(np.max(power(begins)) - power(time[-1]))
+        rows = self.series.rows[points[np.argmin(np.abs(time - lowest))]]
+        held = float(max(rows[TOUCHING], np.max(rows[bonds], initial=0.0)))
+        return _unloading(-float(along(lowest)), float(place), work, held, True)
+
+    def _kinetic(self, k: int, place: float, mass: float) -> float:
+        """Kinetic energy [J] between two samples, by the polynomials of their step."""
+        from scipy.optimize import brentq
+
+        first = STAGES * (k // STAGES)
+        points = slice(first, first + STAGES + 1)
+        there = TO_SERIES @ (self.series.separation[points] - place)
+        speed = TO_SERIES @ self.series.speed[points]
+        low, high = 2.0 * KNOTS[k - first] - 1.0, 2.0 * KNOTS[k - first + 1] - 1.0
+        x = brentq(lambda x: legval(x, there), low, high, xtol=1e-15)
+        return float(0.5 * mass * legval(x, speed) ** 2)
+
+
+def _unloading(
+    pull_off: float, separation: float, work: float, held: float, depends: bool
+) -> Unloading:
+    return Unloading(
+        as_float64(pull_off), as_float64(separation), as_float64(work), as_float64(held),
+        jnp.asarray(depends),
+    )  # fmt: skip

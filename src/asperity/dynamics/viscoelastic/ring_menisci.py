@@ -1,0 +1,143 @@
+r"""Menisci that take time on rings: each ring has its own threshold, which lags behind its gap.
+
+While h - g_form is below a threshold b, db/dt = (h - g_form - b)/time; above that b stays, until
+breaking takes it along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._jax import jax, jnp
+from ...contact.delayed_formation import LateContact
+from ...interface.interface import Memory as Thresholds
+from ...interface.layers import Surfaces
+
+Holding = Callable[[jax.Array], Thresholds]
+"""The memory at given separations of the rings."""
+
+_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(16)
+_FRACTIONS, _SHARES = 0.5 * (_GAUSS + 1.0), 0.5 * _WEIGHT
+_HALVINGS = 60
+
+
+class Waiting(NamedTuple):
+    """The menisci of rings at rest relative to one another, within a step.
+
+    Attributes
+    ----------
+    late
+        What takes time.
+    surfaces
+        The surfaces with their menisci told.
+    """
+
+    late: LateContact
+    surfaces: Surfaces
+
+    def goal(self, gaps: jax.Array) -> jax.Array:
+        """What the thresholds fall towards [m]."""
+        return gaps - self.late.law.forming_gap
+
+    def rate(self, gaps: jax.Array, held: Thresholds) -> jax.Array:
+        """Rate of the thresholds [m/s], 0 or negative."""
+        behind = self.goal(gaps) - held[self.late.late]
+        return jnp.minimum(behind, 0.0) / self.late.time
+
+    def holding(self, held: Thresholds, known: jax.Array, span: jax.Array) -> Holding:
+        """Thresholds at a stage, by what is ``known`` of their change and its rate for ``span``."""
+        begun, gain = held[self.late.late] + known, span / self.late.time
+
+        def at(gaps: jax.Array) -> Thresholds:
+            goal = self.goal(gaps)
+            lags = (begun + gain * goal) / (1.0 + gain)
+            return self.late.with_threshold(held, jnp.where(goal < begun, lags, begun))
+
+        return at
+
+    def power(
+        self, gaps: jax.Array, held: Thresholds, rate: jax.Array, around: jax.Array
+    ) -> tuple[jax.Array, jax.Array]:
+        """Power lost per area on menisci that form [W/m^2] at the rings, and beyond them [W]."""
+        k = self.late.late
+        loss = self.late.loss(gaps - held[k])
+
+        def bonds(threshold: jax.Array) -> tuple[jax.Array, jax.Array]:
+            told = self.late.with_threshold(held, threshold)
+            last = tuple(b[-1:] for b in told)
+            outside = self.surfaces.measure(gaps[-1:], last, lift=1).bonds[k, 0]
+            return self.surfaces.measure(gaps, told).bonds[k], outside
+
+        _, (inside, outside) = jax.jvp(bonds, (held[k],), (rate,))
+        return inside[:-1] * loss[:-1], around * outside * loss[-1]
+
+    def pressing(self, gaps: jax.Array, held: Thresholds, change: jax.Array) -> jax.Array:
+        """Pressure [Pa] that a change of the thresholds [m] makes."""
+
+        def pressure(threshold: jax.Array) -> jax.Array:
+            return self.surfaces.pressure(gaps, self.late.with_threshold(held, threshold))
+
+        pressed: jax.Array = jax.jvp(pressure, (held[self.late.late],), (change,))[1]
+        return pressed
+
+
+class Flight(NamedTuple):
+    """A goal that moves on a parabola: where it starts [m], its speed, and how that changes."""
+
+    begin: np.ndarray
+    speed: float | np.ndarray
+    gravity: float
+
+    def goal(self, time: np.ndarray) -> np.ndarray:
+        """The goal after a time [s]."""
+        return self.begin + time * (self.speed - 0.5 * self.gravity * time)
+
+    def follow(self, threshold: np.ndarray, span: float, pace: float) -> np.ndarray:
+        """Thresholds after ``span`` [s], on a way that turns nowhere, with a ``pace`` [1/s]."""
+        if span <= 0.0:
+            return threshold
+        lags = self.goal(np.asarray(0.0)) < threshold
+        if np.all(self.speed - 0.5 * self.gravity * span > 0.0):
+            end = self._lag(threshold, np.asarray(span), pace)
+            met = self._met(threshold, span, pace)
+            end = np.where(self.goal(np.asarray(span)) < end, end, self._lag(threshold, met, pace))
+            return np.where(lags, end, threshold)
+        fall = np.maximum(self.begin - threshold, 0.0)
+        root = np.sqrt(self.speed**2 + 2.0 * self.gravity * fall)
+        start = np.where(fall > 0.0, 2.0 * fall / np.where(fall > 0.0, root - self.speed, 1.0), 0.0)
+        start = np.minimum(start, span)
+        later = Flight(self.goal(start), self.speed - self.gravity * start, self.gravity)
+        end = later._lag(threshold, span - start, pace)
+        return np.where(self.goal(np.asarray(span)) < threshold, end, threshold)
+
+    def _lag(self, threshold: np.ndarray, time: np.ndarray, pace: float) -> np.ndarray:
+        """Thresholds that lag behind throughout."""
+        s = pace * time
+        once, twice, thrice = _phi(s)
+        bent: np.ndarray = self.speed * time * twice - self.gravity * time**2 * thrice
+        return threshold + s * ((self.begin - threshold) * once + bent)
+
+    def _met(self, threshold: np.ndarray, span: float, pace: float) -> np.ndarray:
+        """When a goal that rises meets its threshold."""
+        low, high = np.zeros_like(threshold), np.full_like(threshold, span)
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            below = self.goal(middle) < self._lag(threshold, middle, pace)
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return low
+
+
+def _phi(s: np.ndarray) -> tuple[np.ndarray, ...]:
+    """phi_k(s) = integral of exp(-s (1 - x)) x^(k-1)/(k-1)! over x from 0 to 1, k = 1, 2, 3."""
+    s = np.asarray(s, float)
+    near = np.minimum(s, 1.0)[..., None]
+    few = np.exp(-near * (1.0 - _FRACTIONS)) * _SHARES
+    short = few.sum(-1), (few * _FRACTIONS).sum(-1), (0.5 * few * _FRACTIONS**2).sum(-1)
+    far = np.maximum(s, 1.0)
+    once = -np.expm1(-far) / far
+    twice = (1.0 - once) / far
+    long = once, twice, (0.5 - twice) / far
+    return tuple(np.where(s < 1.0, a, b) for a, b in zip(short, long, strict=True))

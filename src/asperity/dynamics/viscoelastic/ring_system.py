@@ -1,0 +1,182 @@
+"""Rings under a rough body on a half-space that creeps, and where they lie."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..._jax import jax, jnp
+from ...contact.delayed_formation import LateContact
+from ...contact.elastic import ElasticContact
+from ...contact.equilibrium import compliance
+from ...contact.viscoelastic import Creep
+from ...halfspace import ring_mesh
+from ...interface.interface import Memory as Thresholds
+from ...laws.law import Real
+from ...numerics.compilation import kept
+from .ring_menisci import Holding, Waiting
+
+_CLOSE = 1e-13  # change of a separation that is small enough, relative to heights and itself
+_STEPS = 30
+
+
+@kept
+class Here(NamedTuple):
+    """Where a body and its rings are.
+
+    Attributes
+    ----------
+    separation, speed
+        Of the rigid body [m], and positive apart [m/s].
+    gaps
+        Separation of the mean planes at the rings and at the mesh's end [m].
+    crept
+        Pressure that has crept, c, at the rings [Pa].
+    thresholds
+        Memory of the bonds, at the rings and at the mesh's end.
+    """
+
+    separation: Real
+    speed: Real
+    gaps: Real
+    crept: Real
+    thresholds: Thresholds
+
+
+class Bulk(NamedTuple):
+    """What the rings' displacement and force are made of."""
+
+    contact: ElasticContact
+    late: LateContact | None
+    size: jax.Array
+    rows: jax.Array
+    area: jax.Array
+    around: jax.Array
+    excess: jax.Array
+    pace: jax.Array
+
+    @classmethod
+    def of(cls, creep: Creep, size: jax.Array) -> Bulk:
+        contact: Any = creep.contact
+        mesh = ring_mesh(contact.rings)
+        rows = compliance(contact.rings)[:, :-1]
+        around = jnp.asarray(2.0 * pi * contact.shape.radius)
+        area = jnp.asarray(mesh.area) * size**2
+        excess, pace = 1.0 / creep.ratio - 1.0, creep.ratio / creep.time
+        rows = rows * (size / contact.modulus)
+        return cls(contact, creep.late, size, rows, area, around, excess, pace)
+
+    @property
+    def rise(self) -> jax.Array:
+        """Rise of the body's surface at the rings and at the mesh's end [m]."""
+        mesh = ring_mesh(self.contact.rings)
+        return self.contact.shape.rise(self.size * np.append(mesh.radius, mesh.end))
+
+    def pressed(self, gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
+        """Pressure on the rings [Pa] and the whole force [N]."""
+        pressure = self.contact.interface.pressure(gaps, held)
+        outside = self.contact.interface.pressure(gaps[-1:], tuple(b[-1:] for b in held), lift=1)
+        return pressure[:-1], self.area @ pressure[:-1] + self.around * outside[0]
+
+    @property
+    def waiting(self) -> Waiting | None:
+        """Its menisci, where they take time."""
+        return None if self.late is None else Waiting(self.late, self.contact.interface)
+
+    def heat(self, pressure: jax.Array, crept: jax.Array) -> jax.Array:
+        """Power that the dashpots take [W]."""
+        late = pressure - crept
+        return self.excess * self.pace * ((self.area * late) @ (self.rows[:-1] @ late))
+
+
+@kept
+class Freed(NamedTuple):
+    """Rings in flight.
+
+    Attributes
+    ----------
+    lift
+        Displacement that creep has left at the rings and at the mesh's end [m].
+    axis
+        The same at the axis [m].
+    stored
+        Energy that it holds [J].
+    """
+
+    lift: Real
+    axis: Real
+    stored: Real
+
+
+def freed(creep: Creep, size: Real, crept: Real) -> Freed:
+    """What creep has left on a mesh of a ``size`` [m], where nothing presses."""
+    bulk = Bulk.of(creep, jnp.asarray(size))
+    lift = bulk.excess * (bulk.rows @ crept)
+    stored = 0.5 * crept @ (bulk.area * lift[:-1])
+    return Freed(lift, jnp.asarray(ring_mesh(bulk.contact.rings).axis) @ lift[:-1], stored)
+
+
+class Rest(NamedTuple):
+    """Separations without pressure, what a pressure adds, and what the force adds to all."""
+
+    base: jax.Array
+    rows: jax.Array
+    lever: jax.Array
+
+
+def balanced(
+    bulk: Bulk, holding: Holding, rest: Rest, guess: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    """Separations that agree with their pressures, by Newton's method, and whether they do."""
+    surfaces = bulk.contact.interface
+    scale = surfaces.heights.rms
+
+    def iterate(carry: tuple[jax.Array, jax.Array, jax.Array]) -> Any:
+        gaps, _, count = carry
+
+        def pressures(gaps: jax.Array) -> jax.Array:
+            return surfaces.pressure(gaps, holding(gaps))
+
+        pressure, slope = jax.jvp(pressures, (gaps,), (jnp.ones_like(gaps),))
+        _, force = bulk.pressed(gaps, holding(gaps))
+        missed = gaps - rest.base - rest.rows @ pressure[:-1] - rest.lever * force
+        # The force outside the mesh is the pressure's integral from its end.
+        by_gap = jnp.append(bulk.area * slope[:-1], -bulk.around * pressure[-1])
+        inner = jnp.pad(rest.rows * slope[:-1], ((0, 0), (0, 1)))
+        matrix = jnp.eye(gaps.size) - inner - rest.lever * by_gap
+        move = jnp.linalg.solve(matrix, missed[:, None])[:, 0]
+        change = jnp.max(jnp.abs(move) / (scale + jnp.abs(gaps)))
+        return gaps - move, change, count + 1
+
+    def goes_on(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
+        return (carry[1] > _CLOSE) & (carry[2] < _STEPS)
+
+    begin = (guess, jnp.asarray(jnp.inf), jnp.asarray(0))
+    gaps, change, _ = jax.lax.while_loop(goes_on, iterate, begin)
+    return gaps, change <= 1e3 * _CLOSE
+
+
+def row_of(bulk: Bulk, here: Here) -> jax.Array:
+    """Quantities of the contact in one row, without its field; what creep takes is 0."""
+    surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
+    inside = surfaces.measure(here.gaps, here.thresholds)
+    last = tuple(b[-1:] for b in here.thresholds)
+    outside = surfaces.measure(here.gaps[-1:], last, lift=1)
+
+    def whole(inner: jax.Array, outer: jax.Array) -> jax.Array:
+        return inner[..., :-1] @ bulk.area + bulk.around * outer[..., 0]
+
+    parts = whole(inside.parts, outside.parts)
+    pressure = jnp.sum(inside.parts, axis=0)[:-1]
+    bent = pressure @ (bulk.area * (bulk.rows[:-1] @ pressure))
+    crept = here.crept @ (bulk.area * (bulk.rows[:-1] @ here.crept))
+    stored = whole(inside.energy, outside.energy) + 0.5 * (bent + bulk.excess * crept)
+    force = jnp.sum(parts)
+    pull = force - bulk.contact.elastic_part(parts)
+    central = jnp.asarray(mesh.axis) @ here.gaps[:-1]
+    head = [force, pull, stored, central, whole(inside.touching, outside.touching), bulk.size]
+    bonds = whole(inside.bonds, outside.bonds)
+    taken = jnp.zeros(1 if bulk.late is None else 0)
+    return jnp.concatenate([jnp.stack(head), bonds, taken, parts])

@@ -1,0 +1,292 @@
+"""A rough body on a half-space that creeps, from one turning point to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf, sqrt
+from typing import Any
+
+import numpy as np
+
+from ..._jax import jax, jnp
+from ...contact.continuation import first_size
+from ...contact.elastic import ElasticContact
+from ...contact.viscoelastic import Creep
+from ...interface.interface import Memory as Thresholds
+from ...numerics.compilation import Program
+from ..curve_table import CENTRAL, STORED, quantities
+from ..record import Body
+from ..stepped_phase import CREPT, FAILED, LEFT, TURNED, Samples
+from .ring_menisci import Flight
+from .ring_step import Step, step
+from .ring_system import Freed, Here, freed
+from .sample_times import flight_times
+
+TOLERANCE = 1e-9
+"""Error of a step, relative to heights, speed and energy of the impact."""
+
+_MOST = 20_000  # steps of a way
+_FIRST = 0.02  # rms heights: the way of the first step into the forces
+_STRIDE = 0.5  # rms heights: the longest way of one step
+_POLISH = 12  # of the length of a step that ends at a turn
+_SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
+
+_step = Program(step)
+_freed = Program(freed)
+
+
+class RoughBounce:
+    """A rough body that falls on a half-space that creeps.
+
+    Parameters
+    ----------
+    creep, body
+        The half-space with its contact, and what falls.
+    size
+        Size of the mesh of rings [m].
+    ends
+        Separation at which it rests, how close counts as there, and where it has left [m].
+    asked
+        Called before each step; it may raise to stop.
+    """
+
+    def __init__(
+        self,
+        creep: Creep,
+        body: Body,
+        size: float,
+        ends: tuple[float, float, float],
+        asked: Callable[[], None],
+    ) -> None:
+        told: Any = creep.contact
+        self._contact: ElasticContact = told
+        self.creep, self.body, self.size, self.ends, self._asked = creep, body, size, ends, asked
+        self._rms, self._reach = float(told.interface.heights.rms), float(told.reach)
+        self._rise = np.asarray(_rise(told, np.asarray(size, float)))
+        self._rate = float(creep.ratio / creep.time)
+        self._gravity, self._mass = float(body.gravity), float(body.mass)
+        rings = told.rings
+        self.layout = quantities(told)
+        self._late = creep.late
+        self.lost = np.zeros(len(told.mechanisms) + (creep.late is None))
+        self.time, self.fit = 0.0, 1.0
+        gaps = float(body.release) + self._rise
+        thresholds = told.interface.fresh(np.zeros(rings + 1))
+        if creep.late is not None:  # in equilibrium with the vapour
+            goal = gaps - float(creep.late.law.forming_gap)
+            thresholds = creep.late.with_threshold(thresholds, jnp.asarray(goal))
+        here = Here(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
+        self.here: Here = jax.tree_util.tree_map(np.asarray, here)
+        # A body may be let go at rest where forces begin; a fall by a height is its first scale.
+        speed = sqrt(float(body.speed) ** 2 + 2.0 * self._gravity * self._rms)
+        self.fastest = 0.5 * self._mass * speed**2
+        self._span = _FIRST * self._rms / speed
+
+    def start(self) -> Samples:
+        """The sample of the release."""
+        sample = self._flown(self._left(), np.zeros(1))
+        if float(self.here.separation) > self._edge():
+            return sample
+        done = self._try(0.0)  # something acts already: the rings come to their equilibrium
+        self.here = done.here
+        return sample._replace(rows=done.row[None])
+
+    def way(self, inwards: bool) -> tuple[str, Samples]:
+        """The samples until the body turns, and how they end."""
+        parts: list[Samples] = [self._flown(self._left(), np.zeros(0))]
+        for _ in range(_MOST):
+            self._asked()
+            free = float(self.here.separation) > self._edge()
+            fate, samples = (self._fly if free else self._go)(inwards)
+            parts.append(samples)
+            if fate:
+                return fate, Samples.joined(parts)
+        return FAILED, Samples.joined(parts)
+
+    def _left(self) -> Freed:
+        """What creep has left."""
+        answer = _freed(self.creep, np.asarray(self.size), self.here.crept)
+        return jax.tree_util.tree_map(np.asarray, answer)
+
+    def _edge(self) -> float:
+        """Separation beyond which nothing acts [m]: the reach, and what stands out of the bulk."""
+        lift = self.here.gaps - self._rise - self.here.separation
+        return self._reach + max(0.0, -float(np.min(lift)))
+
+    def _fly(self, inwards: bool) -> tuple[str, Samples]:
+        """Without forces: to the apex, or to where they begin."""
+        place, speed, g = float(self.here.separation), float(self.here.speed), self._gravity
+        left = self._left()
+        if inwards:
+            fall = place - self._edge() * (1.0 - 1e-9)
+            fast = sqrt(speed**2 + 2.0 * g * fall)
+            span, fate = 2.0 * fall / (fast - speed), ""
+        elif g > 0.0:
+            span, fate = speed / g, TURNED
+        else:
+            span, fate = max(self.ends[2] - place, 0.0) / speed, LEFT
+        fast = max(abs(speed), abs(speed - g * span), 1e-300)
+        scale = min(1.0 / self._rate, self._rms / fast)
+        samples = self._flown(left, flight_times(span, scale))
+        share = np.exp(-self._rate * span)
+        thresholds = self._waited(span)
+        place = float(samples.separation[-1])
+        self.here = self.here._replace(
+            thresholds=thresholds,
+            separation=np.asarray(place),
+            speed=np.asarray(0.0 if fate == TURNED else samples.speed[-1]),
+            crept=self.here.crept * share,
+            gaps=place + self._rise + left.lift * share,
+        )
+        self.time, self.lost = float(samples.time[-1]), samples.lost[-1].copy()
+        self._span = _FIRST * self._rms / max(abs(float(samples.speed[-1])), 1e-300)
+        self.fastest = max(self.fastest, 0.5 * self._mass * float(samples.speed[-1]) ** 2)
+        return fate, samples
+
+    def _waited(self, span: float) -> Thresholds:
+        """Thresholds after a flight: those of menisci that take time go on falling, or are left.
+
+        All others stand where they are, until the body comes back.
+        """
+        held, late, here = self.here.thresholds, self._late, self.here
+        if late is None:
+            return held
+        form, part = float(late.law.forming_gap), float(late.law.breaking_gap)
+        flight = Flight(np.asarray(here.gaps) - form, float(here.speed), self._gravity)
+        after = flight.follow(np.asarray(held[late.late]), span, 1.0 / float(late.time))
+        return late.with_threshold(
+            held, np.maximum(after, flight.goal(np.asarray(span)) + form - part)
+        )
+
+    @property
+    def threshold(self) -> float:
+        """Threshold of the menisci that take time at the mesh's end [m], 0 where none do."""
+        return 0.0 if self._late is None else float(self.here.thresholds[self._late.late][-1])
+
+    def _flown(self, left: Freed, spans: np.ndarray) -> Samples:
+        """Samples of a flight at times from now."""
+        share = np.exp(-self._rate * spans)
+        place = float(self.here.separation) + spans * (
+            float(self.here.speed) - 0.5 * self._gravity * spans
+        )
+        rows = np.zeros((spans.size, self.layout.components.stop + (self._late is None)))
+        rows[:, STORED] = float(left.stored) * share**2
+        rows[:, CENTRAL] = place + float(left.axis) * share
+        lost = np.repeat(self.lost[None], spans.size, axis=0)
+        if self._late is None:
+            lost[:, -1] += float(left.stored) * (1.0 - share**2)
+        self._book(rows, lost)
+        speed = float(self.here.speed) - self._gravity * spans
+        return Samples(self.time + spans, place, speed, rows, lost)
+
+    def _book(self, rows: np.ndarray, lost: np.ndarray) -> None:
+        """What creep has taken, in its column."""
+        if self._late is None:
+            rows[:, self.layout.bonds.stop] = lost[:, -1]
+
+    def _go(self, inwards: bool) -> tuple[str, Samples]:
+        """One step within reach of the forces, that ends where the body turns."""
+        done, span = self._taken(inwards)
+        if done is None:
+            return FAILED, self._flown(self._left(), np.zeros(0))
+        self.here, self.fit = done.here, float(done.fit)
+        self.time += span
+        self.lost = self.lost + done.lost
+        rows = done.row[None].copy()
+        self._book(rows, self.lost[None])
+        speed = float(self.here.speed)
+        self.fastest = max(self.fastest, 0.5 * self._mass * speed**2)
+        fate = ""
+        if abs(speed) <= self._still:
+            fate, speed = TURNED, 0.0
+            self.here = self.here._replace(speed=np.asarray(0.0))
+        elif self._rests():
+            fate = CREPT
+        time, place = np.array([self.time]), np.array([float(self.here.separation)])
+        return fate, Samples(time, place, np.array([speed]), rows, self.lost[None])
+
+    @property
+    def _still(self) -> float:
+        """Speed that counts as none [m/s]."""
+        return 1e-11 * sqrt(2.0 * self.fastest / self._mass)
+
+    def _rests(self) -> bool:
+        """Whether the body is at rest, but for what is too slow to matter."""
+        rest, near, _ = self.ends
+        here = self.here
+        if not abs(float(here.separation) - rest) <= near:
+            return False
+        energy = 0.5 * self._mass * float(here.speed) ** 2
+        return energy <= _SPENT * self._mass * self._gravity * near
+
+    def _taken(self, inwards: bool) -> tuple[Step | None, float]:
+        """A step that is precise enough, and its length [s]."""
+        ahead = -1.0 if inwards else 1.0
+        span, least = self._span, 1e-9 * self._span
+        while span > least:
+            done = self._try(span)
+            error = self._error(done)
+            factor = 0.9 * max(error, 1e-9) ** -0.25 if np.isfinite(error) else 0.2
+            if error <= 1.0:
+                wish = span * min(factor, 2.0)
+                if ahead * float(done.here.speed) < -self._still:
+                    turn = self._turn(done, span, ahead)
+                    if turn is not None:
+                        self._span = max(0.5 * turn[1], 0.1 * span)
+                        return turn
+                    span *= 0.5
+                    continue
+                fast = max(abs(float(done.here.speed)), abs(float(self.here.speed)))
+                self._span = min(wish, _STRIDE * self._rms / max(fast, 1e-300))
+                return done, span
+            span *= min(max(factor, 0.1), 0.9)
+        return None, span
+
+    def _turn(self, done: Step, span: float, ahead: float) -> tuple[Step, float] | None:
+        """The step that ends where the speed is 0: a root between no step and this one."""
+        low, high = 0.0, span
+        at_low, at_high = ahead * float(self.here.speed), ahead * float(done.here.speed)
+        if at_low <= 0.0:  # it starts from a turn, and its slope decides
+            return None
+        for _ in range(_POLISH):
+            guess = span - float(done.here.speed) / float(done.rates[0])
+            if not low < guess < high:
+                guess = low + (high - low) * at_low / (at_low - at_high)
+            span, done = guess, self._try(guess)
+            value = ahead * float(done.here.speed)
+            if not done.solved:
+                return None
+            if abs(value) <= self._still:
+                return done, span
+            low, at_low = (span, value) if value > 0.0 else (low, at_low)
+            high, at_high = (high, at_high) if value > 0.0 else (span, value)
+        return done, span
+
+    def _try(self, span: float) -> Step:
+        done = _step(self.creep, self.body, np.asarray(self.size), self.here, np.asarray(span))
+        answer: Step = jax.tree_util.tree_map(np.asarray, done)
+        return answer
+
+    def _error(self, done: Step) -> float:
+        """Error of a step over what is allowed; infinite where it is not solved."""
+        if not done.solved or not np.all(np.isfinite(done.row)):
+            return inf
+        energy = max(self.fastest, 0.5 * self._mass * float(done.here.speed) ** 2)
+        speed = sqrt(2.0 * energy / self._mass)
+        scale = np.array([self._rms, speed, self._rms, energy])
+        return float(np.max(done.error / scale)) / TOLERANCE
+
+
+def _rise_of(contact: ElasticContact, size: Any) -> Any:
+    from ...contact.equilibrium import rise_of
+
+    return rise_of(contact, size, contact.rings)
+
+
+_rise = Program(_rise_of)
+
+
+def first_mesh(creep: Creep, lowest: float) -> float:
+    """Size of a mesh [m] to begin with, for a body that may come as low as a separation [m]."""
+    contact: Any = creep.contact
+    return float(first_size(contact, jnp.asarray(lowest)))

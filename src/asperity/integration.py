@@ -1,0 +1,361 @@
+"""A built problem flown: curves that meet the tolerance, a release outside contact, the motion."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ._jax import jax, jnp
+from .config import Case
+from .contact import Contact, ElasticContact, RigidContact
+from .contact.resolution import in_steps
+from .contact.viscoelastic import Creep, CreptContact
+from .dynamics import Body, Impacts, Limits, Motion, Table, fly, prepare, start
+from .dynamics.curve_table import FORCE, read_row
+from .dynamics.delayed_motion import fly as fly_late
+from .dynamics.output_shapes import foreseen
+from .dynamics.problem import CLEARANCE, Problem
+from .dynamics.record import ENDS, FLYING
+from .dynamics.release import TRIES, at_release, farther, negligible_force
+from .dynamics.static_equilibrium import Datum
+from .dynamics.stepped_phase import Ended
+from .dynamics.time_series import compile_ahead
+from .dynamics.viscoelastic import fly_creeping
+from .errors import InputError, Outcome, SimulationError
+from .numerics.compilation import AT_ONCE, Program, signature
+from .results.conversion import Flight, measure_ahead
+
+Report = Callable[[float, str], None]
+
+COMPILATION = "compilation"
+"""What is told once all is traced, and the compiler is waited for where it is not through."""
+
+_CHUNK, _QUICK = 20, 100  # impacts a compiled call: short enough for Ctrl-C, where all is quick
+_REFINEMENTS = (1, 2, 4, 8)  # of the panels, until the curves meet the tolerance
+_GAIN = 0.9  # of the error is left by four times the panels: where more is, no more would help
+_RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
+
+
+def silently(fraction: float, text: str) -> None:
+    """Report nothing."""
+
+
+def cut_in_steps(problem: Problem) -> Problem:
+    """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
+    creep = problem.creep
+    if creep is not None:
+        creep = dataclasses.replace(creep, contact=_in_steps(creep.contact))
+    return problem._replace(contact=_in_steps(problem.contact), creep=creep)
+
+
+def _in_steps(contact: Contact) -> Contact:
+    if isinstance(contact, CreptContact):
+        return CreptContact(_in_steps(contact.told))
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return contact
+    resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
+    return dataclasses.replace(contact, resolved=resolved)
+
+
+def flown(
+    case: Case,
+    problem: Problem,
+    tell: Report,
+    stop: threading.Event | None,
+    *,
+    many: bool = False,
+) -> Flight:
+    """The motion of what was built from a case.
+
+    Parameters
+    ----------
+    case, problem
+        A case, and what was built from it.
+    tell
+        Called with a fraction done and a line of text, now and then.
+    stop
+        Set from another thread, it ends the motion early.
+    many
+        Whether the ways back from reversals are tabulated first: that compiles longer, and pays
+        where many cases follow.
+
+    Raises
+    ------
+    InputError
+        If the release lies inside contact.
+    SimulationError
+        If the curves miss the tolerance, or the motion is stopped before its first impact.
+    """
+    limits = Limits.of(case.tolerance)
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=True, many=many)
+    return fly_prepared(problem, contact, (table, datum), limits, tell, stop)
+
+
+def fly_prepared(
+    problem: Problem,
+    contact: Contact,
+    curves: tuple[Table, Datum],
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion of a body whose force curves are there already; see :func:`flown`."""
+    if problem.late is None and problem.creep is None:
+        flight = _fly(problem.body, contact, *curves, limits, tell, stop)
+    else:
+        flight = _fly_stepped(problem, contact, curves, limits, tell, stop)
+    return flight._replace(body=problem.body)
+
+
+def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Datum]:
+    """Force curves over all that a body can reach, and the static equilibrium.
+
+    Parameters
+    ----------
+    contact, body
+        What moves on what.
+    many
+        As for :func:`flown`.
+    """
+    return _preparing(contact, many)(contact, body, many)
+
+
+def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
+    """The contact with its curves, and the motion as far as the first impact.
+
+    Parameters
+    ----------
+    case, problem
+        A case, and what was built from it.
+    tell
+        As ``progress`` of :func:`solve`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
+    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=False)
+    body = problem.body
+    tell(0.3, "first impact")
+    first, origin = _start(contact, body, table)
+    progress, rows = _fly_some(
+        contact, body, table, datum, origin, first, limits, _at_once(contact, body)
+    )
+    impacts = jax.tree_util.tree_map(np.asarray, rows)
+    return contact, Motion(impacts, progress, table, datum, origin)
+
+
+def _released(
+    case: Case, problem: Problem, limits: Limits, tell: Report, *, drawn: bool, many: bool = False
+) -> tuple[Problem, tuple[Contact, Table, Datum]]:
+    """A problem whose body is released outside contact, and its curves.
+
+    Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
+    without an [impact] table is not released by its user.
+    """
+    chosen = case.impact is not None and case.impact.release_gap is None
+    for _ in range(TRIES):
+        curves = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=drawn, many=many)
+        if not chosen:
+            break
+        body, table = problem.body, curves[1]
+        force, power, largest = (np.asarray(x) for x in _at_release(table, body))
+        limit = negligible_force(np.asarray(body.weight), largest, chosen=True)
+        if force <= limit:
+            break
+        release = farther(np.asarray(body.release), force, power, limit)
+        problem = problem._replace(body=dataclasses.replace(body, release=jnp.asarray(release)))
+    if case.impact is not None:
+        _check_release(problem, curves[1], chosen=chosen, many=many)
+    return problem, curves
+
+
+def _prepared(
+    problem: Problem,
+    tolerance: float,
+    limits: Limits,
+    tell: Report,
+    *,
+    drawn: bool,
+    many: bool = False,
+) -> tuple[Contact, Table, Datum]:
+    """Tables whose interpolation error meets the tolerance, by more panels where needed.
+
+    Meanwhile the motion compiles, with its drawing where it is to be drawn.
+    """
+    allowed, errors = tolerance, [np.inf, np.inf]
+    for factor in _REFINEMENTS:
+        tell(0.02, "tracing")
+        contact = problem.contact.refined(factor)
+        if not drawn or (problem.late is None and problem.creep is None):
+            _compile(contact, problem.body, limits, drawn=drawn, many=many)
+        else:
+            _preparing(contact, many).ahead(contact, problem.body, many)
+        tell(0.04, COMPILATION)
+        prepared = _preparing(contact, many).ready(contact, problem.body, many)
+        tell(0.06, "force curves")
+        table, datum = prepared()
+        error, allowed = float(table.error), max(tolerance, contact.blur)
+        if error <= allowed or error > _GAIN * errors[-2]:
+            break
+        errors.append(error)
+    if not error <= allowed:
+        raise SimulationError(
+            f"force curves reach a relative error of {error:.1e}, "
+            f"not `numerics.tolerance` = {tolerance:.1e}"
+        )
+    if not float(table.residual) <= _RESIDUAL:
+        raise SimulationError(
+            "pressure and deformation do not agree: relative force error "
+            f"{float(table.residual):.1e}. The contact has no equilibrium that follows "
+            "from the one before (strong adhesion on soft bodies folds it)"
+        )
+    return contact, table, datum
+
+
+def _compile(
+    contact: Contact, body: Body, limits: Limits, *, drawn: bool, many: bool = False
+) -> None:
+    """Compile the curves, the motion and, where wanted, its drawing and measures side by side.
+
+    The motion, which takes longest, first: where the shapes of the curves are known without.
+    """
+    curves = _foreseen(contact, many)
+    table, datum = curves or _preparing(contact, many).ahead(contact, body, many)
+    progress, origin = _start.ahead(contact, body, table)
+    end, impacts = _fly_some.ahead(
+        contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
+    )
+    if curves:
+        _preparing(contact, many).ahead(contact, body, many)
+    if drawn:
+        compile_ahead(body, table, impacts)
+        measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
+
+
+_FORESEEN: dict[Any, tuple[tuple[Table, Datum] | None]] = {}
+_MOST = 64  # kinds of contacts whose shapes are kept
+
+
+def _foreseen(contact: Contact, many: bool) -> tuple[Table, Datum] | None:
+    """Shapes of the curves, which take 5 ms to foresee, once for each kind of contact."""
+    key = signature(contact, many)
+    known = _FORESEEN.get(key)
+    if known is None:
+        if len(_FORESEEN) >= _MOST:
+            _FORESEEN.clear()
+        known = _FORESEEN[key] = (foreseen(contact, many),)
+    return known[0]
+
+
+def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Datum]]:
+    """The program of the curves: 10 ms slower and compiled 2 s sooner for one that deforms."""
+    return _prepare_at_once if isinstance(contact, ElasticContact) and not many else _prepare
+
+
+def _at_once(contact: Contact, body: Body) -> int:
+    """Impacts in one compiled call."""
+    if isinstance(contact, RigidContact) and not body.damped:
+        return _QUICK if getattr(contact.interface, "closed", False) else _CHUNK
+    return _CHUNK
+
+
+_prepare = Program(prepare)
+_prepare_at_once = Program(prepare, AT_ONCE)
+_start = Program(start, AT_ONCE)
+_at_release = Program(at_release, AT_ONCE)
+_fly_some = Program(fly, AT_ONCE)  # 0.8 s sooner at first, and then 1 to 9 ms later
+
+
+def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) -> None:
+    """A release within contact is refused: it would not be a fall."""
+    body = problem.body
+    release, weight = float(body.release), float(body.mass) * float(body.gravity)
+    force = abs(float(read_row(table, 0, release)[FORCE]))
+    largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
+    limit = float(negligible_force(np.asarray(weight), np.asarray(largest), chosen=chosen))
+    if force <= limit:
+        return
+    share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
+    at_rest = _at_rest(problem, many)
+    raise InputError(
+        f"`release_gap` must lie outside contact: the contact force there must be below {share} "
+        f"({limit:.3g} N), and is {force:.3g} N; {at_rest}got {release * 1e9:.6g} nm",
+        key="impact.release_gap",
+    )
+
+
+def _at_rest(problem: Problem, many: bool) -> str:
+    """Where the body would rest, seen from outside contact; empty where nothing holds it."""
+    body = problem.body
+    release = float(problem.contact.reach) + CLEARANCE
+    clear = Body(body.mass, body.gravity, release, body.speed)
+    prepared = _preparing(problem.contact, many)(problem.contact, clear, many)
+    place = float(prepared[1].equilibrium)
+    return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
+
+
+def _fly(
+    body: Body,
+    contact: Contact,
+    table: Table,
+    datum: Datum,
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion in chunks of impacts, so that it can be watched and stopped."""
+    progress, origin = _start(contact, body, table)
+    chunks: list[Impacts] = []
+    while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
+        given = (contact, body, table, datum, origin, progress, limits, _at_once(contact, body))
+        if not chunks:
+            tell(0.08, COMPILATION)
+        fly_on = _fly_some.ready(*given)
+        if not chunks:
+            tell(0.1, "motion")
+        progress, rows = fly_on()
+        chunks.append(jax.tree_util.tree_map(np.asarray, rows))
+        count = int(progress.made)
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+    if not chunks:
+        raise SimulationError("stopped before the first impact")
+    impacts = jax.tree_util.tree_map(lambda *parts: np.concatenate(parts), *chunks)
+    code = int(progress.outcome)
+    outcome = Outcome.INTERRUPTED if code == FLYING else ENDS[code]
+    return Flight(Motion(impacts, progress, table, datum, origin), contact, outcome)
+
+
+def _fly_stepped(
+    problem: Problem,
+    contact: Contact,
+    prepared: tuple[Table, Datum],
+    limits: Limits,
+    tell: Report,
+    stop: threading.Event | None,
+) -> Flight:
+    """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
+    body, creep, late = problem.body, problem.creep, problem.late
+    if late is not None and isinstance(contact, ElasticContact):
+        creep = Creep.none(late)
+    tell(0.1, "motion")
+
+    def made(count: int) -> None:
+        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+
+    try:
+        if creep is not None:
+            flown = fly_creeping(contact, creep, body, prepared, limits, made, stop)
+        else:
+            assert late is not None
+            flown = fly_late(contact, late, body, prepared, limits, made, stop)
+    except Ended as error:
+        raise SimulationError("stopped before the first impact") from error
+    motion, trajectory, outcome = flown
+    return Flight(motion, contact, outcome, trajectory)

@@ -1,0 +1,88 @@
+"""Bonds of a class of tip radius that differ from its branch of approach."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from .._jax import jax, jnp
+from ..laws.law import Law
+from ..numerics.polynomials import chebyshev_sum, from_points, local
+from ..surfaces.heights.distribution import Heights
+from .height_quadrature import Asked, between
+
+
+class ClassBonds(NamedTuple):
+    """What the bonds of one law add to the branch of approach of their class of radius.
+
+    Attributes
+    ----------
+    law, heights
+        The law and the heights of the class.
+    asked
+        What of.
+    pieces
+        Even pieces of a quadrature over these bonds (static).
+    """
+
+    law: Law
+    heights: Heights
+    asked: Asked
+    pieces: int
+
+    def at(self, threshold: jax.Array, places: jax.Array) -> jax.Array:
+        """At places [m] of any shape, with a threshold of the memory for each, or one for all."""
+        edges = self._edge(jnp.broadcast_to(places - threshold, places.shape))
+        return self._up_to(edges.ravel(), places.ravel()).reshape(-1, *places.shape)
+
+    def along(self, threshold: jax.Array, places: jax.Array, nodes: int) -> jax.Array:
+        """At places [m] of any shape on the way from one reversal, by polynomials of few nodes.
+
+        One up to where these bonds reach the branch of parting, and one beyond, however many
+        pieces other classes make of the way. Nothing is added below where they reach the branch
+        of approach. The first is one of the root of the distance to the branch of parting: bonds
+        let go at a fold.
+        """
+        low, high = jnp.min(places), jnp.max(places)
+        forms, end = threshold + self.law.forming_gap, threshold + self.law.breaking_gap
+        forming, breaking = (jnp.clip(place, low, high) for place in (forms, end))
+
+        first, last = _root(end - forming), _root(end - breaking)
+        root = last + (first - last) * _steps(nodes)
+        here = jnp.where(jnp.isfinite(end), end, 0.0) - root**2
+        x = local(last, first, _root(end - jnp.clip(places, forming, breaking)))
+        on_way = _read(self._up_to(self._edge(here - threshold), here), x)
+
+        beyond = breaking + (high - breaking) * _steps(nodes)
+        x = local(breaking, high, jnp.clip(places, breaking, high))
+        whole = jnp.asarray(self.law.breaking_gap, float)[None]
+        parted = _read(self._up_to(whole, beyond), x)
+        return jnp.where(places > forms, jnp.where(places <= end, on_way, parted), 0.0)
+
+    def _edge(self, gap: jax.Array) -> jax.Array:
+        return jnp.clip(gap, self.law.forming_gap, self.law.breaking_gap)
+
+    def _up_to(self, edges: jax.Array, places: jax.Array) -> jax.Array:
+        """By quadrature, for vectors; of ``edges`` there may be one for all."""
+        start = jnp.asarray(self.law.forming_gap, float)
+        return between(self.law, self.heights, start, edges, places, self.asked, self.pieces)
+
+
+def _root(x: jax.Array) -> jax.Array:
+    """Square root of what is positive and finite, else 0; with derivatives."""
+    fine = (x > 0.0) & (x < jnp.inf)
+    return jnp.where(fine, jnp.sqrt(jnp.where(fine, x, 1.0)), 0.0)
+
+
+def _steps(nodes: int) -> np.ndarray:
+    """Chebyshev points between 0 and 1."""
+    points: np.ndarray = 0.5 * (1.0 + chebyshev.chebpts1(nodes))
+    return points
+
+
+def _read(values: jax.Array, x: jax.Array) -> jax.Array:
+    """Polynomials through rows of values at Chebyshev points of [-1, 1], at x."""
+    series = from_points(values.shape[1]) @ values.T
+    return chebyshev_sum(series[(...,) + (None,) * x.ndim], x)

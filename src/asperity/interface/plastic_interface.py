@@ -1,0 +1,344 @@
+"""Many asperities that yield, between two planes: what was pressed flat stays flat."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import reduce
+from typing import NamedTuple
+
+import equinox as eqx
+import numpy as np
+
+from .._jax import jax, jnp
+from ..errors import InputError
+from ..laws.law import Law, Real, TruncatedPower, quantity, terms
+from ..laws.plastic import PlasticContact
+from ..surfaces.heights.distribution import Heights
+from ..surfaces.heights.panel_length import Fineness
+from .height_quadrature import Near
+from .interface import Means, Memory
+from .plastic_means import Asperities, means_at
+from .residual_profile import HIGHEST, Flattened, contact_means, flatten, in_reach, power_means
+from .virgin_loading import NODES, Loaded, first_loading
+
+PLASTIC = "plastic"
+"""Mechanism of the work that asperities keep."""
+
+_FEW_NODES = 4  # where a bound is asked for alone
+_MISSED = 0.01  # of it, at most
+_LADDER = 28  # panels on which contacts spring back that are not tabulated
+
+
+class _Ask(NamedTuple):
+    """A mean that is asked for: a term of the force or energy of a law, or a count of bonds."""
+
+    name: str
+    term: TruncatedPower
+    size: float
+    counts: bool
+
+
+class PlasticInterface(eqx.Module):
+    """Asperities of random height that yield, with other laws beside their contact.
+
+    Parameters
+    ----------
+    contact
+        Elastic-plastic contact of one asperity.
+    law
+        Laws of finite range beside it that pull in contact as at touch, each on the tip as it was
+        left; :class:`~asperity.laws.Sum` of none for none.
+    heights
+        Distribution of the heights before anything touched.
+    density
+        Asperities per area [1/m^2].
+    pressed
+        What a closest approach left, for :meth:`measure` at separations and memories after it.
+
+    Raises
+    ------
+    InputError
+        If a law contains the elastic force.
+
+    Notes
+    -----
+    An asperity of height z that was overlapped by z - h_min at closest approach h_min has the
+    effective height y = z - residual(z - h_min). Since y grows with z, the memory of contact is
+    h_min alone, and that of bonds a threshold of y each, as for
+    :class:`~asperity.interface.interface.Interface`. The work that contact keeps counts as bonds of
+    the first mechanism, of 1 J each, which form and never break.
+
+    A tip that was overlapped by D and springs back by S is flatter: its forces beside contact
+    grow by D/S to the power of the tip radius that their law has, so that the energy of the
+    area in contact is that at closest approach. It begins when the bodies part; what menisci
+    gain by it counts as their formation.
+
+    On a rigid paraboloid h - h_min is the same everywhere, so that ``lift`` 1 integrates means
+    over the separation as before.
+    """
+
+    contact: PlasticContact
+    law: Law
+    heights: Heights
+    density: Real = quantity()
+    pressed: Flattened | None = None
+
+    def __check_init__(self) -> None:
+        for law in terms(self.law):
+            if "elastic" in law.counts:
+                raise InputError(
+                    f"{type(law).__name__} and {type(self.contact).__name__} both contain the "
+                    "elastic force; it would count twice"
+                )
+
+    @property
+    def hysteretic(self) -> tuple[Law, ...]:
+        """The laws beside contact that remember, in the order of their thresholds."""
+        return tuple(law for law in terms(self.law) if law.hysteretic)
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names under which the losses of :meth:`losses` are booked."""
+        return (PLASTIC, *(law.mechanism for law in self.hysteretic))
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Mechanisms of the forces, elastic first: the contact's, whether it yields or not."""
+        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
+        return ("elastic", *sorted(names))
+
+    @property
+    def fineness(self) -> Fineness:
+        """How finely its curves are cut. Without values."""
+        return self.heights.fineness
+
+    @property
+    def blur(self) -> float:
+        """Relative error of curves below which nothing is gained. Without values."""
+        return self.heights.blur
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
+        return reduce(jnp.maximum, [law.reach for law in terms(self.law)], jnp.zeros(()))
+
+    @property
+    def last_kink(self) -> jax.Array:
+        """Gap [m] beyond which all laws are smooth."""
+        return jnp.max(jnp.stack([jnp.zeros(()), *(law.last_kink for law in terms(self.law))]))
+
+    @property
+    def only_bonded(self) -> bool:
+        """As for :class:`~asperity.interface.interface.Interface`: no law reaches without end."""
+        return True
+
+    @property
+    def yields(self) -> bool:
+        """Whether what was pressed once stays changed. Without values."""
+        return True
+
+    @property
+    def rungs(self) -> jax.Array:
+        """Separations above the closest approach [m] between which contacts spring back."""
+        if self.pressed is not None:
+            return self.pressed.rungs
+        last = 2.0 * jnp.asarray(self.heights.rms)
+        first = jnp.minimum(0.3 * self.contact.yield_overlap, 0.05 * last)
+        return first * (last / first) ** (np.arange(_LADDER) / (_LADDER - 1))
+
+    def touched(self, memory: Memory) -> jax.Array:
+        """Whether anything was pressed so that it stays changed."""
+        return jnp.any(memory[0] < jnp.inf)
+
+    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+        """The memory on an outermost branch: of bonds alone, the asperities stay as they are."""
+        deepest, *thresholds = memory
+        end = jnp.where(parting, -jnp.inf, jnp.inf)
+        return (deepest, *(jnp.full_like(b, end) for b in thresholds))
+
+    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        return [
+            b + jnp.where(parting, law.breaking_gap, law.forming_gap)
+            for law, b in zip(self.hysteretic, memory[1:], strict=True)
+        ]
+
+    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
+        if not self._in_powers:
+            means = self.measure(separation, self.fresh(), lift)
+        else:
+            means = self._approached(separation, lift, _FEW_NODES)
+        work = means.energy + means.bonds[0]
+        return work - _MISSED * jnp.abs(work)
+
+    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory of surfaces that have never touched, one row a mechanism."""
+        return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.mechanisms)
+
+    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+        """Memory of whole asperities whose bonds hold as far as they can."""
+        apart = jnp.full(jnp.shape(place), jnp.inf)
+        return (apart, *(-apart for _ in self.hysteretic))
+
+    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
+        """The memory after the separation moved monotonically to ``separation`` [m]."""
+        deepest, *thresholds = memory
+        pairs = zip(self.hysteretic, thresholds, strict=True)
+        bonds = (separation - _bond_gap(law, b, separation) for law, b in pairs)
+        return (jnp.minimum(deepest, separation), *bonds)
+
+    def measure(
+        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
+    ) -> Means:
+        """All means over the heights, as `Interface.measure` has them."""
+        if self.pressed is not None:
+            return self._measure_pressed(self.pressed, separation, memory)
+        shape = jnp.shape(separation)
+        rows = tuple(jnp.ravel(jnp.broadcast_to(b, shape)) for b in memory)
+        each = jax.vmap(lambda h, b: self._measure_one(h, b, lift))(jnp.ravel(separation), rows)
+        return Means(*(jnp.moveaxis(x, 0, -1).reshape(*x.shape[1:], *shape) for x in each))
+
+    def first_approach(self, separation: jax.Array, lift: int = 0) -> Means:
+        """The means of :meth:`measure` for surfaces that were never closer."""
+        if not self._in_powers:
+            return self.measure(separation, self.fresh(), lift)
+        return self._approached(separation, lift, NODES)
+
+    def _approached(self, separation: jax.Array, lift: int, nodes: int) -> Means:
+        """:meth:`first_approach` by so many nodes on a piece."""
+
+        def one(h: jax.Array) -> Loaded:
+            return first_loading(self.contact, self.heights, self._sizes, h, lift, nodes)
+
+        shape = jnp.shape(separation)
+        loaded = jax.vmap(one)(jnp.ravel(separation))
+        loaded = jax.tree_util.tree_map(lambda x: x.reshape(*shape, *x.shape[1:]), loaded)
+        edges = [jnp.asarray(law.forming_gap if law.hysteretic else -jnp.inf)
+                 for law in terms(self.law)]  # fmt: skip
+        asked = self._asked(edges)
+        whole = self.heights.mean_powers(tuple(ask.term for ask in asked), lift, separation)
+        sums: dict[str, jax.Array] = {"elastic": loaded.force, "energy": loaded.recoverable}
+        for ask, value in zip(asked, whole, strict=True):
+            # While it goes deeper than ever, a tip pulls as if it were whole.
+            if ask.name == "energy" or ask.counts:
+                gained = loaded.gained[..., self._sizes.index(ask.size), :]
+                sums[ask.name] = sums.get(ask.name, 0.0) + in_reach(ask.term, gained)
+            sums[ask.name] = sums.get(ask.name, 0.0) + value
+        return self._means(sums, self._kept(loaded.dissipated, loaded.gained), separation)
+
+    def flattened(self, memory: Memory, lift: int) -> Flattened | None:
+        """What a first approach leaves, tabulated; its closest approach is in the memory.
+
+        None where a law is no sum of truncated powers, whose means are then integrated anew at
+        every separation.
+        """
+        if not self._in_powers:
+            return None
+        gaps = [law.breaking_gap for law in self.hysteretic]
+        reach = jnp.max(jnp.stack([self.last_kink, *(jnp.asarray(gap, float) for gap in gaps)]))
+        return flatten(self.contact, self.heights, self._sizes, (memory[0], reach), lift)
+
+    def as_flattened(self, pressed: Flattened | None) -> PlasticInterface:
+        """The interface from then on."""
+        return dataclasses.replace(self, pressed=pressed)
+
+    @property
+    def _in_powers(self) -> bool:
+        """Whether the laws beside contact are sums of powers that are tabulated."""
+        found = [law.powers(jnp.zeros(())) for law in terms(self.law)]
+        whole = np.arange(HIGHEST + 1.0)
+        return all(
+            powers is not None and all(term.exponent in whole for part in powers for term in part)
+            for powers in found
+        )
+
+    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+        return jnp.sum(self.measure(separation, memory, lift).parts, axis=0)
+
+    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+        """Energy per area that comes back [J/m^2], 0 for free surfaces far apart."""
+        return self.measure(separation, memory, lift).energy
+
+    def losses(self) -> tuple[jax.Array, jax.Array]:
+        """Energy [J] lost when one bond forms, and when it breaks, per mechanism."""
+        formed = [jnp.ones(()), *(jnp.asarray(law.formation_loss) for law in self.hysteretic)]
+        broken = [jnp.zeros(()), *(jnp.asarray(law.rupture_loss) for law in self.hysteretic)]
+        return jnp.stack(formed), jnp.stack(broken)
+
+    def _measure_pressed(self, pressed: Flattened, separation: jax.Array, memory: Memory) -> Means:
+        """The means after a closest approach."""
+        asked = self._asked(self._edges(separation, memory))
+        powers = [(ask.term, self._sizes.index(ask.size)) for ask in asked]
+        values = power_means(pressed, powers, separation)
+        rows = jnp.concatenate([contact_means(pressed, separation), values])
+        sums = _summed(("elastic", "energy", *(ask.name for ask in asked)), rows)
+        return self._means(sums, self._kept(pressed.dissipated, pressed.gained), separation)
+
+    @property
+    def _sizes(self) -> tuple[float, ...]:
+        """Powers of the tip radius that the laws beside contact have, 0 among them."""
+        return tuple(sorted({0.0, *(law.radius_power for law in terms(self.law))}))
+
+    def _asked(self, edges: list[jax.Array]) -> list[_Ask]:
+        """The truncated powers whose means are those of the laws, bonded up to ``edges``."""
+        asked = [_Ask("touching", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
+        for k, (law, edge) in enumerate(zip(terms(self.law), edges, strict=True)):
+            size, powers = law.radius_power, law.powers(edge)
+            assert powers is not None
+            for name, part in zip((law.mechanism, "energy"), powers, strict=True):
+                asked += [_Ask(name, term, size, counts=False) for term in part]
+            if law.hysteretic:
+                asked.append(_Ask(f"bonds {k}", TruncatedPower(1.0, 0.0, edge), size, counts=True))
+        return asked
+
+    def _kept(self, dissipated: jax.Array, gained: jax.Array) -> jax.Array:
+        """What one asperity per area keeps, by what its contact and the flatter tips give."""
+        for law in terms(self.law):
+            if not law.hysteretic:
+                gain = gained[..., self._sizes.index(law.radius_power), 0]
+                dissipated = dissipated - gain * law.energy(jnp.zeros(()))
+        return dissipated
+
+    def _means(self, sums: dict[str, jax.Array], kept: jax.Array, separation: jax.Array) -> Means:
+        """The means put together, from those of one asperity per area."""
+        names = [f"bonds {k}" for k, law in enumerate(terms(self.law)) if law.hysteretic]
+        zero = jnp.zeros_like(separation)
+        return Means(
+            parts=self.density * jnp.stack([sums.get(name, zero) for name in self.components]),
+            energy=self.density * sums["energy"],
+            bonds=self.density * jnp.stack([kept + zero, *(sums[name] for name in names)]),
+            touching=self.density * sums["touching"],
+        )
+
+    def _measure_one(self, separation: jax.Array, memory: Memory, lift: int) -> Means:
+        """The means at one separation, by integration."""
+        asperities = Asperities(self.contact, self.law, self.heights)
+        edges = self._edges(separation, memory)
+        sums = means_at(asperities, separation, memory[0], edges, lift)
+        return self._means(sums, sums["kept"], separation)
+
+    def _edges(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
+        """Gap [m] below which asperities are bonded, for each law."""
+        thresholds, apart = iter(memory[1:]), jnp.asarray(-jnp.inf)
+        return [
+            _bond_gap(law, next(thresholds), separation) if law.hysteretic else apart
+            for law in terms(self.law)
+        ]
+
+
+def _summed(names: tuple[str, ...], rows: jax.Array) -> dict[str, jax.Array]:
+    """Sums of the rows of each name.
+
+    As one product, or XLA would compute the rows again for all that follows from them.
+    """
+    each = tuple(dict.fromkeys(names))
+    chosen = np.asarray([[name == one for name in names] for one in each], float)
+    sums = jnp.tensordot(chosen, rows, axes=1)
+    return dict(zip(each, sums, strict=True))
+
+
+def _bond_gap(law: Law, threshold: jax.Array, separation: jax.Array) -> jax.Array:
+    """Gap below which asperities are bonded."""
+    return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)

@@ -1,0 +1,154 @@
+"""Asperities that yield: their means at one separation, integrated over the heights.
+
+For any closest approach, any bonds and any laws beside contact. What a motion asks for is
+tabulated instead (:mod:`~asperity.interface.residual_profile`,
+:mod:`~asperity.interface.virgin_loading`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..laws.law import Law, terms
+from ..laws.plastic import PlasticContact
+from ..surfaces.heights.distribution import Heights
+from .height_quadrature import points
+
+_EVEN = 5  # pieces over the heights, besides those that kinks ask for
+_RUNGS = 3  # of a ladder of pieces from where contact begins
+_NODES = 12
+
+
+class Asperities(NamedTuple):
+    """One asperity per area: its contact, the laws beside it, and the heights."""
+
+    contact: PlasticContact
+    law: Law
+    heights: Heights
+
+
+def means_at(
+    asperities: Asperities,
+    separation: jax.Array,
+    closest: jax.Array,
+    edges: list[jax.Array],
+    lift: int,
+) -> dict[str, jax.Array]:
+    """Means at one separation [m]: forces by mechanism, energy, what is kept, bonds, touching.
+
+    Parameters
+    ----------
+    asperities
+        What there is.
+    separation, closest
+        Separation, and the closest approach before [m].
+    edges
+        Gap [m] below which asperities are bonded, for each law.
+    lift
+        0 for a plane, 1 for a rigid paraboloid.
+    """
+    contact, law, heights = asperities
+    low = jnp.minimum(closest, separation)
+    begin = _height(contact, separation, low)
+    bounds = _bounds(asperities, (separation, low, begin), edges, lift)
+    height, weight = points(bounds, _NODES)
+    share = weight * heights.tail(lift, height)
+    deepest = jnp.maximum(height - low, 0.0)
+    overlap = jnp.maximum(height - separation, 0.0)
+    gap = separation - height + contact.residual(deepest)
+    flatter = _flatter(contact, deepest)
+    # While it goes deeper than ever, a tip pulls as if it were whole.
+    pulling = jnp.where(separation <= closest, 1.0, flatter)
+    sums = {
+        "elastic": jnp.sum(share * contact.force(overlap, deepest)),
+        "energy": jnp.sum(share * contact.recoverable(overlap, deepest)),
+        "kept": _kept(asperities, low, lift),
+        "touching": heights.tail(lift + 1, begin),
+    }
+    for k, (one, edge) in enumerate(zip(terms(law), edges, strict=True)):
+        held, size = gap < edge, one.radius_power
+        for name, part in one.components(gap, held).items():
+            sums[name] = sums.get(name, 0.0) + jnp.sum(share * pulling**size * part)
+        stored = jnp.where(held, one.bonded_energy(gap), one.energy(gap))
+        sums["energy"] = sums["energy"] + jnp.sum(share * flatter**size * stored)
+        if one.hysteretic:
+            sums[f"bonds {k}"] = jnp.sum(share * jnp.where(held, flatter**size, 0.0))
+    return sums
+
+
+def _kept(asperities: Asperities, low: jax.Array, lift: int) -> jax.Array:
+    """Energy that contact down to a separation keeps.
+
+    And what conservative laws beside it gain by flatter tips, which goes the same way.
+    """
+    contact, law, heights = asperities
+    last = jnp.maximum(heights.highest_beside(jnp.minimum(low, heights.top)), low)
+    first = low if lift else jnp.clip(low, heights.bottom, last)
+    uneven = jnp.clip(first, heights.bottom, last)
+    even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
+    kinks = jnp.stack([first, *(low + kink for kink in contact.kinks)])
+    bounds = jnp.sort(jnp.clip(jnp.concatenate([even, kinks]), first, last))
+    height, weight = points(bounds, _NODES)
+    share = weight * heights.tail(lift, height)
+    deepest = jnp.maximum(height - low, 0.0)
+    kept = jnp.sum(share * contact.dissipated(deepest))
+    for one in terms(law):
+        if not one.hysteretic:
+            gain = _flatter(contact, deepest) ** one.radius_power - 1.0
+            kept = kept - jnp.sum(share * gain) * one.energy(jnp.zeros(()))
+    return kept
+
+
+def _flatter(contact: PlasticContact, deepest: jax.Array) -> jax.Array:
+    """Factor by which the radius of a tip has grown, of its deepest overlap [m]."""
+    pressed = deepest > 0.0
+    sprung = jnp.where(pressed, deepest - contact.residual(deepest), 1.0)
+    return jnp.where(pressed, deepest / sprung, 1.0)
+
+
+def _height(contact: PlasticContact, effective: jax.Array, low: jax.Array) -> jax.Array:
+    """Height [m] of the asperities that have come to an ``effective`` height."""
+    recovered = jnp.maximum(effective - low, 0.0)
+    return jnp.minimum(effective, low) + contact.deepest(recovered)
+
+
+def _bounds(
+    asperities: Asperities,
+    places: tuple[jax.Array, jax.Array, jax.Array],
+    edges: list[jax.Array],
+    lift: int,
+) -> jax.Array:
+    """Ends of pieces of the heights between which everything is smooth.
+
+    ``places`` are the separation, the closest approach and the height from which asperities touch.
+    """
+    contact, law, heights = asperities
+    separation, low, begin = places
+    laws = terms(law)
+    pairs = zip(laws, edges, strict=True)
+    gaps = [jnp.asarray(k, float) for one in laws for k in one.kinks if not _at_touch(k)]
+    gaps += [jnp.maximum(edge, 0.0) for one, edge in pairs if one.hysteretic]
+    marks = [_height(contact, separation - gap, low) for gap in gaps]
+    first = jnp.min(jnp.stack([begin, *marks]))
+    if lift == 0:
+        first = jnp.maximum(first, heights.bottom)
+    highest = heights.highest_beside(jnp.minimum(begin, heights.top))
+    last = jnp.maximum(highest, first)
+    uneven = jnp.maximum(first, heights.bottom)
+    even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
+    reach = last - begin
+    rung = jnp.minimum(0.25 * heights.rms, jnp.maximum(begin - low, contact.yield_overlap))
+    rung = jnp.clip(rung, 0.0, jnp.maximum(reach, 0.0))
+    ratio = jnp.where(rung > 0.0, reach / jnp.where(rung > 0.0, rung, 1.0), 1.0)
+    ladder = begin + rung * ratio ** (np.arange(_RUNGS) / _RUNGS)
+    kinks = low + jnp.stack(contact.kinks)
+    ends = [even, ladder, kinks, jnp.stack([begin, first, *marks])]
+    return jnp.sort(jnp.clip(jnp.concatenate(ends), first, last))
+
+
+def _at_touch(kink: jax.Array | float) -> bool:
+    """Whether a kink lies where bodies touch, by what is known without values."""
+    return isinstance(kink, float) and kink == 0.0

@@ -1,0 +1,88 @@
+"""Asperities that yield and are loaded for the first time: their means over the heights."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..laws.plastic import PlasticContact
+from ..surfaces.heights.distribution import Heights
+from .height_quadrature import points
+from .residual_profile import HIGHEST
+
+_EVEN = 5  # pieces over the heights, besides those that kinks ask for
+_RUNGS = 3  # of a ladder of pieces from where contact begins
+NODES = 16
+"""Nodes on a piece."""
+
+
+class Loaded(NamedTuple):
+    """Means at a separation that was never undercut, for one asperity per area.
+
+    Attributes
+    ----------
+    force
+        Of the contacts [N].
+    recoverable, dissipated
+        Work of the contacts that comes back, and that is kept [J].
+    gained
+        As for :class:`~asperity.interface.residual_profile.Flattened`.
+    """
+
+    force: jax.Array
+    recoverable: jax.Array
+    dissipated: jax.Array
+    gained: jax.Array
+
+
+def first_loading(
+    contact: PlasticContact,
+    heights: Heights,
+    sizes: tuple[float, ...],
+    separation: jax.Array,
+    lift: int,
+    nodes: int = NODES,
+) -> Loaded:
+    """Means at one separation [m]; see :func:`~asperity.interface.residual_profile.flatten`.
+
+    By so many ``nodes`` (static) on each piece of the overlaps.
+    """
+    deepest, weight = points(_bounds(contact, heights, separation), nodes)
+    share = weight * heights.tail(lift, separation + deepest)
+    sprung = deepest - contact.residual(deepest)
+    pressed = sprung > 0.0
+    flat = jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
+
+    def mean(values: jax.Array) -> jax.Array:
+        return jnp.vdot(values, share)
+
+    none = jnp.zeros(HIGHEST + 1)
+    gained = [
+        jnp.stack([mean(flat**size * sprung**n - deepest**n) for n in range(HIGHEST + 1)])
+        if size
+        else none  # of what does not depend on the tips
+        for size in sizes
+    ]
+    back = mean(contact.returned(deepest))
+    return Loaded(
+        mean(contact.loading_force(deepest)),
+        back,
+        mean(contact.loading_work(deepest)) - back,
+        jnp.stack(gained),
+    )
+
+
+def _bounds(contact: PlasticContact, heights: Heights, separation: jax.Array) -> jax.Array:
+    """Ends of pieces of the overlap between which everything is smooth."""
+    last = heights.highest_beside(jnp.minimum(separation, heights.top))
+    reach = jnp.maximum(last - separation, 0.0)
+    uneven = jnp.clip(heights.bottom - separation, 0.0, reach)
+    even = uneven + (reach - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
+    first = jnp.minimum(0.25 * heights.rms, contact.yield_overlap)
+    first = jnp.minimum(first, reach)
+    ratio = jnp.where(first > 0.0, reach / jnp.where(first > 0.0, first, 1.0), 1.0)
+    ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
+    ends = [even, ladder, jnp.stack([jnp.zeros(()), *contact.kinks])]
+    return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, reach))

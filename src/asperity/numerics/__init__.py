@@ -1,0 +1,11 @@
+"""Numerical tools that know nothing of contact.
+
+`height_integrals`: truncated moments F_n of the Gaussian (Greenwood and Tripp 1970).
+`polynomials`: Chebyshev sums and their integrals; `splines`: cubic B-splines on even nodes.
+`krylov`: a biconjugate gradient solver with a fixed number of steps.
+`compilation`: the one place that compiles with JAX, and that keeps compiled code on disk.
+
+Everything takes arrays and returns arrays. A new special function or solver belongs here if it
+would be as useful in a program about something else; whatever needs a law, a height or a
+separation belongs in a room above. `compilation` may be changed without touching any physics.
+"""

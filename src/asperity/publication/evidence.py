@@ -1,0 +1,277 @@
+"""What the audit and the figures stand on: the published case, its variants, the exact model."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from math import exp, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import regimes
+from .._jax import jax, jnp
+from ..config import Asperities, Case, builtin
+from ..contact import Contact, PublishedContact, RigidContact
+from ..halfspace import ring_mesh
+from ..materials.solids import contact_modulus, kelvin_radius
+from ..model import build
+from ..numerics.compilation import Program, kept
+from ..results.result import Result
+from ..solver import solve
+from .parameter_estimation import WITHIN, Inputs
+from .published_tables import Entry, read_tables
+
+PRINTED = Inputs(2.6146, 37.335e-9, 9.380)
+"""What a refit finds with the polynomials as printed: they meet the tables too."""
+
+_FEW = 6
+"""Impacts of a variant of which the first ones say all."""
+
+
+@kept
+class FirstTouch(NamedTuple):
+    """A contact of bodies that never touched: forces [N], and asperities that touch."""
+
+    force: jax.Array
+    elastic: jax.Array
+    touching: jax.Array
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Motions and contacts that the publication's claims are held against.
+
+    Parameters
+    ----------
+    case
+        The published case with the inputs in use, on its own surface.
+    surfaces
+        The motion on each surface of the tables, by asperity radius and rms height [m].
+    rows, power
+        As in :class:`~asperity.publication.reproduce.Reproduction`.
+    published
+        The publication's row for the surface of ``case``.
+    wet
+        The motion of ``case``.
+    dry, both_ways, printed
+        That without menisci; with pulls on the way in too; with the polynomials as printed.
+    printed_off
+        Largest relative difference from the publication's decrements and stiction times with
+        the printed polynomials and the inputs :data:`PRINTED`.
+    exact, exact_damp
+        The built-in case ``published-exact`` on a rigid plane, at 60 % relative humidity, and
+        at that at which the Kelvin radius is the asperities' spacing.
+    """
+
+    case: Case
+    surfaces: Mapping[tuple[float, float], Result]
+    rows: list[dict[str, Any]]
+    power: list[dict[str, float | None]]
+    published: Entry
+    wet: Result
+    dry: Result
+    both_ways: Result
+    printed: Result
+    printed_off: dict[str, float]
+    exact: Result
+    exact_damp: Result
+
+    @classmethod
+    def gather(
+        cls,
+        case: Case,
+        surfaces: Mapping[tuple[float, float], Result],
+        rows: list[dict[str, Any]],
+        power: list[dict[str, float | None]],
+        stop: threading.Event,
+    ) -> Evidence:
+        """Compute the variants, two at a time: each kind of contact compiles anew."""
+        with ThreadPoolExecutor(2) as pool:
+            motions = {
+                name: pool.submit(solve, variant, name=name, stop=stop)
+                for name, variant in _variants(case).items()
+            }
+            off = pool.submit(_printed_off, stop)
+        own = {entry.surface: entry for entry in read_tables()}
+        rough = builtin("published").asperities
+        assert rough is not None
+        return cls(
+            case=case,
+            surfaces=surfaces,
+            rows=rows,
+            power=power,
+            published=own[rough.asperity_radius, rough.rms_height],
+            printed_off=off.result(),
+            **{name: motion.result() for name, motion in motions.items()},
+        )
+
+    @property
+    def rough(self) -> Asperities:
+        """The case's asperities."""
+        assert self.case.asperities is not None
+        return self.case.asperities
+
+    @property
+    def work(self) -> float:
+        """Work of adhesion [J/m^2]."""
+        assert self.case.adhesion.work is not None
+        return self.case.adhesion.work
+
+    @property
+    def wet_inputs(self) -> Inputs:
+        """The inputs in use."""
+        return Inputs.of(self.case)
+
+    @cached_property
+    def contact(self) -> PublishedContact:
+        """The contact of ``case``."""
+        contact = build(self.case).contact
+        assert isinstance(contact, PublishedContact)
+        return contact
+
+    @cached_property
+    def exact_contact(self) -> RigidContact:
+        """The contact of ``exact``."""
+        contact = build(self.exact.case).contact
+        assert isinstance(contact, RigidContact)
+        return contact
+
+    @cached_property
+    def weight(self) -> float:
+        """Of the sphere [N]."""
+        return float(build(self.case).body.weight)
+
+    @property
+    def closest(self) -> float:
+        """Rigid separation of the first closest approach [m]."""
+        return float(self.wet.events["deepest_separation"][0])
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius of the conjunction there [m]."""
+        depth = float(self.contact.pressure.end) - self.closest
+        return sqrt(2.0 * self.case.body.radius * depth)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the first contact, from and to the edge of the conjunction [s].
+
+        NaN where the body does not leave it again.
+        """
+        motion, gravity = self.wet, self.case.launch.gravity
+        rise = first(motion.measures["rebound_height"])
+        fall = self.wet_inputs.release_gap - float(self.contact.pressure.end)
+        if not rise > 0.0:
+            return float(np.nan)
+        flight = sqrt(2.0 * fall / gravity) + sqrt(2.0 * rise / gravity)
+        return first(motion.measures["impact_time"]) - flight
+
+    @cached_property
+    def conjunction(self) -> tuple[np.ndarray, ...]:
+        """Radius and gap [m], displacement [m] and pressure of contact [Pa] there.
+
+        The displacement is that of the pressure between rigid bodies, a first iterate.
+        """
+        mesh, size = ring_mesh(200), self.contact_radius
+        place = mesh.radius * size
+        gap = self.closest + place**2 / (2.0 * self.case.body.radius)
+        pressure = np.asarray(self.contact.pressure.contact(jnp.asarray(gap)))
+        modulus = contact_modulus(self.case.body_solid, self.case.counterface_solid)
+        return place, gap, mesh.compliance @ pressure * size / modulus, pressure
+
+    @property
+    def wet_touching(self) -> float:
+        """Asperities of the conjunction that touch at the first closest approach."""
+        return float(_first_touch(self.contact, jnp.asarray(self.closest)).touching)
+
+    @property
+    def exact_rest(self) -> float:
+        """Static equilibrium by the exact model [m]."""
+        heights = self.exact.measures["rebound_height"]
+        return float(self.exact.events["apex_separation"][0] - heights[0])
+
+    @property
+    def load_at_rest(self) -> float:
+        """Load parameter there."""
+        rest = self.exact_state(self.exact_rest)
+        elastic, touching = float(rest.elastic), float(rest.touching)
+        return regimes.load_parameter(elastic, touching, self.work, self.rough.asperity_radius)
+
+    def exact_state(self, separation: float) -> FirstTouch:
+        """Contact of bodies that never touched, by the exact model."""
+        return _first_touch(self.exact_contact, jnp.asarray(separation))
+
+    def parting_forces(self, separations: np.ndarray) -> np.ndarray:
+        """Elastic force, adhesion and menisci [N] of bodies that begin to part at separations."""
+        return np.asarray(_parting(self.contact, jnp.asarray(separations)))
+
+    def kelvin_radius(self, humidity: float) -> float:
+        """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
+        return _kelvin_radius(self.case, humidity)
+
+
+def _kelvin_radius(case: Case, humidity: float) -> float:
+    liquid, temperature = case.liquid, case.capillary.temperature
+    assert liquid is not None
+    assert temperature is not None
+    return kelvin_radius(liquid, humidity, temperature)
+
+
+def _variants(case: Case) -> dict[str, Case]:
+    """The cases to compute, those that compile longest first."""
+    few = {"numerics.max_impacts": _FEW}
+    exact = builtin("published-exact").replace({"counterface.deformation": "rigid", **few})
+    assert exact.asperities is not None
+    spacing = exact.asperities.asperity_density**-0.5
+    # The Kelvin radius goes with 1/ln(1/humidity).
+    damp = exp(-_kelvin_radius(exact, exp(-1.0)) / spacing)
+    return {
+        "exact": exact,
+        "printed": case.replace({"publication.polynomials": "printed"}),
+        "wet": case,
+        "dry": case.replace({"capillary.model": "none", **few}),
+        "both_ways": case.replace({"publication.pull_while_parting_only": False}),
+        "exact_damp": exact.replace({"capillary.humidity": damp}),
+    }
+
+
+def _printed_off(stop: threading.Event) -> dict[str, float]:
+    """How far the printed polynomials are from the publication's numbers, at the worst."""
+    case = PRINTED.within(builtin("published")).replace({"publication.polynomials": "printed"})
+    worst = dict.fromkeys(WITHIN, 0.0)
+    for entry in read_tables():
+        motion = solve(entry.within(case), name=entry.name, stop=stop, critical=False)
+        found = {
+            "log_decrement": first(motion.measures["log_decrement"]),
+            "stiction_time": motion.measures["stiction_time"] or np.nan,
+        }
+        for name, value in found.items():
+            published = entry.values[name]
+            assert published is not None
+            worst[name] = max(worst[name], abs(value / published - 1.0))
+    return worst
+
+
+def _fresh_state(contact: Contact, separation: jax.Array) -> FirstTouch:
+    state = contact.state(separation, contact.fresh())
+    return FirstTouch(state.force, state.elastic, state.touching)
+
+
+_first_touch = Program(_fresh_state)
+
+
+def _parting_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:
+    memory = jnp.ones(())
+    return jax.vmap(lambda separation: contact.state(separation, memory).parts)(separations)
+
+
+_parting = Program(_parting_parts)
+
+
+def first(values: list[float | None]) -> float:
+    """The first of a motion's measures, NaN where there is none."""
+    return float(values[0]) if values and values[0] is not None else float(np.nan)

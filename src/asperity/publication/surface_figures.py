@@ -1,0 +1,81 @@
+"""Figures 2 and 3 of the publication from two measured surfaces."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+
+from ..surfaces.description.convolution import HeightDistribution
+from ..surfaces.measured_surface import Pair
+from .figure_data import Drawing
+
+_FINEST = 150
+"""Pixels a side that Figure 2 shows and its table holds, of more every second, third and so on."""
+
+_BINS = 51
+_TAIL = 1e-5
+_REACH = 8.0
+
+
+def heights(found: Pair) -> Drawing:
+    """Figure 2: the heights of the composite, both maps added."""
+    surface = found.composite.added
+    every = max(-(-count // _FINEST) for count in surface.heights.shape)
+    shown = surface.heights[::every, ::every]
+    steps = [every * step for step in surface.pixel_size]
+    rows, columns = shown.shape
+    y, x = np.meshgrid(np.arange(rows) * steps[1], np.arange(columns) * steps[0], indexing="ij")
+    return Drawing(
+        f"Figure 2: heights of {found.name}, {found.composite.how}",
+        ("x [m]", "y [m]", "height [m]"),
+        {found.name: (x.ravel(), y.ravel(), shown.ravel())},
+        {"rows": rows, "columns": columns, "pixels left out between two": every - 1,
+         "rms height [m]": surface.rms_height},
+    )  # fmt: skip
+
+
+def distribution(found: Pair) -> Drawing:
+    """Figure 3: the convolution of the two distributions of heights against the Gaussian."""
+    both, peaks = found.composite.heights, found.composite.summits
+    shape = found.composite.height_gaussianity
+    low, high = np.interp((_TAIL, 1.0 - _TAIL), both.cumulative, both.heights)
+    reach = _REACH * shape.rms
+    edges = np.linspace(max(low, -reach), min(high, reach), _BINS + 1)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    series = {found.name: (middle, in_bins(both, edges))}
+    about = {
+        "rms height [m]": shape.rms,
+        "skewness [-]": shape.skewness,
+        "kurtosis [-]": shape.kurtosis,
+        "Kolmogorov-Smirnov statistic [-]": shape.statistic,
+    }
+    if peaks is not None:
+        series["summits"] = (middle, in_bins(peaks, edges))
+        about["summits' rms [m]"] = peaks.rms
+    fine = np.linspace(edges[0], edges[-1], 301)
+    series["Gaussian"] = (
+        fine, np.exp(-0.5 * (fine / shape.rms) ** 2) / (shape.rms * sqrt(2.0 * pi))
+    )  # fmt: skip
+    return Drawing(
+        f"Figure 3: heights of {found.name} by convolution of their distributions, each about "
+        "its mean, against the Gaussian",
+        ("height [m]", "probability density [1/m]"),
+        series,
+        about,
+    )
+
+
+def in_bins(distribution: HeightDistribution, edges: np.ndarray) -> np.ndarray:
+    """Mean density [1/m] of a distribution in each bin, from its cumulative one.
+
+    Parameters
+    ----------
+    distribution
+        The distribution.
+    edges
+        Edges [m] of the bins, ascending, shape (bins + 1,).
+    """
+    upper = distribution.heights + 0.5 * distribution.step
+    below = np.interp(edges, upper, distribution.cumulative, left=0.0, right=1.0)
+    return np.asarray(np.diff(below) / np.diff(edges))

@@ -1,0 +1,66 @@
+"""What a result's numbers are uncertain by, and what was not asked for."""
+
+from __future__ import annotations
+
+from ..config import Case
+from ..contact import ElasticContact
+from ..contact.ring_error import ring_error
+from ..dynamics import Motion
+from ..dynamics.curve_table import SIZE, quantities, read_row
+from ..dynamics.problem import Problem
+
+CLOSED = 1e-6
+"""Share of the impact energy to which a ledger that can be trusted closes."""
+
+HASTENED = 0.02
+"""Share of the kinetic energy given that a fall may add without a word: 1 % of the speed."""
+
+
+def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
+    """A line where gravity hastens a body much that was launched from a release of no one's choice.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    motion
+        The motion.
+    """
+    kinetic, weight = float(problem.body.kinetic), float(problem.body.weight)
+    if case.impact is None or case.impact.release_gap is not None or not weight > 0.0:
+        return []
+    fall = max(float(motion.release) - kinetic, weight * float(problem.body.release))
+    if fall <= HASTENED * kinetic:
+        return []
+    added = 100.0 * ((1.0 + fall / kinetic) ** 0.5 - 1.0)
+    return [
+        f"forces reach so far that the body is released at {fall / weight * 1e6:.3g} um, and "
+        f"falling from there adds {added:.2g} % to its speed: give `release_gap`, or no gravity"
+    ]
+
+
+def ring_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
+    """A line where too few rings resolve the bulk's deformation at closest approach.
+
+    More than the tolerance asks for, or than a ledger's balance where that is less strict.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    motion
+        The motion; without its curves nothing is said.
+    """
+    contact, table = problem.contact, motion.table
+    if not isinstance(contact, ElasticContact) or table is None:
+        return []
+    deepest = float(motion.impacts.deepest[0])
+    row = read_row(table, 0, deepest)
+    off = ring_error(contact, deepest, float(row[SIZE]), row[quantities(contact).field])
+    allowed = max(case.numerics.tolerance, CLOSED)
+    if not off > allowed:
+        return []
+    return [
+        f"{contact.rings} rings leave an estimated error of {off:.1g} in the force at closest "
+        f"approach, above {allowed:.0e}: raise `numerics.rings`"
+    ]

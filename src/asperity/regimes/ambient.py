@@ -1,0 +1,195 @@
+"""Liquid and gas between the bodies, outside their models' validity: the warnings."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from ..config import Case
+from ..config.gas import Gas
+from ..dynamics import Motion
+from ..dynamics.gas_film import slip_factor
+from ..laws.liquid.constant_volume import EDGE_ANGLE, EDGE_HOLDS
+from ..materials.solids import Liquid
+from . import Regime
+
+SLIP_HOLDS = 0.1
+"""Knudsen number below which first-order slip holds."""
+
+_COMPRESSED = 0.1  # of the gas's own pressure
+_CLOSE = 0.004  # of the radius: a gap at which the film is 1 % off (Brenner 1961)
+
+
+def liquid_warnings(case: Case, regime: Regime) -> list[str]:
+    """One line for each way in which menisci leave the validity of their models.
+
+    Parameters
+    ----------
+    case
+        The case.
+    regime
+        Its dimensionless numbers.
+    """
+    liquid, kelvin_radius = case.liquid, case.kelvin_radius
+    if liquid is None or kelvin_radius == 0.0:
+        return []
+    out = _below_a_molecule(case, liquid)
+    on_asperities = case.capillary.model != "kelvin-filling" and case.roughness is not None
+    if np.isinf(case.liquid_span):
+        out.append(
+            "the Kelvin radius is infinite: menisci of any height, which would have coalesced long "
+            "before, are kept isolated"
+        )
+    elif on_asperities and regime.wetting in ("coalesced", "flooded"):
+        out.append(
+            f"{regime.wetting}: {regime.wetting_reason}: menisci merge, and this model keeps them "
+            "isolated ('kelvin-filling' is meant for this)"
+        )
+    elif regime.wetting == "flooded":
+        out.append(f"flooded: {regime.wetting_reason}: the drag of the liquid itself is left out")
+    return out + _wide(case)
+
+
+def _below_a_molecule(case: Case, liquid: Liquid) -> list[str]:
+    """Menisci, or gaps that they span, smaller than a molecule."""
+    molecule = f"less than a molecule of {liquid.name} ({liquid.molecule_size * 1e9:.2g} nm)"
+    if case.liquid_radius < liquid.molecule_size:
+        whose = "Kelvin radius" if case.liquid_radius == case.kelvin_radius else "liquid's radius"
+        return [
+            f"the {whose} is {case.liquid_radius * 1e9:.2g} nm, {molecule}: no meniscus of "
+            "continuum liquid"
+        ]
+    if case.liquid_span < liquid.molecule_size:
+        return [
+            f"menisci span gaps up to {case.liquid_span * 1e9:.2g} nm, {molecule}: no meniscus of "
+            "continuum liquid"
+        ]
+    return []
+
+
+def _wide(case: Case) -> list[str]:
+    """Menisci that see more than the cap of their asperity."""
+    rough, span = case.asperities, case.liquid_span
+    tip = case.body.radius if rough is None else rough.asperity_radius
+    filled = case.capillary.model == "kelvin-filling" and rough is not None
+    if filled or np.isinf(span):
+        return []
+    what = "asperity" if rough is not None else "body"
+    out = []
+    if span > 0.5 * tip:
+        out.append(
+            f"menisci are wider than their {what}: the gap at their edge is {span * 1e9:.3g} nm, "
+            f"and only up to {0.5 * tip * 1e9:.3g} nm, half its radius, does the edge lie on it"
+        )
+    if case.capillary.model == "constant-volume":
+        out += _thick(case.capillary.contact_angle, pi * (span / tip) ** 2)
+    return out
+
+
+def _thick(angle: float | None, volume: float) -> list[str]:
+    """Menisci of constant volume beyond the angle [rad] and volume [radius^3] of their tests."""
+    out = []
+    if angle is not None and angle > EDGE_ANGLE:
+        out.append(
+            f"the contact angle is {np.degrees(angle):.4g} deg: menisci of constant volume are "
+            f"tested up to {np.degrees(EDGE_ANGLE):.0f} deg, and taken for thin beyond that"
+        )
+    if volume > EDGE_HOLDS:
+        out.append(
+            f"the volume of a meniscus is {volume:.3g} radius^3: its law is tested up to "
+            f"{EDGE_HOLDS:g} radius^3, and takes it for thin beyond that"
+        )
+    return out
+
+
+def gas_warnings(case: Case, central: float, motion: Motion) -> list[str]:
+    """One line for each way in which a gas film leaves the validity of its model.
+
+    Parameters
+    ----------
+    case
+        The case.
+    central
+        Separation [m] of the deformed mean planes at the axis at closest approach.
+    motion
+        The motion.
+    """
+    gas = case.gas
+    if gas is None:
+        return []
+    thinnest = max(central, _film_stops(case, gas))
+    out = [
+        *_far(case),
+        *_two_temperatures(case, gas),
+        *_slip(gas, thinnest),
+        *_compressed(case, gas, thinnest, motion),
+    ]
+    if not float(motion.impacts.apex[0]) > float(motion.impacts.deepest[0]):
+        held = case.launch.gravity > 0.0
+        end = "creeps to rest" if held else "never touches"
+        out.append(f"the gas film damps the fall so strongly that the body {end}")
+    return out
+
+
+def _film_stops(case: Case, gas: Gas) -> float:
+    """Separation below which the film does not thin [m]."""
+    if gas.closest_gap is not None:
+        return gas.closest_gap
+    assert case.asperities is not None
+    return case.asperities.rms_height
+
+
+def _far(case: Case) -> list[str]:
+    """A film so thick that the sphere is not close to the wall."""
+    release, radius = case.launch.release_gap, case.body.radius
+    if release is None or release <= _CLOSE * radius:
+        return []
+    return [
+        f"the body is released at {release / radius:.2g} of its radius: the gas film is that of a "
+        f"sphere close to the wall, 1 % off at {_CLOSE:g}, and Stokes's drag far from it is left "
+        "out"
+    ]
+
+
+def _two_temperatures(case: Case, gas: Gas) -> list[str]:
+    liquid = case.capillary.temperature
+    if gas.temperature is None or case.liquid is None or liquid is None:
+        return []
+    if abs(gas.temperature - liquid) <= 1.0:
+        return []
+    return [
+        f"gas.temperature is {gas.temperature:.4g} K and capillary.temperature {liquid:.4g} K: the "
+        "vapour of the menisci is part of the gas"
+    ]
+
+
+def _slip(gas: Gas, thinnest: float) -> list[str]:
+    """A film outside first-order slip."""
+    knudsen = gas.free_path / thinnest
+    if knudsen == 0.0:
+        return [
+            "the gas film has no slip (`slip_length` is 0): it holds where the gap is more than "
+            "ten mean free paths, which in air at ambient pressure is 0.65 um"
+        ]
+    if knudsen > SLIP_HOLDS:
+        return [
+            f"the Knudsen number of the gas film is {knudsen:.2g} at closest approach: first-order "
+            f"slip holds below {SLIP_HOLDS:g}"
+        ]
+    return []
+
+
+def _compressed(case: Case, gas: Gas, thinnest: float, motion: Motion) -> list[str]:
+    """A film whose gas is compressed."""
+    mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
+    speed = np.sqrt(2.0 * float(motion.impacts.fastest[0]) / mass)
+    slip = float(slip_factor(thinnest, gas.film_slip_length))
+    pressure = 3.0 * gas.film_viscosity * case.body.radius * speed * slip / thinnest**2
+    if gas.pressure is None or not pressure > _COMPRESSED * gas.pressure:
+        return []
+    return [
+        f"the pressure in the gas film may reach {pressure:.2g} Pa (impact speed at closest "
+        f"approach), above {_COMPRESSED:g} of the gas's {gas.pressure:.3g} Pa: it is "
+        "compressed then, and this film is not"
+    ]

@@ -1,0 +1,225 @@
+"""Sizes and speeds at which the models of contact begin to fail: the warnings.
+
+What no model describes at all is refused sooner, with the case.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+from scipy.special import erfcx
+
+from ..config import Case
+from ..config.asperities import Asperities
+from ..config.bodies import named
+from ..config.limits import wave_speed
+from ..dynamics import Motion
+from ..dynamics.problem import Problem
+
+LARGE_ASPERITY = 0.1
+"""Asperity radius over body radius from which the effective radius, R beta/(R + beta), is 9 % off
+the asperity's, which the models take."""
+
+ROUGH = 0.05
+"""Rms height over body radius. Asperities 3 rms high then touch as far as 0.55 R from the axis,
+where a sphere lies 9 % lower than the paraboloid that stands for it."""
+
+WIDE = 0.2
+"""Contact radius over body radius: there a sphere lies 1 % lower than its paraboloid."""
+
+DEEP = 0.02
+"""Depth over body radius: the cap that deep has a contact radius of 0.2 body radii."""
+
+OVERLAP = 0.1
+"""Mean overlap of touching asperities over tip radius: the contact radius is then 0.32 of it."""
+
+FAST = 0.02
+"""Impact speed over the speed of waves in a bar: 10 % of the energy then goes into waves."""
+
+HUNTER = 1.04, 0.6
+"""Factor and power of the speed ratio in the share of energy that goes into waves. Hunter (1957),
+as in Johnson, Contact Mechanics (1985), ch. 11."""
+
+_EDGE = 3.0  # rms heights: how far out asperities touch
+
+
+def domain_warnings(
+    case: Case, problem: Problem, elastic: float, central: float, motion: Motion
+) -> list[str]:
+    """One line for each size or speed at which the models of a case begin to fail.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    elastic, central
+        Elastic force [N], and separation [m] of the deformed mean planes at the axis, at closest
+        approach.
+    motion
+        The motion.
+    """
+    rough = case.asperities
+    speed = sqrt(2.0 * float(motion.impacts.fastest[0]) / float(problem.body.mass))
+    return [
+        *([] if rough is None else _asperities(case, rough, central)),
+        *_shape(case, contact_radius(case, problem, elastic, central), motion),
+        *(_pressed(case, problem.modulus, elastic) if case.impact is None else []),
+        *([] if case.impact is None else _waves(case, speed)),
+        *([] if case.impact is None else _yields(case, problem.modulus, speed)),
+    ]
+
+
+def contact_radius(case: Case, problem: Problem, elastic: float, central: float) -> float:
+    """Radius [m] of the whole contact: of Hertz's, or of where the highest asperities touch.
+
+    Parameters
+    ----------
+    case, problem, elastic, central
+        As for :func:`domain_warnings`.
+    """
+    radius, rough = case.body.radius, case.asperities
+    relaxed = 1.0 if problem.creep is None else float(problem.creep.ratio)
+    hertz = float(np.cbrt(0.75 * max(elastic, 0.0) * radius / (relaxed * problem.modulus)))
+    if rough is None:
+        return hertz
+    rise = max(rough.mean_height + _EDGE * rough.rms_height - central, 0.0)
+    bulk = 0.0 if case.counterface.deformation == "rigid" else hertz
+    return max(sqrt(2.0 * radius * rise), bulk)
+
+
+def mean_overlap(rough: Asperities, separation: float) -> float:
+    """Mean overlap [m] of the asperities that touch at a separation [m]; 0 where none does."""
+    if rough.summits is not None and rough.facts is not None and rough.facts["source"] == "summits":
+        heights = rough.summits.heights
+        over = heights[heights > separation] - separation
+        return float(over.mean()) if over.size else 0.0
+    reduced = (separation - rough.mean_height) / rough.rms_height
+    # The density of the normal distribution over its tail, by which underflows cancel.
+    ratio = sqrt(2.0 / pi) / float(erfcx(reduced / sqrt(2.0)))
+    return rough.rms_height * max(ratio - reduced, 0.0)
+
+
+def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
+    """Asperities that are large or high beside the body, or pressed deep beside their tips."""
+    radius, tip, height = case.body.radius, rough.asperity_radius, rough.rms_height
+    out = []
+    if tip > LARGE_ASPERITY * radius:
+        out.append(
+            f"the asperities' radius is {tip / radius:.2g} of the body's: the effective radius of "
+            f"one that touches is {100.0 * tip / (tip + radius):.0f} % smaller than its own, which "
+            "is taken"
+        )
+    if height > ROUGH * radius:
+        out.append(
+            f"the rms height is {height / radius:.2g} of the body's radius: above {ROUGH:g} the "
+            "paraboloid that stands for the sphere is off where asperities touch"
+        )
+    overlap = mean_overlap(rough, central)
+    told = case.plasticity_model != "none" and overlap > tip  # with the plastic laws' limits
+    if overlap > OVERLAP * tip and not told:
+        out.append(
+            f"the mean overlap of touching asperities is {overlap / tip:.2g} of their tip radius "
+            f"and their contact radius {sqrt(overlap / tip):.2g} of it: their laws hold for "
+            f"overlaps below {OVERLAP:g}"
+        )
+    return out
+
+
+def _shape(case: Case, width: float, motion: Motion) -> list[str]:
+    """A contact that is not small beside the body."""
+    radius, depth = case.body.radius, -float(motion.impacts.deepest[0])
+    if depth <= DEEP * radius and width <= WIDE * radius:
+        return []
+    sinks = f"the body sinks in by {100.0 * depth / radius:.0f} % of its radius and "
+    return [
+        f"{sinks * (depth > 0.0)}the contact radius is {width / radius:.2g} of it: paraboloid and "
+        f"half-space are approximations for small indentations (below {100.0 * DEEP:g} % and "
+        f"{WIDE:g})"
+    ]
+
+
+def _waves(case: Case, speed: float) -> list[str]:
+    """Impacts too fast for a contact that is quasi-static."""
+    slowest, solid = wave_speed(case)
+    ratio = speed / slowest
+    if ratio <= FAST:
+        return []
+    factor, power = HUNTER
+    share = factor * ratio**power
+    cost = f"about {100.0 * share:.0f} % of its energy goes into elastic waves (Hunter 1957)"
+    if share >= 1.0:
+        cost = "the contact is not quasi-static"
+    modelled = case.waves is not None and case.waves.model != "none"
+    left_out = "" if modelled or share >= 1.0 else ", which are left out without [waves]"
+    return [
+        f"the body comes in at {speed:.3g} m/s, {ratio:.2g} of the speed of waves in a bar of "
+        f"{named(solid)} ({slowest:.3g} m/s): {cost}{left_out}"
+    ]
+
+
+def first_yield_speed(pressure: float, modulus: float, density: float) -> float:
+    """Impact speed [m/s] at which a smooth sphere first yields.
+
+    Hertz's energy at the peak pressure of first yield,
+    (8/15) (pi p/2)^5 R^3/E*^4, is that of the motion. With p = 1.6 Y this is
+    V^2 = 26 (Y/E*)^4 Y/rho, Johnson, Contact Mechanics (1985), ch. 11.
+
+    Parameters
+    ----------
+    pressure
+        Peak pressure of first yield [Pa].
+    modulus
+        Contact modulus E* [Pa].
+    density
+        Of the sphere [kg/m^3].
+    """
+    return sqrt(0.8 / pi * (0.5 * pi * pressure) ** 5 / (modulus**4 * density))
+
+
+def first_yield_load(pressure: float, modulus: float, radius: float) -> float:
+    """Load [N] at which a smooth sphere first yields: pi^3 p^3 R^2/(6 E*^2), Johnson eq. 6.10.
+
+    Parameters
+    ----------
+    pressure
+        Peak pressure of first yield [Pa].
+    modulus
+        Contact modulus E* [Pa].
+    radius
+        Of the sphere [m].
+    """
+    return pi**3 * pressure**3 * radius**2 / (6.0 * modulus**2)
+
+
+def _kept_elastic(case: Case) -> bool:
+    """Whether a smooth body whose strength is known does not yield."""
+    return case.roughness is None and case.plasticity_model == "none" and case.has_strength
+
+
+def _pressed(case: Case, modulus: float, elastic: float) -> list[str]:
+    """A smooth body that a load would make yield, and that is kept elastic."""
+    if not _kept_elastic(case):
+        return []
+    first = first_yield_load(case.yielding.yield_pressure, modulus, case.body.radius)
+    if elastic <= first:
+        return []
+    return [
+        f"the elastic force is {elastic:.3g} N, {elastic / first:.3g} times the load at which a "
+        f"smooth body first yields ({first:.3g} N), and the body is kept elastic: [plasticity] "
+        "lets it yield"
+    ]
+
+
+def _yields(case: Case, modulus: float, speed: float) -> list[str]:
+    """A smooth body that would yield, and is kept elastic."""
+    if not _kept_elastic(case):
+        return []
+    first = first_yield_speed(case.yielding.yield_pressure, modulus, case.body_density)
+    if speed <= first:
+        return []
+    return [
+        f"the body comes in at {speed:.3g} m/s, {speed / first:.3g} times the speed at which a "
+        f"smooth body first yields ({first:.3g} m/s), and is kept elastic: [plasticity] lets it "
+        "yield"
+    ]

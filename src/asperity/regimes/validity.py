@@ -1,0 +1,307 @@
+"""What a user must know before believing a result: regimes outside a model's validity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..config import Case
+from ..contact import Contact, ElasticContact
+from ..dynamics import Motion
+from ..dynamics.curve_table import CENTRAL, FORCE, PULL, TOUCHING, read_row
+from ..dynamics.problem import Problem
+from ..dynamics.stepped_series import Trajectory
+from ..dynamics.time_series import sample
+from ..errors import InputError
+from ..interface.radius_classes import CLASSES
+from . import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, missed, tabor_number
+from .accuracy import CLOSED, fall_warnings, ring_warnings
+from .ambient import gas_warnings, liquid_warnings
+from .model_domain import domain_warnings
+from .plastic_validity import yielded
+from .wave_limits import wave_warnings
+
+APART = 1e-6
+"""Share of its value at closest approach below which a contact force counts as none."""
+
+CLASSED = 5e-3
+"""Relative error of bonds' work from which classes of tip radius are too few."""
+
+
+class AtDepth(NamedTuple):
+    """The contact at the deepest point of the first impact.
+
+    Attributes
+    ----------
+    touching
+        Expected number of touching asperities.
+    elastic
+        Elastic part of the force [N].
+    central
+        Separation of the deformed mean planes at the axis [m].
+    """
+
+    touching: float
+    elastic: float
+    central: float
+
+    @classmethod
+    def of(cls, contact: Contact, motion: Motion, trajectory: Trajectory | None = None) -> AtDepth:
+        """Read off the curve of first approach, or off a motion that was stepped in time."""
+        deepest = float(motion.impacts.deepest[0])
+        if trajectory is None:
+            row = read_row(motion.table, 0, deepest)
+        else:
+            row = trajectory.series.rows[np.argmin(np.abs(trajectory.series.separation - deepest))]
+        elastic = row[FORCE] - row[PULL]
+        return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
+
+
+def warnings_of(
+    case: Case, problem: Problem, regime: Regime, at_depth: AtDepth, motion: Motion
+) -> list[str]:
+    """One line for each way in which a case leaves the validity of its models.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    regime
+        Its dimensionless numbers.
+    at_depth
+        The contact at closest approach.
+    motion
+        The motion.
+    """
+    return [
+        *_surface(case, problem),
+        *_asperities(case, at_depth),
+        *_publication(case),
+        *_adhesion(regime, problem.adhesion.near_borders, case.plasticity_model != "none"),
+        *yielded(case, problem.modulus, at_depth.central),
+        *liquid_warnings(case, regime),
+        *gas_warnings(case, at_depth.central, motion),
+        *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
+        *domain_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
+        *fall_warnings(case, problem, motion),
+        *ring_warnings(case, problem, motion),
+        *_ledger(problem, motion),
+    ]
+
+
+def _surface(case: Case, problem: Problem) -> list[str]:
+    """What the reading of measured surfaces says, and what classes of radius cost."""
+    rough, table = case.asperities, case.roughness
+    if rough is None or table is None:
+        return []
+    out = list(rough.warnings)
+    off, classes = problem.class_error, table.radius_classes or CLASSES
+    if abs(off) > CLASSED:
+        out.append(
+            f"{classes} classes of tip radius make the work of bonds {100 * abs(off):.2g} % too "
+            f"{'small' if off < 0.0 else 'large'}: raise `radius_classes`"
+        )
+    return out + _one_law(case, problem)
+
+
+def _one_law(case: Case, problem: Problem) -> list[str]:
+    """A line where the law chosen for the mean tip radius would not be chosen for all tips."""
+    rough, given, table = case.asperities, case.adhesion, case.roughness
+    if given.model != "auto" or rough is None or rough.summits is None or table is None:
+        return []
+    if table.source != "summits" or given.work is None or given.range is None:
+        return []
+    ends = np.quantile(rough.summits.radii, (0.05, 0.95))
+    laws = [
+        choose_adhesion(tabor_number(tip, given.work, problem.modulus, given.range)).law
+        for tip in ends
+    ]
+    if laws == [problem.adhesion.law] * 2:
+        return []
+    names = " and ".join(LAW_NAMES[law] for law in dict.fromkeys(laws))
+    return [
+        f"the {LAW_NAMES[problem.adhesion.law]} law was chosen for the mean tip radius: between "
+        f" radii of {ends[0] * 1e9:.3g} and {ends[1] * 1e9:.3g} nm (5 to 95 % of the "
+        f"summits) it would be {names}"
+    ]
+
+
+def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
+    """Refuse a measured surface that is smaller than the contact.
+
+    The contact is as wide as where the highest summit still touches at closest approach, or as
+    Hertz's.
+
+    Raises
+    ------
+    InputError
+        If it is.
+    """
+    rough, radius = case.asperities, case.body.radius
+    if rough is None or rough.surface is None or rough.summits is None:
+        return
+    rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
+    hertz = 0.0
+    if case.counterface.deformation != "rigid":
+        relaxed = 1.0 if problem.creep is None else float(problem.creep.ratio)
+        modulus = relaxed * problem.modulus
+        hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / modulus)
+    width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
+    if width > side:
+        raise InputError(
+            "`files` must hold surfaces larger than the contact, which is "
+            f"{width * 1e6:.3g} um wide at closest approach, or what is rough on its scale was "
+            f"not measured; got {side * 1e6:.3g} um ({rough.surface.source})",
+            key="roughness.files",
+        )
+
+
+def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
+    rough = case.asperities
+    if rough is None:
+        return []
+    out = []
+    touching = max(at_depth.touching, 0.0)
+    if touching < 1.0:
+        out.append(_hardly_one(touching))
+    elif touching < FEW:
+        scatter = 100.0 / np.sqrt(touching)
+        out.append(
+            f"only {touching:.2g} asperities are expected to touch at closest approach: the "
+            f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
+            "in that number (Poisson)"
+        )
+    share = rough.covered(at_depth.central)
+    if share > 0.1:
+        out.append(
+            f"touching asperities cover {100 * share:.0f} % of the area at the axis at closest "
+            "approach: neighbours interact, which the sum over single asperities leaves out"
+        )
+    return out
+
+
+def _hardly_one(touching: float) -> str:
+    """What a mean of fewer than one touching asperity means."""
+    return (
+        f"only {touching:.2g} asperities are expected to touch at closest approach: "
+        f"{missed(touching)}, and the numbers are means over many bodies, which none of them shows"
+    )
+
+
+def pull_warnings(case: Case, pull_off: float, held: float) -> list[str]:
+    """A line where fewer than one asperity is expected to hold at pull-off.
+
+    Parameters
+    ----------
+    case
+        The case.
+    pull_off
+        Pull-off force [N].
+    held
+        Expected number of asperities that touch or are bonded there.
+    """
+    if case.asperities is None or not pull_off > 0.0 or held >= 1.0:
+        return []
+    if case.capillary.model == "kelvin-filling":
+        return []  # liquid between the mean planes holds the body, and no bond of an asperity
+    return [
+        f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "
+        "of separation are means over many bodies, most of which nothing holds"
+    ]
+
+
+def release_warnings(reference: float) -> list[str]:
+    """A line where a body is released within the end of contact, which is then no ``reference``."""
+    if np.isfinite(reference):
+        return []
+    return [
+        "the body is released within the end of contact, where the force is 1e-6 of its peak: "
+        "restitution and capture are judged from the static equilibrium"
+    ]
+
+
+def _publication(case: Case) -> list[str]:
+    assumed = case.publication
+    if assumed is None:
+        return []
+    pulls = "adhesion and menisci pull only while the bodies part, " * (
+        assumed.pull_while_parting_only
+    )
+    factor = assumed.capillary_factor
+    menisci = f", and menisci pull {factor:g} times as much as their equation says" * (
+        case.liquid is not None and factor != 1.0
+    )
+    return [
+        f"[publication] follows a paper, not physics: {pulls}nothing acts beyond "
+        f"{assumed.conjunction_ends:g} rms heights{menisci}"
+    ]
+
+
+def _adhesion(regime: Regime, near_borders: Sequence[str], yields: bool) -> list[str]:
+    out = list(near_borders)
+    psi, mu = regime.plasticity_index, regime.tabor_number
+    if psi is not None and psi > 1.0 and not yields:
+        out.append(
+            f"the plasticity index is {psi:.3g}: above 1 the asperities yield, and this model "
+            "keeps them elastic"
+        )
+    law = regime.adhesion_law
+    if mu is not None and law in ("dmt", "bradley") and mu > DMT_BELOW:
+        out.append(
+            f"the Tabor number is {mu:.3g}: the {LAW_NAMES[law]} law holds below {DMT_BELOW:g}"
+            + (f", JKR above {JKR_ABOVE:g}" if mu <= JKR_ABOVE else "; JKR is meant for this")
+        )
+    if mu is not None and law == "jkr" and mu < JKR_ABOVE:
+        out.append(
+            f"the Tabor number is {mu:.3g}: the JKR law holds above {JKR_ABOVE:g}, "
+            f"DMT below {DMT_BELOW:g}"
+        )
+    return out
+
+
+def slow_menisci(
+    problem: Problem, motion: Motion, trajectory: Trajectory | None = None
+) -> list[str]:
+    """A line where menisci take longer to form than the first contact lasts.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    motion
+        Its motion.
+    trajectory
+        The same in time; without it all menisci formed at once.
+    """
+    if problem.late is None:
+        return []
+    time = float(problem.late.time)
+    if trajectory is None:
+        series = sample(problem.body, motion.table, motion.impacts)
+    else:
+        series = trajectory.series
+    force = np.abs(series.rows[:, FORCE])
+    there = force > APART * np.abs(motion.impacts.force[0])
+    held = series.time[(series.phase < 2) & there]
+    if held.size == 0 or time <= held[-1] - held[0]:
+        return []
+    return [
+        f"menisci take {time:.3g} s to form and the first contact lasts {held[-1] - held[0]:.3g} "
+        "s: few form, and more energy may go into those few than if all had formed at once"
+    ]
+
+
+def _ledger(problem: Problem, motion: Motion) -> list[str]:
+    what = "way between the branches" if problem.creep is None else "creeping contact"
+    if isinstance(problem.contact, ElasticContact) and problem.creep is None:
+        what += f" or the deformation on {problem.contact.rings} rings"
+    rows = motion.impacts
+    off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
+    if off <= CLOSED:
+        return []
+    return [
+        f"the energy ledger closes to {off:.1g} of the impact energy only, not to {CLOSED:.0e}: "
+        f"the {what} is not resolved"
+    ]

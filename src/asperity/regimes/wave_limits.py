@@ -1,0 +1,98 @@
+"""Waves that a contact radiates, outside the validity of their model: the warnings."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..config import Case
+from ..dynamics import Motion
+from ..dynamics.problem import Problem
+from ..dynamics.wave_radiation import shear_speed
+from .model_domain import contact_radius
+
+SMALL = 0.1
+"""Share of the impact energy, and relative error, up to which the first order is enough."""
+
+SPHERE_MODE = 2.64
+"""Lowest spheroidal mode of a sphere [c_s/R] at a Poisson's ratio of 0.25. Lamb (1882)."""
+
+_QUASI_STATIC = 0.25  # of that mode: a sphere that is shaken more slowly hardly rings
+
+
+def wave_warnings(
+    case: Case, problem: Problem, elastic: float, central: float, motion: Motion
+) -> list[str]:
+    """One line for each way in which radiated waves leave the validity of their model.
+
+    Parameters
+    ----------
+    case, problem
+        The case and what was built from it.
+    elastic, central
+        Elastic force [N], and separation [m] of the deformed mean planes at the axis, at closest
+        approach.
+    motion
+        The motion.
+    """
+    if problem.body.waves is None or not elastic > 0.0:
+        return []
+    mass, energy = float(problem.body.mass), float(motion.impacts.fastest[0])
+    # Of a pulse of this force that turns the body back; half a period of it is the contact time.
+    rate = elastic / (mass * sqrt(2.0 * energy / mass))
+    return [
+        *_strong(problem, motion, energy),
+        *_wide(case, problem, elastic, central, rate),
+        *_ringing(case, rate),
+        *_snaps(problem, motion),
+    ]
+
+
+def _strong(problem: Problem, motion: Motion, energy: float) -> list[str]:
+    """Waves that change the motion by more than the first order tells."""
+    share = float(motion.impacts.lost[0, -1]) / energy
+    if share <= SMALL:
+        return []
+    return [
+        f"the first impact radiates {100 * share:.2g} % of its energy: waves are computed to first "
+        "order, which is off by about as much of itself"
+    ]
+
+
+def _wide(case: Case, problem: Problem, elastic: float, central: float, rate: float) -> list[str]:
+    """A contact that is not small beside the waves."""
+    solid = case.counterface_solid
+    speed = float(shear_speed(solid.youngs_modulus, solid.poisson, solid.density))
+    half = contact_radius(case, problem, elastic, central)
+    # Waves from a Hertz pressure: 1 - (k a)^2/5 of those from its point force.
+    error = (rate * half / speed) ** 2 / 5.0
+    if error <= SMALL:
+        return []
+    return [
+        f"shear waves cross the contact's radius ({half * 1e6:.3g} um) in {half / speed:.2g} s and "
+        f"the force changes within {1.0 / rate:.2g} s: waves are those of a point force, and "
+        f"radiate less by about {100 * min(error, 1.0):.0f} %"
+    ]
+
+
+def _ringing(case: Case, rate: float) -> list[str]:
+    """A sphere that is struck too quickly to stay quasi-static."""
+    solid, radius = case.body_solid, case.body.radius
+    speed = float(shear_speed(solid.youngs_modulus, solid.poisson, solid.density))
+    if rate <= _QUASI_STATIC * SPHERE_MODE * speed / radius:
+        return []
+    return [
+        f"the force changes within {1.0 / rate:.2g} s and shear waves cross the sphere in "
+        f"{2.0 * radius / speed:.2g} s: it is left ringing, and the energy in that is left out"
+    ]
+
+
+def _snaps(problem: Problem, motion: Motion) -> list[str]:
+    """Bonds of a smooth body, at which the force jumps."""
+    lost = zip(problem.contact.mechanisms, motion.impacts.lost[0], strict=False)
+    names = dict.fromkeys(name for name, energy in lost if energy > 0.0 and name != "plastic")
+    if not problem.contact.discrete or not names:
+        return []
+    return [
+        "the force jumps where a bond forms or breaks: what that radiates is part of the energy "
+        f"lost to {' and '.join(names)}, and not counted as waves"
+    ]

@@ -1,0 +1,385 @@
+"""A motion that was flown, as the result that a user reads: units, names, plain numbers."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import regimes
+from .._jax import jax
+from ..config import Case
+from ..contact import Contact
+from ..dynamics import Body, Motion
+from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
+from ..dynamics.problem import Problem
+from ..dynamics.quasi_static import losses
+from ..dynamics.static_equilibrium import Datum, end_of_contact
+from ..dynamics.stepped_series import Trajectory
+from ..dynamics.time_series import Series, ascending, sample, until
+from ..errors import Outcome
+from ..laws.law import as_float64
+from ..numerics.compilation import AT_ONCE, Program
+from ..regimes.accuracy import CLOSED
+from ..regimes.liquid_regime import Wetting, wetting_regime
+from ..regimes.plastic_validity import kept_elastic
+from ..regimes.validity import (
+    AtDepth,
+    check_surface,
+    pull_warnings,
+    release_warnings,
+    slow_menisci,
+    warnings_of,
+)
+from .measures import FirstContact, Measures, least_peak, measure
+from .result import Result
+
+_ROWS, _ROWS_IN_GAS = 256, 32
+"""Rows of impacts that are measured at least: more than most motions have. In a gas each costs."""
+
+_measure = Program(measure, AT_ONCE)
+_end_of_contact = Program(end_of_contact, AT_ONCE)
+
+
+class Flight(NamedTuple):
+    """A motion that was flown, the contact it was flown with, and how it ended.
+
+    The body has the release that was found, where the case gives a speed alone.
+    """
+
+    motion: Motion
+    contact: Contact
+    outcome: Outcome
+    trajectory: Trajectory | None = None
+    body: Body | None = None
+
+
+def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
+    """Compile what measures such a motion, in a thread; shapes serve in place of arrays."""
+    rows = jax.tree_util.tree_map(
+        lambda leaf: jax.ShapeDtypeStruct((_least_rows(body), *leaf.shape[1:]), leaf.dtype),
+        motion.impacts,
+    )
+    _measure.ahead(motion._replace(impacts=rows), body, None, None)
+    losses.ahead(contact)
+
+
+def _least_rows(body: Body) -> int:
+    return _ROWS if body.film is None else _ROWS_IN_GAS
+
+
+def contact_end(table: Table, peak: float) -> float:
+    """The end of a contact whose largest force is ``peak`` [N]: a separation [m]."""
+    return float(_end_of_contact(table, as_float64(peak)))
+
+
+def measured(flight: Flight, body: Body) -> Measures:
+    """Measures over a power of two of rows, seldom more than the first: one compilation."""
+    motion, body = flight.motion, flight.body or body
+    rows = motion.impacts.made.shape[0]
+    size = max(_least_rows(body), 1 << (rows - 1).bit_length())
+
+    def pad(leaf: Any) -> Any:
+        return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
+
+    whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
+    if flight.trajectory is None:
+        return _measure(whole, body, None, None)
+    first, passing = _stepped_contact(flight.trajectory, motion, body), None
+    if body.film is not None:
+        found = flight.trajectory.passing(float(first.end), float(body.mass))
+        passing = jax.tree_util.tree_map(pad, found)
+    return _measure(whole, body, passing, first)
+
+
+def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> FirstContact:
+    """The first contact of a motion that was stepped in time."""
+    bonds = Quantities(motion.impacts.bonds.shape[1], 0).bonds
+    pulled, series = trajectory.unloading(bonds), trajectory.series
+    peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
+    end = contact_end(motion.table, peak)
+    held = float(motion.impacts.apex[0]) < end
+    time = np.nan if held else trajectory.contact_time(end)
+    force = float(np.max(series.rows[series.phase < 2, FORCE]))
+    outset = contact_end(motion.table, float(least_peak(body, pulled.pull_off, peak)))
+    return FirstContact(
+        as_float64(end), as_float64(time), as_float64(force), pulled, as_float64(outset)
+    )
+
+
+def _sampled(
+    case: Case, flight: Flight, body: Body, most: int | None
+) -> tuple[Series, dict[str, np.ndarray]]:
+    """A motion as a time series, and the energy lost by mechanism along it."""
+    motion, contact, stepped = flight.motion, flight.contact, flight.trajectory
+    limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
+    impacts = motion.impacts
+    cut = most is not None and most < int(np.sum(impacts.made))
+    if cut:
+        impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
+    if stepped is not None:
+        kept = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
+        return kept.series, _by_name(contact, body, ascending(kept.lost, _known(motion)))
+    series = until(sample(body, motion.table, impacts), limit)
+    return series, _losses_along(contact, motion, body, series)
+
+
+def first_restitution(flight: Flight, body: Body) -> float | None:
+    """Restitution of a motion's first impact; None where it has none."""
+    return _number(measured(flight, body).restitution[0])
+
+
+def result_of(
+    case: Case,
+    name: str,
+    problem: Problem,
+    flight: Flight,
+    elastic: float | None = None,
+    most: int | None = None,
+) -> Result:
+    """The result of a motion that was flown.
+
+    Parameters
+    ----------
+    case, name
+        The case, and what to call it.
+    problem
+        What was built from it.
+    flight
+        The motion.
+    elastic
+        Restitution of the first impact were nothing to yield, for a case in which it does.
+    most
+        Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
+    """
+    problem = problem._replace(body=flight.body or problem.body)
+    motion, body = flight.motion, problem.body
+    made = int(np.sum(motion.impacts.made))
+    measures = measured(flight, body)
+    series, lost = _sampled(case, flight, body, most)
+    at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
+    check_surface(case, problem, at_depth)
+    regime = regime_of(case, problem, at_depth)
+    forces, energies = _histories(flight.contact, motion, body, series, lost)
+    impacts = motion.impacts
+    return Result(
+        case=case,
+        name=name,
+        outcome=flight.outcome,
+        time=series.time,
+        separation=series.separation,
+        central_separation=series.rows[:, CENTRAL],
+        speed=series.speed,
+        forces=forces,
+        energies=energies,
+        regime=regime._asdict(),
+        measures=_plain(measures, made),
+        ledger=_ledger(flight.contact, motion, body, made),
+        surface=None if case.asperities is None else case.asperities.facts,
+        warnings=[
+            *warnings_of(case, problem, regime, at_depth, motion),
+            *pull_warnings(case, float(measures.pull_off), float(measures.held_at_pull_off)),
+            *release_warnings(float(measures.reference)),
+            *slow_menisci(problem, motion, flight.trajectory),
+            *kept_elastic(case, float(np.asarray(measures.restitution)[0]), elastic),
+        ],
+        events={
+            name: np.asarray(values)[:made]
+            for name, values in (
+                ("deepest_time", impacts.deepest_time),
+                ("apex_time", impacts.apex_time),
+                ("deepest_separation", impacts.deepest),
+                ("apex_separation", impacts.apex),
+            )
+        },
+    )
+
+
+class Assessment(NamedTuple):
+    """Which models hold in a case, at the deepest point of its first impact.
+
+    Attributes
+    ----------
+    name
+        What the case is called.
+    regime
+        Its dimensionless numbers.
+    verdicts
+        What each number says, by the number's name.
+    warnings
+        What to know before the case is believed.
+    """
+
+    name: str
+    regime: regimes.Regime
+    verdicts: dict[str, regimes.Verdict]
+    warnings: list[str]
+
+
+def assessment_of(
+    case: Case, name: str, problem: Problem, contact: Contact, motion: Motion
+) -> Assessment:
+    """What a case's numbers say, from a motion of one impact.
+
+    Parameters
+    ----------
+    case, name
+        The case, and what to call it.
+    problem
+        What was built from it.
+    contact, motion
+        The contact that was flown with, and the motion.
+    """
+    at_depth = AtDepth.of(contact, motion)
+    check_surface(case, problem, at_depth)
+    regime = regime_of(case, problem, at_depth)
+    rough, liquid = case.asperities, case.liquid
+    situation = regimes.Situation(
+        regime=regime,
+        rough=rough is not None,
+        tip_radius=problem.tip_radius,
+        spacing=None if rough is None else rough.asperity_density**-0.5,
+        touching=at_depth.touching,
+        kelvin_radius=case.liquid_radius,
+        molecule_size=None if liquid is None else liquid.molecule_size,
+        bounded=case.liquid_radius < case.kelvin_radius,
+        on_tips=case.capillary.model != "kelvin-filling" or rough is None,
+        yields=case.plasticity_model != "none",
+    )
+    warnings = warnings_of(case, problem, regime, at_depth, motion)
+    warnings += slow_menisci(problem, motion)
+    return Assessment(name, regime, regimes.verdicts(situation), warnings)
+
+
+def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+    """The dimensionless numbers of a case, by its contact at closest approach."""
+    adhesion, rough = case.adhesion, case.asperities
+    work, spacing = adhesion.work, adhesion.range
+    tabor = plasticity = load = None
+    if work and spacing:
+        tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
+    if rough is not None and case.has_strength:
+        plasticity = regimes.plasticity_index(
+            problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
+        )
+    touching = max(at_depth.touching, 0.0)  # far apart, a polynomial may say a little less
+    if work and touching > 0.0:
+        elastic = at_depth.elastic
+        load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)
+    elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
+    wetting = _wetting(case, problem, at_depth)
+    return regimes.Regime(
+        tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
+        wetting.regime, wetting.reason, None if rough is None else touching,
+    )  # fmt: skip
+
+
+def _wetting(case: Case, problem: Problem, at_depth: AtDepth) -> Wetting:
+    rough, given = case.asperities, case.capillary.surface_rms_height
+    rms = 0.0 if rough is None else given or rough.surface_rms_height or rough.rms_height
+    return wetting_regime(
+        radius=case.liquid_radius,
+        span=case.liquid_span,
+        tip_radius=problem.tip_radius,
+        spacing=None if rough is None else rough.asperity_density**-0.5,
+        central=at_depth.central,
+        rms_height=rms,
+    )
+
+
+def _histories(
+    contact: Contact,
+    motion: Motion,
+    body: Body,
+    series: Series,
+    losses: dict[str, np.ndarray],
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Forces and energies along the motion."""
+    layout = quantities(contact)
+    weight = float(body.mass) * float(body.gravity)
+    rows: np.ndarray = series.rows
+    parts = rows[:, layout.components]
+    forces: dict[str, np.ndarray] = {name: parts[:, k] for k, name in enumerate(contact.components)}
+    forces["contact"] = rows[:, FORCE]
+    forces["weight"] = np.full(len(rows), -weight)
+    forces["total"] = rows[:, FORCE] - weight
+    for k, name in enumerate(body.mechanisms):
+        forces[name] = -series.drag[:, k] * series.speed
+        forces["total"] = forces["total"] + forces[name]
+    energies = {
+        "kinetic": 0.5 * float(body.mass) * series.speed**2,
+        "potential": weight * (series.separation - _zero_height(motion.datum)),
+        "stored": rows[:, STORED],
+    }
+    for name, lost in losses.items():
+        energies[f"lost_{name}"] = lost
+    return forces, energies
+
+
+def _losses_along(
+    contact: Contact, motion: Motion, body: Body, series: Series
+) -> dict[str, np.ndarray]:
+    """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
+    formation, rupture = (np.asarray(x) for x in losses(contact))
+    bonds = series.rows[:, quantities(contact).bonds]
+    impact, rising = series.phase // 2, series.phase % 2 == 1
+    fall, rise = motion.impacts.fall, motion.impacts.rise
+    begun = np.where(rising[:, None], rise.bonds[impact], fall.bonds[impact])
+    lost = np.where(rising[:, None], rise.lost[impact], fall.lost[impact])
+    change = bonds - begun
+    laws = len(contact.mechanisms)
+    lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
+    lost[:, laws:] += series.heat
+    return _by_name(contact, body, ascending(lost, _known(motion)))
+
+
+def _known(motion: Motion) -> float:
+    """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
+    impacts = motion.impacts
+    closure = np.max(np.where(impacts.made, impacts.closure, 0.0))
+    return float(max(2.0 * closure, CLOSED * impacts.fastest[0]))
+
+
+def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
+    """Losses by mechanism, those of one name together."""
+    out: dict[str, np.ndarray] = {}
+    for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
+        out[name] = out.get(name, 0.0) + lost[:, k]
+    return out
+
+
+def _zero_height(datum: Datum) -> float:
+    """Separation at which the potential energy is 0: the static equilibrium, if any."""
+    at_rest = float(datum.equilibrium)
+    return at_rest if np.isfinite(at_rest) else 0.0
+
+
+def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str, Any]:
+    """Energy at the release, lost by mechanism, and how well all of it adds up."""
+    weight = float(body.weight)
+    lost: dict[str, float] = {}
+    names = (*contact.mechanisms, *body.mechanisms)
+    for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
+        lost[name] = lost.get(name, 0.0) + float(value)
+    impact_energy = float(motion.impacts.fastest[0])
+    closure = float(np.max(motion.impacts.closure[:made])) / impact_energy
+    initial = float(motion.release) - weight * _zero_height(motion.datum)
+    return {"initial": initial, "lost": lost, "closure": closure}
+
+
+def _plain(measures: Measures, made: int) -> dict[str, Any]:
+    """Measures as plain numbers and lists, None where one does not apply."""
+    out: dict[str, Any] = {}
+    for name, value in measures._asdict().items():
+        if name in ("reference", "outset", "held_at_pull_off"):
+            continue
+        array = np.asarray(value)
+        if array.ndim == 0:
+            out[name] = bool(array) if array.dtype == bool else _number(array)
+        else:
+            out[name] = [_number(x) for x in array[:made]]
+    return out
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

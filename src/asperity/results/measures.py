@@ -1,0 +1,323 @@
+"""What a motion means: rebound heights, restitution, decrement, capture, losses.
+
+Everything is computed from the turning points in JAX, so that it can be batched and
+differentiated; rows of impacts that did not take place, and measures that do not apply,
+are NaN.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .._jax import jax, jnp
+from ..dynamics import Body, Impacts, Motion, Table
+from ..dynamics.curve_table import Pieces, join
+from ..dynamics.damped_phase import kinetic_at, time_to
+from ..dynamics.record import ENDS, Phase
+from ..dynamics.static_equilibrium import end_of_contact
+from ..dynamics.unloading import Unloading, unloading
+from ..errors import Outcome
+from ..laws.law import Real
+from ..numerics.compilation import kept
+
+_LEAST = 1e-6  # of the force of one impact: none is gentler
+_IN_GAS = 1e-3  # of the weight, which gas leaves a contact to carry at a turn
+
+
+@kept
+class Measures(NamedTuple):
+    """Measures of a motion.
+
+    Attributes
+    ----------
+    impact_speed
+        Speed of approach where forces begin, at the end of contact [m/s]; NaN where a gas film
+        stops the body before. Of a body released within that, the speed at its static
+        equilibrium, the largest.
+    maximum_speed
+        Largest speed on the first way in [m/s]: with attraction, above that of approach.
+    captured
+        Whether the first impact captures: its apex lies within the end of contact, where the
+        force is 1e-6 of its peak, and in gas below the static equilibrium too. Of a body that is
+        released within the end of contact the static equilibrium alone is asked.
+    capture_time
+        Time of the first impact, of all, that captures so [s].
+    stiction_time
+        Time from release to rest [s].
+    rebound_height
+        Apex above the static equilibrium [m], per impact.
+    restitution
+        Square root of the ratio of energies after and before, per impact.
+    log_decrement
+        Logarithm of the ratio of successive rebound heights, the first against the release.
+    impact_time
+        Time from maximum to maximum [s].
+    power_loss
+        Energy lost from maximum to maximum over that time [W].
+    power_loss_published
+        Work of the attractive forces on the way out over that time [W], eq. 23.
+    contact_time
+        Time that the first impact spends within the end of contact [s]; NaN where it is captured.
+    maximum_force
+        Contact force at the closest approach of the first impact [N]; of a motion that was stepped
+        in time the largest of that impact.
+    pull_off, pull_off_separation
+        Largest tension while unloading from the first impact [N], and where it is [m]; 0 and NaN
+        where nothing pulls.
+    work_of_separation
+        Work against that tension from the separation of zero force on [J].
+    preload
+        Load of the first impact [N] where these depend on it; NaN where any larger load gives the
+        same.
+    reference
+        Separation [m] at which energies in and out are compared: the end of contact, or
+        NaN where the body is released within it and the static equilibrium is taken.
+    held_at_pull_off
+        Expected number of asperities that touch or are bonded at pull-off.
+    outset
+        Separation [m] beyond which even the gentlest impact meets no force: in that the weight or
+        the pull-off force is the largest.
+    """
+
+    impact_speed: jax.Array
+    maximum_speed: jax.Array
+    captured: jax.Array
+    capture_time: jax.Array
+    stiction_time: jax.Array
+    rebound_height: jax.Array
+    restitution: jax.Array
+    log_decrement: jax.Array
+    impact_time: jax.Array
+    power_loss: jax.Array
+    power_loss_published: jax.Array
+    contact_time: jax.Array
+    maximum_force: jax.Array
+    pull_off: jax.Array
+    pull_off_separation: jax.Array
+    work_of_separation: jax.Array
+    preload: jax.Array
+    reference: jax.Array
+    held_at_pull_off: jax.Array
+    outset: jax.Array
+
+
+@kept
+class FirstContact(NamedTuple):
+    """The first contact of a motion.
+
+    Attributes
+    ----------
+    end
+        End of contact: the outermost separation [m] at which the force is 1e-6 of the largest
+        one, at a deepest point or at pull-off.
+    time
+        Time spent within it in the first impact [s]; NaN where the body is captured.
+    force
+        Largest contact force of that impact [N].
+    unloading
+        What pulls the body back after it.
+    outset
+        As in :class:`Measures` [m].
+    """
+
+    end: jax.Array
+    time: jax.Array
+    force: jax.Array
+    unloading: Unloading
+    outset: jax.Array
+
+
+Passing = tuple[jax.Array, jax.Array]
+"""Kinetic energies [J] at the end of contact on the way in and out, per impact."""
+
+
+def measure(
+    motion: Motion,
+    body: Body,
+    passing: Passing | None = None,
+    first: FirstContact | None = None,
+) -> Measures:
+    """Measures of a motion; see :class:`Measures`.
+
+    Parameters
+    ----------
+    motion, body
+        The motion, and what moved.
+    passing
+        For a motion in gas of which no phases are kept: its energies at the end of contact.
+    first
+        Its first contact, where that is known; :func:`first_contact` needs the table.
+    """
+    rows, datum, end = motion.impacts, motion.datum, motion.end
+    first = first_contact(motion.table, rows, body) if first is None else first
+    reference, pulled = first.end, first.unloading
+    outside = reference < body.release
+    escaped = end.outcome == ENDS.index(Outcome.ESCAPED)
+    last = jnp.arange(rows.made.shape[0]) == end.made - 1
+    gone = jnp.logical_and(escaped, last)
+    away = gone | (last & (end.outcome == ENDS.index(Outcome.STOPPED)))  # of no further maximum
+
+    falls = body.weight > 0.0
+    top = body.release + jnp.where(
+        falls, body.kinetic / jnp.where(falls, body.weight, 1.0), jnp.inf * (body.kinetic > 0)
+    )
+    rebounds = rows.made & (rows.apex > rows.deepest)  # a body that creeps to rest has none
+    apex = jnp.where(gone, jnp.nan, jnp.where(rebounds, rows.apex, jnp.nan))
+    height = apex - datum.equilibrium
+    before = _shift(height, top - datum.equilibrium)
+    fits = jnp.logical_and(jnp.isfinite(before), height > 0.0)
+    decrement = jnp.log(jnp.where(fits, before, 1.0) / jnp.where(fits, height, 1.0))
+
+    duration = rows.apex_time - _shift(rows.apex_time, 0.0)
+    period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(away)), duration, jnp.nan)
+    total = jnp.sum(rows.lost, axis=1)
+    rests = end.outcome == ENDS.index(Outcome.REST)
+    captures = _captures(motion, body, reference, outside, away)
+    captures = jnp.logical_or(captures, rests & rows.made & ~rebounds)
+    capture_time = rows.deepest_time[jnp.argmax(captures)]
+    energies = _energies(motion, body, reference, outside, passing)
+    safe = jnp.where(jnp.isfinite(period), period, 1.0)
+    blank = jnp.where(jnp.isfinite(period), 1.0, jnp.nan)
+    return Measures(
+        impact_speed=_speed(jnp.where(outside, energies[0][0], rows.fastest[0]), body.mass),
+        maximum_speed=_speed(rows.fastest[0], body.mass),
+        captured=captures[0],
+        capture_time=jnp.where(jnp.any(captures), capture_time, jnp.nan),
+        stiction_time=jnp.where(rests, end.time, jnp.nan),
+        rebound_height=height,
+        restitution=_restitution(motion, body, reference, outside, gone, captures, energies),
+        log_decrement=jnp.where(fits, decrement, jnp.nan),
+        impact_time=period,
+        power_loss=(total - _shift(total, 0.0)) / safe * blank,
+        power_loss_published=rows.pull_work / safe * blank,
+        contact_time=jnp.where(outside, first.time, jnp.nan),
+        maximum_force=first.force,
+        pull_off=pulled.pull_off,
+        pull_off_separation=pulled.separation,
+        work_of_separation=pulled.work,
+        preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
+        reference=jnp.where(outside, reference, jnp.nan),
+        held_at_pull_off=pulled.held,
+        outset=first.outset,
+    )
+
+
+def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
+    """The first contact of a motion, from the phases of its first impact."""
+    fall, rise = (
+        jax.tree_util.tree_map(lambda leaf: leaf[0], phase) for phase in (rows.fall, rows.rise)
+    )
+    pulled = unloading(table, rise)
+    peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
+    end = end_of_contact(table, jnp.maximum(peak, pulled.pull_off))
+    inwards = time_to(body, _ahead(table, fall, parting=False), fall.kinetic, False, end)
+    outwards = time_to(body, _ahead(table, rise, parting=True), rise.kinetic, True, end)
+    time = rows.deepest_time[0] - fall.begun - inwards + outwards
+    return FirstContact(
+        end=end,
+        time=jnp.where(rows.apex[0] >= end, time, jnp.nan),
+        force=rows.force[0],
+        unloading=pulled,
+        outset=end_of_contact(table, least_peak(body, pulled.pull_off, peak)),
+    )
+
+
+def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
+    """Largest force of the gentlest impact [N]: the weight or the pull-off force.
+
+    Gas may stop a body where it carries far less than its weight.
+    """
+    carried = body.weight if body.film is None else _IN_GAS * body.weight
+    return jnp.maximum(jnp.maximum(carried, pull_off), _LEAST * peak)
+
+
+def _ahead(table: Table, phase: Phase, *, parting: bool) -> Pieces:
+    return join(table, phase.branch, phase.inner, phase.start, jnp.asarray(parting))
+
+
+def passing_at(body: Body, table: Table, rows: Impacts, place: jax.Array) -> Passing:
+    """Kinetic energies [J] with which each impact passes a place [m] outside contact."""
+
+    def passing(phase: Phase, parting: bool) -> jax.Array:
+        pieces = _ahead(table, phase, parting=parting)
+        return kinetic_at(body, pieces, phase.kinetic, jnp.asarray(parting), place)
+
+    return (
+        jax.vmap(lambda phase: passing(phase, False))(rows.fall),
+        jax.vmap(lambda phase: passing(phase, True))(rows.rise),
+    )
+
+
+def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
+    """The values of the impact before, ``first`` before the first."""
+    return jnp.concatenate([jnp.asarray(first, dtype=jnp.float64)[None], values[:-1]])
+
+
+def _captures(
+    motion: Motion, body: Body, reference: jax.Array, outside: jax.Array, gone: jax.Array
+) -> jax.Array:
+    """Whether a rebound stays within the contact, per impact.
+
+    Gas alone may keep one within its reach: that is no capture, and the static equilibrium
+    counts in place of the end of contact.
+    """
+    rows, still = motion.impacts, motion.datum.equilibrium
+    held = reference if body.film is None else jnp.fmin(reference, still)
+    held = jnp.where(outside, held, still)
+    return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
+
+
+def _speed(energy: jax.Array, mass: Real) -> jax.Array:
+    """Speed [m/s] of a kinetic energy [J]; NaN of a negative one."""
+    known = energy > 0.0
+    return jnp.where(known, jnp.sqrt(2.0 / mass * jnp.where(known, energy, 1.0)), jnp.nan)
+
+
+def _energies(
+    motion: Motion, body: Body, reference: jax.Array, outside: jax.Array, passing: Passing | None
+) -> tuple[jax.Array, jax.Array]:
+    """Energies [J] before and after each impact, above that of a body at the end of contact.
+
+    A body released within the reach of the contact has no such place on its path: there they
+    count from the static equilibrium.
+    """
+    rows, weight = motion.impacts, body.weight
+    zero = jnp.where(
+        outside, weight * reference, motion.datum.stored + weight * motion.datum.equilibrium
+    )
+    after = rows.mechanical - zero
+    before = _shift(after, motion.release - zero)
+    if body.film is not None:
+        # Gas takes energy beyond the reference too: count what passes there.
+        kinetic_in, kinetic_out = passing or passing_at(body, motion.table, rows, reference)
+        before = jnp.where(outside, kinetic_in, before)
+        after = jnp.where(outside, kinetic_out, after)
+    return before, after
+
+
+def _restitution(
+    motion: Motion,
+    body: Body,
+    reference: jax.Array,
+    outside: jax.Array,
+    gone: jax.Array,
+    captures: jax.Array,
+    energies: tuple[jax.Array, jax.Array],
+) -> jax.Array:
+    """Square root of the ratio of the energies after and before each impact.
+
+    The impact that captures has 0, later ones NaN, and so has a rebound that gas alone keeps
+    from coming back to the end of contact.
+    """
+    rows, (before, after) = motion.impacts, energies
+    back = jnp.logical_or(rows.apex >= reference, gone)
+    counts = jnp.logical_or(back, jnp.logical_not(outside))
+    usable = jnp.logical_and(jnp.logical_and(before > 0.0, after > 0.0), counts)
+    ratio = jnp.where(usable, after, 1.0) / jnp.where(usable, before, 1.0)
+    free_before = jnp.logical_or(_shift(counts.astype(float), 1.0) > 0.5, ~outside)
+    ends = jnp.logical_and(outside, free_before)
+    if body.film is not None:
+        ends = jnp.logical_and(ends, captures)
+    otherwise = jnp.where(ends, 0.0, jnp.nan)
+    value = jnp.where(usable, jnp.sqrt(jnp.where(usable, ratio, 1.0)), otherwise)
+    return jnp.where(rows.made, value, jnp.nan)

@@ -1,0 +1,299 @@
+"""Results in words and tables, for a terminal and for ``summary.txt``; 80 columns."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from asperity.config.amounts import amount as amount
+from asperity.config.amounts import scaled as scaled
+from asperity.regimes import LAW_NAMES
+from asperity.results.shares import share_texts
+from asperity.results.verdict import sentence
+
+if TYPE_CHECKING:
+    from asperity.results.result_data import CurveData, ResultData
+
+WIDTH = 80
+_ROUNDING = 1e-15  # m: a separation below it is 0
+FEW = 5
+"""How many impacts a terminal shows of many."""
+_FEW_MORE = 3  # are shown too
+
+_COLUMNS = (
+    ("height", "rebound_height", "m"),
+    ("restitution", "restitution", ""),
+    ("period", "impact_time", "s"),
+)
+_PUBLISHED = (
+    ("decrement", "log_decrement", ""),
+    ("power loss", "power_loss", "W"),
+    ("one-way", "power_loss_published", "W"),
+)
+"""What the publication counts."""
+
+
+def of_result(
+    result: ResultData, made: Mapping[str, object], *, published: bool | None = None
+) -> str:
+    """All of a result: outcome, measures, regime, energy, every impact, warnings, provenance.
+
+    Parameters
+    ----------
+    result: ResultData
+        The result.
+    made : mapping of str to object
+        Its record's attributes, for the versions and the hash of the input.
+    published : bool, optional
+        Whether the publication's measures are shown too: decrement and power losses; by default
+        for a case with a [publication] table.
+    """
+    return "\n".join(
+        [
+            *_heading(result.name, _ended(result)),
+            *_section("Motion", _motion(result.measures)),
+            *_section("Energy", _energy(result.ledger)),
+            *_section("Surface", _surface(result.surface)),
+            *_section("Regime", _regime(result.regime)),
+            *_chosen(result.regime),
+            *_impacts(result, None, published),
+            *warning_lines(result.warnings),
+            *_provenance(made),
+            "",
+        ]
+    )
+
+
+def of_curve(curve: CurveData, made: Mapping[str, object]) -> str:
+    """The numbers of a curve, and where they come from; ``made`` as for `of_result`."""
+    heading = _heading(curve.name, "Force against separation, in and out.")
+    rows = _section("Curve", _curve(curve))
+    return "\n".join([*heading, *rows, *warning_lines(curve.warnings), *_provenance(made), ""])
+
+
+def brief(result: ResultData, *, published: bool | None = None) -> str:
+    """What a terminal shows of a result; ``published`` as for `of_result`."""
+    rows = [*_motion(result.measures), *_energy(result.ledger)]
+    return "\n".join(
+        [
+            f"{result.name}: {result.outcome.value}",
+            *_wrapped(_ended(result)),
+            *_section("", rows),
+            *_chosen(result.regime),
+            *_impacts(result, FEW, published),
+            *warning_lines(result.warnings),
+        ]
+    )
+
+
+def shown_of(result: ResultData) -> tuple[str, list[tuple[str, list[tuple[str, str]]]]]:
+    """Outcome in a sentence, and the measures that there are under their headings."""
+    parts = {
+        "Motion": _motion(result.measures),
+        "Energy": _energy(result.ledger),
+        "Surface": _surface(result.surface),
+    }
+    return _ended(result), [(title, _known(rows)) for title, rows in parts.items()]
+
+
+def shown_of_curve(curve: CurveData) -> list[tuple[str, str]]:
+    """The numbers of a curve that there are, by what they are called."""
+    return _known(_curve(curve))
+
+
+def _known(rows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [row for row in rows if row[1] != "-"]
+
+
+def _ended(result: ResultData) -> str:
+    """The answer in a sentence where there is one, and how the motion ended."""
+    if not result.outcome.ok:
+        return result.outcome.message
+    return f"{sentence(result)}. {result.outcome.message}"
+
+
+def brief_curve(curve: CurveData) -> str:
+    """What a terminal shows of a curve."""
+    title = f"{curve.name}: force against separation"
+    return "\n".join([title, *_section("", _curve(curve)), *warning_lines(curve.warnings)])
+
+
+def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
+    captured = {True: "yes", False: "no", None: "-"}[measures.get("captured")]
+    restitution = measures.get("restitution") or []
+    first = restitution[0] if restitution else None
+    critical = measures.get("critical_velocity_note")
+    if measures.get("critical_velocity") is not None:
+        note = f"  ({critical})" if critical else ""
+        critical = amount(measures["critical_velocity"], "m/s") + note
+    return [
+        ("impact speed", amount(measures.get("impact_speed"), "m/s")),
+        ("restitution", _cell(first, 1.0, "")),
+        ("captured at first impact", captured),
+        ("critical velocity", critical or "-"),
+        ("contact time", amount(measures.get("contact_time"), "s")),
+        ("largest force", amount(measures.get("maximum_force"), "N")),
+        *_pull(measures),
+        ("impacts", str(len(restitution))),
+        ("time to capture", amount(measures.get("capture_time"), "s")),
+        ("time to rest", amount(measures.get("stiction_time"), "s")),
+    ]
+
+
+def _pull(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Pull-off and work of separation, with the load that they belong to."""
+    after = ""
+    if found.get("preload") is not None:
+        after = f"  (after {amount(found['preload'], 'N')})"
+    where = ""
+    if found.get("pull_off_separation") is not None:
+        place = found["pull_off_separation"]
+        where = f" at {amount(place if abs(place) > _ROUNDING else 0.0, 'm')}"
+    return [
+        ("pull-off force", amount(found.get("pull_off"), "N") + where + after),
+        ("work of separation", amount(found.get("work_of_separation"), "J") + after),
+    ]
+
+
+def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
+    initial = ledger.get("initial")
+    rows = [("energy at release", amount(initial, "J"))]
+    lost = ledger.get("lost") or {}
+    total = sum(lost.values())
+    if total > 0.0 and initial and initial > 0.0:
+        share = f"{amount(100.0 * total / initial)} % of that at release"
+        about = share if total <= initial else "with what attraction adds"
+        rows.append(("energy lost", f"{amount(total, 'J')}  ({about})"))
+    for (mechanism, energy), share in zip(lost.items(), share_texts(lost.values()), strict=True):
+        about = f"  ({share} of the energy lost)" if energy > 0.0 else ""
+        rows.append((f"lost to {mechanism}", amount(energy, "J") + about))
+    closure = ledger.get("closure")
+    closed = "-" if closure is None else f"{closure:.1e} of the impact energy"
+    return [*rows, ("balance closes to", closed)]
+
+
+def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    for name, value in regime.items():
+        if name.endswith("_reason"):
+            continue
+        if isinstance(value, str):
+            text = LAW_NAMES.get(value.lower(), value)
+        elif isinstance(value, bool):
+            text = "yes" if value else "no"
+        else:
+            text = amount(value)
+        rows.append((name.replace("_", " ").replace("tabor", "Tabor"), text))
+    return rows
+
+
+def _surface(found: dict[str, Any] | None) -> list[tuple[str, str]]:
+    """What the files of a case were found to be."""
+    if found is None:
+        return []
+    rows = [("file", Path(each["file"]).name) for each in found["files"]]
+    rows += [("prepared", step) for each in found["files"] for step in each["prepared"]]
+    rows += [("maps", found["added"])] if found.get("added") else []
+    return [
+        *rows,
+        ("summits", f"{found['summits']} (source = '{found['source']}')"),
+        ("density", amount(found["asperity_density"], "1/m^2")),
+        ("tip radius", amount(found["asperity_radius"], "m")),
+        ("rms height of summits", amount(found["rms_height"], "m")),
+        ("their mean height", amount(found["mean_height"], "m")),
+        ("rms height of surface", amount(found["surface_rms_height"], "m")),
+    ]
+
+
+def _chosen(regime: dict[str, Any]) -> list[str]:
+    """Which law the program chose, and the state of the liquid, each with its reason.
+
+    Nothing where the case names the law, and where it is dry.
+    """
+    lines: list[str] = []
+    reason, wetting = regime.get("adhesion_reason"), regime.get("wetting")
+    if reason is not None:
+        law = LAW_NAMES[regime["adhesion_law"]]
+        lines += ["", *_wrapped(f"Adhesion law chosen: {law}. {reason}.")]
+    if wetting not in (None, "dry"):
+        why = regime["wetting_reason"]
+        lines += ["", *_wrapped(f"Liquid: {wetting}, since {why}.")]
+    return lines
+
+
+def _curve(curve: CurveData) -> list[tuple[str, str]]:
+    return [
+        ("closest rigid separation", amount(curve.deepest, "m")),
+        *_pull(vars(curve)),
+        ("lost over in and out", amount(curve.loss, "J")),
+    ]
+
+
+def _impacts(result: ResultData, most: int | None, published: bool | None) -> list[str]:
+    """The table of impacts, each column in one unit; its first ``most`` rows of many more."""
+    shows = result.case.publication is not None if published is None else published
+    columns = [*_COLUMNS, *(_PUBLISHED if shows else ())]
+    given = [result.measures.get(key) or [] for _, key, _ in columns]
+    count = max(len(values) for values in given)
+    if not count:
+        return []
+    shown = count if most is None or count <= most + _FEW_MORE else most
+    units = [_column_unit(values[:shown], columns[i][2]) for i, values in enumerate(given)]
+    lines = ["", "Impacts" + " (one-way: the power loss as the publication counts it)" * shows]
+    lines.append(_row("", [title for title, _, _ in columns]))
+    lines.append(_row("", [unit for _, unit in units]))
+    for number in range(shown):
+        cells = [
+            _cell(values[number] if number < len(values) else None, factor, unit)
+            for values, (factor, unit) in zip(given, units, strict=True)
+        ]
+        lines.append(_row(str(number + 1), cells))
+    return lines if shown == count else [*lines, f"  and {count - shown} more"]
+
+
+def _column_unit(values: Sequence[float | None], unit: str) -> tuple[float, str]:
+    return scaled(max((abs(v) for v in values if v is not None), default=0.0), unit)
+
+
+def _cell(value: float | None, factor: float, unit: str) -> str:
+    """A value of the table; a ratio with more digits, since it may be close to 1."""
+    digits = 4 if unit else 6
+    return "-" if value is None or not math.isfinite(value) else f"{value / factor:.{digits}g}"
+
+
+def _row(first: str, cells: Iterable[str]) -> str:
+    return (f"{first:>6}" + "".join(f"{cell:>12}" for cell in cells)).rstrip()
+
+
+def _heading(name: str, sentence: str) -> list[str]:
+    return [name, "=" * min(len(name), WIDTH), "", *_wrapped(sentence)]
+
+
+def _section(title: str, rows: Sequence[tuple[str, str]]) -> list[str]:
+    if not rows:
+        return []
+    head = ["", title] if title else [""]
+    return [*head, *(f"  {label:<26}{text}" for label, text in rows)]
+
+
+def warning_lines(warnings: Sequence[str]) -> list[str]:
+    """Warnings as a list under a heading; no lines where there are none."""
+    if not warnings:
+        return []
+    lines = ["", "Warnings"]
+    for warning in warnings:
+        lines += textwrap.wrap(warning, WIDTH, initial_indent="  - ", subsequent_indent="    ")
+    return lines
+
+
+def _provenance(made: Mapping[str, object]) -> list[str]:
+    names = ("asperity", "jax", "numpy", "python")
+    versions = ", ".join(f"{name} {made[f'{name}_version']}" for name in names)
+    return ["", "Made by", *_wrapped(versions, "  "), f"  input {made['input_sha256']}"]
+
+
+def _wrapped(text: str, indent: str = "") -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent)

@@ -1,0 +1,172 @@
+"""The answer in one sentence: what the first impact does, how the motion ends, and why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asperity.errors import Outcome
+from asperity.regimes import missed
+
+if TYPE_CHECKING:
+    from asperity.results.result_data import ResultData
+
+_TAKERS = {
+    "adhesion": "dry adhesion takes",
+    "capillary": "menisci take",
+    "gas": "the gas film takes",
+    "plastic": "yielding takes",
+    "viscous": "the creeping bulk takes",
+    "waves": "elastic waves take",
+}
+_LITTLE = 1e-9
+"""Share of the energy at the release below which nothing was lost that is worth a word."""
+
+
+def verdict(result: ResultData) -> str:
+    """What happens at the first impact, how the motion ends, and what takes most of the energy.
+
+    E.g. ``leaves the first impact with e = 0.922 and sticks after 13 rebounds; menisci take all of
+    the energy lost``.
+
+    Parameters
+    ----------
+    result: ResultData
+        The result.
+    """
+    if unjudged(result):
+        touching = result.regime["touching_asperities"]
+        return (
+            f"no verdict: {touching:.2g} asperities are expected to touch at closest approach, so "
+            f"{missed(touching)}; the numbers are means over many bodies"
+        )
+    if not result.measures["rebound_height"]:
+        return "touched nothing before the run ended"
+    parts = [_first(result.measures), _ending(result)]
+    if result.outcome is Outcome.STOPPED:
+        parts = [_first(result.measures) if not _untouched(result) else "", _stopped(result)]
+    told = " and ".join(part for part in parts if part)
+    return "; ".join(part for part in (told, _taken(result.ledger)) if part)
+
+
+def sentence(result: ResultData) -> str:
+    """The `verdict` as the beginning of a sentence, with its subject and without its stop.
+
+    Parameters
+    ----------
+    result: ResultData
+        The result.
+    """
+    answer = verdict(result)
+    return answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
+
+
+def _first(measures: dict[str, Any]) -> str:
+    """What happens at the first impact."""
+    kept = measures["restitution"][0]
+    if measures["captured"]:
+        return "is captured at the first impact"
+    if kept is None:
+        return ""
+    return f"leaves the first impact with e = {kept:.{3 if kept < 0.9995 else 6}g}"
+
+
+def unjudged(result: ResultData) -> bool:
+    """Whether fewer than one asperity is expected to touch, so that no single body does as told.
+
+    Parameters
+    ----------
+    result: ResultData
+        The result.
+    """
+    touching = result.regime.get("touching_asperities")
+    if result.outcome is Outcome.FAILED or _untouched(result):
+        return False
+    return touching is not None and touching < 1.0
+
+
+def _untouched(result: ResultData) -> bool:
+    """Whether the gas film stopped the body on its first way in."""
+    if result.outcome is not Outcome.STOPPED:
+        return False
+    apexes, deepest = (result.events[f"{name}_separation"] for name in ("apex", "deepest"))
+    return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
+
+
+def _stopped(result: ResultData) -> str:
+    """Where the gas film stopped the body."""
+    place = f"{result.events['apex_separation'][-1] * 1e9:.4g} nm"
+    if _untouched(result):
+        return f"is stopped by the gas film at {place} before it touched"
+    return f"is stopped by the gas film at {place} on its way out"
+
+
+def _ending(result: ResultData) -> str:
+    """How the motion ends, where the first impact does not say it."""
+    measures, outcome = result.measures, result.outcome
+    impacts = len(measures["rebound_height"])
+    if outcome is Outcome.TIME_LIMIT:
+        impacts = _rebounds_made(result)
+    if measures["captured"]:
+        return "" if _held(result) else "held there by its weight alone"
+    if measures["capture_time"] is not None:
+        held = "sticks" if _held(result) else "comes to rest, held by its weight alone,"
+        return f"{held} {_after(_rebounds_before(result))}"
+    if outcome is Outcome.REST:
+        return f"comes to rest {_after(impacts)}"
+    if outcome is Outcome.ESCAPED:
+        return "does not come back"
+    if outcome is Outcome.OSCILLATING:
+        if _takes(result.ledger):
+            return "goes on for ever: its last cycle loses nothing"
+        return "bounces for ever"
+    if outcome is Outcome.FAILED:
+        return "the numerics failed before there was an answer"
+    if not impacts:
+        return "had not come back once where the run was stopped"
+    return f"still bounces {_after(impacts)}, where the run was stopped"
+
+
+def _held(result: ResultData) -> bool:
+    """Whether anything pulls the body to the surface, be it captured or at rest in a gas."""
+    return bool(np.min(result.forces["contact"], initial=0.0) < 0.0)
+
+
+def _rebounds_made(result: ResultData) -> int:
+    """Rebounds that ended before the time limit."""
+    limit = result.case.numerics.time_limit
+    times = np.asarray(result.events["apex_time"])
+    return int(np.sum(times <= (np.inf if limit is None else limit)))
+
+
+def _rebounds_before(result: ResultData) -> int:
+    """Rebounds before the impact that captures."""
+    times = np.asarray(result.events["deepest_time"])
+    return int(np.sum(times < result.measures["capture_time"] * (1.0 - 1e-12)))
+
+
+def _after(rebounds: int) -> str:
+    if not rebounds:
+        return "at the first impact"
+    return f"after {rebounds} rebound{'s' * (rebounds > 1)}"
+
+
+def _taken(ledger: dict[str, Any]) -> str:
+    """Who takes most of the energy that is lost."""
+    lost = ledger.get("lost") or {}
+    if not _takes(ledger):
+        return "no energy is lost"
+    total = sum(lost.values())
+    most = max(lost, key=lambda name: lost[name])
+    share = 100.0 * lost[most] / total
+    words = _TAKERS.get(most, f"{most} takes")
+    if len(lost) == 1 or share > 99.95:
+        return f"{words} all of the energy lost"
+    return f"{words} {share:.{1 if share > 99.0 else 0}f} % of the energy lost"
+
+
+def _takes(ledger: dict[str, Any]) -> bool:
+    """Whether energy is lost that is worth a word."""
+    total = sum((ledger.get("lost") or {}).values())
+    return total > _LITTLE * abs(ledger.get("initial") or 0.0)

@@ -1,0 +1,265 @@
+"""A surface described: heights, summits, spectrum, models, and what they mean."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..topography import Topography
+from .gaussianity import (
+    Gaussianity,
+    Independent,
+    gaussianity,
+    independent_heights,
+    independent_summits,
+)
+from .nayak import NARROWEST, McCool, Nayak, mccool
+from .pixel_size import PixelEffect, discretisation_error, pixel_effect
+from .spectrum import Moments, ProfileSpectrum, moments, profile_spectrum
+from .summits import LEAST_SUMMITS, Summits, find_summits
+from .surface_verdicts import verdicts
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """What a map says of its surface; made by `describe`.
+
+    Attributes
+    ----------
+    source
+        Name of the map's file; empty where there is none.
+    pixels
+        Pixels along x and along y.
+    pixel_size, physical_size
+        Of the map, along x and along y [m].
+    missing_pixels
+        How many pixels are missing.
+    rms_height, peak_to_valley
+        Of the heights about their mean [m].
+    heights
+        The heights against the Gaussian; None for a flat map.
+    spectral
+        Spectral moments by finite differences.
+    along_x, along_y
+        Spectra of the profiles; None where no profile is complete.
+    summits
+        All summits.
+    summit_heights
+        Their heights against the Gaussian; None below ten summits.
+    mccool, nayak
+        What the moments say of the summits of a Gaussian isotropic surface; None where they
+        cannot.
+    effects
+        The effect of the pixel size, the map's own pixel first.
+    verdicts
+        What it means, in sentences.
+    """
+
+    source: str
+    pixels: tuple[int, int]
+    pixel_size: tuple[float, float]
+    physical_size: tuple[float, float]
+    missing_pixels: int
+    rms_height: float
+    peak_to_valley: float
+    heights: Gaussianity | None
+    spectral: Moments
+    along_x: ProfileSpectrum | None
+    along_y: ProfileSpectrum | None
+    summits: Summits
+    summit_heights: Gaussianity | None
+    mccool: McCool | None
+    nayak: Nayak | None
+    effects: tuple[PixelEffect, ...]
+    verdicts: tuple[str, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """The figures in SI units, for `json.dumps`; null where a figure does not exist."""
+        heights, summits, enough = self.heights, self.summits, self.summit_heights is not None
+        record = {
+            "source": self.source,
+            "pixels": self.pixels,
+            "pixel_size": self.pixel_size,
+            "physical_size": self.physical_size,
+            "missing_pixels": self.missing_pixels,
+            "rms_height": self.rms_height,
+            "peak_to_valley": self.peak_to_valley,
+            "skewness": heights and heights.skewness,
+            "kurtosis": heights and heights.kurtosis,
+            "gaussian": _gaussian(heights),
+            "moments": [self.spectral.m0, self.spectral.m2, self.spectral.m4],
+            "bandwidth": self.spectral.bandwidth,
+            "rms_slopes": self.spectral.slopes,
+            "spectrum_moments": self._spectrum_moments(),
+            "summit_density": summits.density,
+            "summit_radius": summits.radius,
+            "summit_rms_height": summits.rms_height if enough else None,
+            "summits": self._summits(),
+            "mccool": self.mccool and asdict(self.mccool),
+            "nayak": self.nayak and self.nayak.as_json(),
+            "pixel_effect": [asdict(effect) for effect in self.effects],
+            "discretisation_error": self._errors(),
+            "verdicts": self.verdicts,
+        }
+        plain: dict[str, Any] = _plain(record)
+        return plain
+
+    def table(self) -> list[tuple[str, float | None, str]]:
+        """Rows (name, value, unit) for a terminal, SI; None where a figure does not exist."""
+        record = self.as_json()
+        rows = [(name, record[key], unit) for key, name, unit in _ROWS]
+        rows += [
+            (f"moment m{order}", value, unit)
+            for order, value, unit in zip((0, 2, 4), record["moments"], _MOMENT_UNITS, strict=True)
+        ]
+        rows += _nested(record, "gaussian", "heights, ", _GAUSSIAN_ROWS)
+        rows += _nested(record, "summits", "summits, ", _SUMMIT_ROWS)
+        rows += _nested(record["summits"], "gaussian", "summit heights, ", _GAUSSIAN_ROWS)
+        rows += _nested(record, "mccool", "McCool, ", _MODEL_ROWS)
+        rows += _nested(record, "nayak", "Nayak, ", _NAYAK_ROWS)
+        return rows
+
+    def _summits(self) -> dict[str, Any]:
+        """Figures of the summits; those of their distribution only from ten summits up."""
+        found, shape = self.summits, self.summit_heights
+        return {
+            "count": found.count,
+            "plateaus": found.plateaus,
+            "searched": found.searched,
+            "mean_height": found.mean_height,
+            "rms_height": found.rms_height if shape else None,
+            "mean_radius": found.mean_radius,
+            "median_radius": found.median_radius,
+            "skewness": shape and shape.skewness,
+            "kurtosis": shape and shape.kurtosis,
+            "gaussian": _gaussian(shape),
+        }
+
+    def _spectrum_moments(self) -> list[float] | None:
+        """Moments m0, m2, m4 of the spectra, the mean of both directions."""
+        if self.along_x is None or self.along_y is None:
+            return None
+        both = (self.along_x, self.along_y)
+        return [0.5 * sum(one.moment(order) for one in both) for order in (0, 2, 4)]
+
+    def _errors(self) -> dict[str, float] | None:
+        """Estimated relative errors of the counted density and radius."""
+        errors = discretisation_error(self.effects)
+        return dict(zip(("density", "radius"), errors, strict=True)) if errors else None
+
+
+_MOMENT_UNITS = ("m^2", "", "1/m^2")
+_ROWS = (
+    ("rms_height", "rms height", "m"),
+    ("peak_to_valley", "peak to valley", "m"),
+    ("skewness", "skewness", ""),
+    ("kurtosis", "kurtosis", ""),
+    ("missing_pixels", "missing pixels", ""),
+    ("summit_density", "summit density", "1/m^2"),
+    ("summit_radius", "summit radius", "m"),
+    ("summit_rms_height", "summit rms height", "m"),
+    ("bandwidth", "bandwidth", ""),
+)
+_GAUSSIAN_ROWS = (
+    ("statistic", "Kolmogorov-Smirnov statistic", ""),
+    ("p_value", "p-value", ""),
+    ("independent", "independent values", ""),
+)
+_SUMMIT_ROWS = (
+    ("count", "number", ""),
+    ("mean_height", "mean height", "m"),
+    ("mean_radius", "mean radius", "m"),
+    ("median_radius", "median radius", "m"),
+    ("skewness", "skewness", ""),
+    ("kurtosis", "kurtosis", ""),
+)
+_MODEL_ROWS = (
+    ("density", "summit density", "1/m^2"),
+    ("radius", "summit radius", "m"),
+    ("rms_height", "summit rms height", "m"),
+    ("mean_height", "mean summit height", "m"),
+)
+_NAYAK_ROWS = (
+    *_MODEL_ROWS,
+    ("skewness", "summit skewness", ""),
+    ("kurtosis", "summit kurtosis", ""),
+    ("curvature_correlation", "correlation of height and curvature", ""),
+)
+
+
+def describe(topography: Topography) -> Description:
+    """Heights, summits, spectral moments and models of a map, with verdicts in words.
+
+    The map is taken as it is: nothing is levelled, filtered or filled. What is absent
+    for want of summits or roughness is None, and a verdict says so.
+    """
+    heights = topography.heights
+    present = heights[~topography.missing] if topography.missing_pixels else heights
+    worth = independent_heights(topography)
+    shape = gaussianity(present, worth, "heights")
+    spectral, summits = moments(topography), find_summits(topography)
+    tops = _summit_shape(summits, worth)
+    effects = pixel_effect(topography, summits, spectral)
+    return Description(
+        source=topography.source,
+        pixels=(heights.shape[1], heights.shape[0]),
+        pixel_size=topography.pixel_size,
+        physical_size=topography.physical_size,
+        missing_pixels=topography.missing_pixels,
+        rms_height=topography.rms_height,
+        peak_to_valley=float(present.max() - present.min()),
+        heights=shape,
+        spectral=spectral,
+        along_x=profile_spectrum(topography, "x"),
+        along_y=profile_spectrum(topography, "y"),
+        summits=summits,
+        summit_heights=tops,
+        mccool=mccool(spectral),
+        nayak=_nayak(spectral),
+        effects=effects,
+        verdicts=verdicts(shape, tops, summits, spectral, effects),
+    )
+
+
+def _summit_shape(summits: Summits, worth: Independent) -> Gaussianity | None:
+    """Summit heights against the Gaussian; None where they are too few."""
+    if summits.count < LEAST_SUMMITS:
+        return None
+    independent = independent_summits(summits.count, worth)
+    return gaussianity(summits.heights, independent, "summit heights")
+
+
+def _nayak(spectral: Moments) -> Nayak | None:
+    """Nayak's statistics, where an isotropic surface can have the moments."""
+    if not (spectral.bandwidth >= NARROWEST and spectral.m4 > 0.0):
+        return None
+    return Nayak(spectral.m0, spectral.m2, spectral.m4)
+
+
+def _gaussian(shape: Gaussianity | None) -> dict[str, Any]:
+    """Statistic, p-value and number of independent values; null where nothing has a shape."""
+    return {
+        "statistic": shape and shape.statistic,
+        "p_value": shape and shape.p_value,
+        "independent": shape and shape.independent.distribution,
+    }
+
+
+def _nested(
+    record: dict[str, Any], key: str, prefix: str, rows: tuple[tuple[str, str, str], ...]
+) -> list[tuple[str, float | None, str]]:
+    """Rows of a part of the record; none where the part is absent."""
+    part = record[key] or {}
+    return [(prefix + name, part[inner], unit) for inner, name, unit in rows if inner in part]
+
+
+def _plain(value: Any) -> Any:
+    """Numbers, lists and dictionaries only; NaN and infinity become None, as JSON has neither."""
+    if isinstance(value, dict):
+        return {key: _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value

@@ -1,0 +1,223 @@
+"""Heights from the formats of instruments, through SurfaceTopography (the extra `topography`)."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import logging
+import warnings
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...errors import InputError, one_line
+from ...units import shown
+from .content import MOST_PIXELS, cut_short, refusal, suffix_of
+from .header import agreed_size, agreed_unit, in_metres
+
+NATIVE = ".npy .csv .txt .dat .xyz .nc"
+"""Endings that need no extra, each also packed as .gz."""
+
+_BY_ENDING = ("nms", "hgt")
+"""Formats without a mark of their own, which fit many a file: taken by their ending alone."""
+
+
+class Scan(NamedTuple):
+    """One channel of an instrument's file.
+
+    Parameters
+    ----------
+    heights
+        Heights [m], shape (rows, columns), NaN where undefined.
+    pixel_size
+        Spacing (along x, along y) [m].
+    format
+        The format, in the words of the library.
+    channel
+        Number and name of the channel, e.g. ``"0 ZSensor"``.
+    channels
+        All channels of heights in the file, likewise.
+    notes
+        What the library warns of, a line each.
+    """
+
+    heights: np.ndarray
+    pixel_size: tuple[float, float]
+    format: str
+    channel: str
+    channels: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def scan_of(
+    content: bytes,
+    file: str,
+    size: tuple[float, float] | None,
+    unit: str | None,
+    channel: str | int | None,
+) -> Scan:
+    """One channel of heights from a file of any format that SurfaceTopography reads.
+
+    Parameters
+    ----------
+    content
+        The file's bytes, unpacked.
+    file
+        Its name.
+    size, unit, channel
+        As `asperity.surfaces.files.read_surface.read_topography`.
+
+    Raises
+    ------
+    InputError
+        Where the library is missing or cannot read the file, the channel is no map of heights, or
+        size or unit are stated neither by the file nor by the caller, or by both differently.
+    """
+    with warnings.catch_warnings(record=True) as told, _silenced("igor2"):
+        warnings.simplefilter("always")
+        library = _library(file)
+        try:
+            return _read(library, content, file, size, unit, channel)._replace(notes=_notes(told))
+        except (InputError, KeyboardInterrupt):
+            raise
+        except Exception as error:  # damaged files make its readers raise errors of every kind
+            raise _unreadable(file, error) from error
+
+
+@contextlib.contextmanager
+def _silenced(name: str) -> Iterator[None]:
+    """A logger and those below it kept still: it writes the file's bytes out before it raises."""
+    logger, still = logging.getLogger(name), logging.NullHandler()
+    before, logger.propagate = logger.propagate, False
+    logger.addHandler(still)
+    try:
+        yield
+    finally:
+        logger.removeHandler(still)
+        logger.propagate = before
+
+
+def _library(file: str) -> Any:
+    try:
+        return importlib.import_module("SurfaceTopography.IO")
+    except ImportError:
+        raise refusal(
+            file,
+            "needs SurfaceTopography to be read; install it with: "
+            f'pip install "asperity[topography]" (without it: {NATIVE})',
+        ) from None
+
+
+def _read(
+    library: Any,
+    content: bytes,
+    file: str,
+    size: tuple[float, float] | None,
+    unit: str | None,
+    channel: str | int | None,
+) -> Scan:
+    with library.open_topography(io.BytesIO(content)) as reader:
+        kind = reader.format()
+        if kind in _BY_ENDING and suffix_of(file) != f".{kind}":
+            raise _unknown(file)
+        heights = [one for one in reader.channels if _is_map(one)]
+        chosen = _chosen(heights, reader.default_channel, file, channel)
+        heights_unit = agreed_unit(chosen.unit or None, unit, file)
+        width, length = _size(chosen, heights_unit, size, file)
+        surface = chosen.topography(**_lacking(chosen))
+        _check_others(library, reader.channels, chosen)
+        columns, rows = surface.nb_grid_pts
+        # Masked where undefined, and the first index along x.
+        values = np.ma.filled(
+            np.ma.asarray(surface.to_unit("m").heights(), dtype=np.float64), np.nan
+        ).T
+        return Scan(
+            values if chosen.unit else in_metres(values, heights_unit),
+            (width / columns, length / rows),
+            str(reader.name()),
+            _label(chosen),
+            tuple(_label(one) for one in heights),
+            (),
+        )
+
+
+def _size(
+    channel: Any, heights_unit: str, size: tuple[float, float] | None, file: str
+) -> tuple[float, float]:
+    """Size (x, y) [m] of a channel; the library gives it in the unit of the heights."""
+    own = channel.physical_sizes
+    stated = None if own is None else in_metres(np.array(own, dtype=np.float64), heights_unit)
+    return agreed_size(None if stated is None else (stated[0], stated[1]), size, file)
+
+
+def _lacking(channel: Any) -> dict[str, Any]:
+    """What the library insists on where the file is silent: as if all were in metres."""
+    lacking = {} if channel.unit else {"unit": "m"}
+    return lacking if channel.physical_sizes else {**lacking, "physical_sizes": (1.0, 1.0)}
+
+
+def _check_others(library: Any, channels: list[Any], chosen: Any) -> None:
+    """Read the other channels too: a file cut in half may still hold the first of them."""
+    for one in channels:
+        if one.index != chosen.index:
+            try:
+                one.topography()
+            except library.CorruptFile:
+                raise
+            except Exception:  # noqa: BLE001 - a channel not asked for may be beyond the library
+                continue
+
+
+def _is_map(channel: Any) -> bool:
+    """Whether a channel holds heights over a plane; a pair of units is that of another quantity."""
+    uniform = channel.dim == 2 and channel.is_uniform is not False
+    return bool(uniform and channel.is_height_channel and not isinstance(channel.unit, tuple))
+
+
+def _chosen(heights: list[Any], default: Any, file: str, channel: str | int | None) -> Any:
+    """The channel asked for by number or name, else the library's default."""
+    listed = ", ".join(_label(one) for one in heights) or "none"
+    if channel is None:
+        found = [one for one in heights if one.index == default.index]
+    else:
+        found = [one for one in heights if channel in (one.index, one.name, str(one.index))]
+    if len(found) != 1:
+        got = _label(default) if channel is None else shown(channel)
+        rule = "the channel must be one of heights" if not found else "the channel must be one"
+        raise refusal(file, f"{rule}: {listed}; got {got}; give its number")
+    (one,) = found
+    if np.prod([float(count) for count in one.nb_grid_pts]) > MOST_PIXELS:
+        raise refusal(file, f"must have at most {MOST_PIXELS} pixels; got {one.nb_grid_pts}")
+    return one
+
+
+def _label(channel: Any) -> str:
+    return f"{channel.index} {channel.name}"
+
+
+def _unreadable(file: str, error: Exception) -> InputError:
+    """The library's refusal in one line; its list of all readers tried is left out."""
+    if type(error).__name__ == "CannotDetectFileFormat":
+        return _unknown(file)
+    said = one_line(str(error))[:160] or type(error).__name__
+    return cut_short(file, f"a file that SurfaceTopography cannot read ({said})")
+
+
+def _unknown(file: str) -> InputError:
+    return refusal(
+        file,
+        f"must be whole and in a known format ({NATIVE}, or one that SurfaceTopography reads); got "
+        "neither; export it again, as .csv if need be",
+    )
+
+
+def _notes(told: list[warnings.WarningMessage]) -> tuple[str, ...]:
+    """What the library warns of, once each; warnings about code, not about the file, are left out.
+
+    Those are for the authors of the libraries: a user can do nothing about them.
+    """
+    about_code = (DeprecationWarning, PendingDeprecationWarning, FutureWarning, ImportWarning)
+    said = [one_line(str(one.message)) for one in told if not issubclass(one.category, about_code)]
+    return tuple(dict.fromkeys(said))

@@ -1,0 +1,1 @@
+"""Made surfaces: self-affine, with Gaussian or given heights."""

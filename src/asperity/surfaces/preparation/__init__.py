@@ -1,0 +1,1 @@
+"""A surface made ready: missing pixels, line levelling, form removal, Gaussian filter."""

@@ -1,0 +1,248 @@
+"""The results of a study as a table: one row a case, axes first, units in the header."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import importlib
+import os
+import secrets
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.errors import InputError, OutputError
+from asperity.sweeps.store.dataset import Results, dataset_of, open_results, reasons
+from asperity.sweeps.study.columns import OUTCOMES, Column
+
+NOT_COMPUTED = "not_computed"
+"""Outcome of a case that is not computed yet."""
+
+_WORDS = np.array([NOT_COMPUTED, *(outcome.value for outcome in OUTCOMES)], dtype=object)
+
+
+def export(
+    store: str | os.PathLike[str], file: str | os.PathLike[str], *, force: bool = False
+) -> Path:
+    """Write the results of a study as ``.csv``, ``.parquet`` or ``.nc``.
+
+    CSV and Parquet have one row a case, read and written task by task, so that any number of
+    cases fits the memory; what does not apply is empty, outcomes are words. NetCDF has the
+    dimensions of `open_study`.
+
+    Parameters
+    ----------
+    store
+        The store.
+    file
+        What to write; its ending says how.
+    force
+        Whether a file that is there may be replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        Where the store cannot be read, the ending is unknown, the file is there already, or
+        Parquet's writer is not installed.
+    OutputError
+        Where the file cannot be written.
+    """
+    target = Path(file)
+    writer = _WRITERS.get(target.suffix.lower())
+    if writer is None:
+        raise InputError(
+            f"{target}: must end in one of {' '.join(_WRITERS)}; got "
+            f"{target.suffix or 'no ending'!r}",
+            file=str(target),
+        )
+    found = open_results(store)
+    found.refuse_empty()
+    with aside(target, force=force) as path:
+        writer(found, path)
+    return target
+
+
+@contextlib.contextmanager
+def aside(target: Path, *, force: bool) -> Iterator[Path]:
+    """A path beside the target to write to, which takes the target's place if all goes well.
+
+    Parameters
+    ----------
+    target
+        The file to come.
+    force
+        Whether one that is there may be replaced.
+
+    Raises
+    ------
+    InputError
+        Where the target is there and ``force`` is not set.
+    OutputError
+        Where it cannot be written.
+    """
+    path = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
+    try:
+        if target.is_dir():
+            raise IsADirectoryError("Is a directory")
+        refuse_present(target, force=force)
+        path.touch()
+        yield path
+        path.replace(target)
+    except OutputError:
+        raise
+    except OSError as error:
+        reason = error.strerror or error
+        raise OutputError(f"{target}: cannot be written: {reason}", path=str(target)) from error
+    finally:
+        with contextlib.suppress(OSError):
+            path.unlink(missing_ok=True)
+
+
+def refuse_present(target: Path, *, force: bool) -> None:
+    """Refuse a file that is there already.
+
+    Raises
+    ------
+    InputError
+        Where it is, and ``force`` is not set.
+    """
+    if target.exists() and not force:
+        raise InputError(
+            f"{target}: must not be there yet; got a file; use --force to replace it",
+            file=str(target),
+        )
+
+
+def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:
+    """The table in pieces of one task, in order: arrays of one length by the columns' names.
+
+    Axes and float measures are SI numbers, NaN where one does not apply; outcomes and reasons are
+    words; whether the first impact captures is an object array of booleans and None. What has
+    several values a case has a column for each, with its number from 1 in the name.
+    """
+    study, store = found.study, found.store
+    for number in range(study.tasks):
+        cases = study.task(number)
+        table = dict(study.values(cases.start, cases.stop))
+        for column in study.columns:
+            if number in store.done:
+                values = store.read(number, column.name)
+            else:
+                wide = (study.width(column.along),) if column.along else ()
+                values = np.full((len(cases), *wide), column.fill, column.dtype)
+            table |= _in_words(column, values)
+        yield table
+
+
+def units(found: Results) -> dict[str, str]:
+    """SI units of the table's columns by name; "" for words."""
+    table = {axis.key: axis.unit for axis in found.study.axes}
+    for column in found.study.columns:
+        names = _names(column, found.study.width(column.along) if column.along else 0)
+        table |= dict.fromkeys(names, column.unit)
+    return table
+
+
+def _names(column: Column, width: int) -> list[str]:
+    """Names of a column's values in the table."""
+    if not column.along or column.along == "byte" or width == 1:
+        return [column.name]
+    return [f"{column.name}_{number}" for number in range(1, width + 1)]
+
+
+def _in_words(column: Column, values: np.ndarray) -> dict[str, np.ndarray]:
+    """A column's values as the table has them."""
+    if column.along == "byte":
+        return {column.name: reasons(values)}
+    if column.name == "outcome":
+        return {column.name: _WORDS[values.astype(int) + 1]}
+    if column.name == "captured":
+        return {column.name: np.array([None, False, True], dtype=object)[values.astype(int) + 1]}
+    if column.along:
+        names = _names(column, values.shape[1])
+        return dict(zip(names, np.ascontiguousarray(values.T), strict=True))
+    return {column.name: values}
+
+
+def _csv(found: Results, path: Path) -> None:
+    """Numbers with all their digits; nothing where one does not apply."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        heads = units(found).items()
+        writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in heads])
+        for table in blocks(found):
+            columns = (_written(values) for values in table.values())
+            writer.writerows(zip(*columns, strict=True))
+
+
+def _written(values: np.ndarray) -> list[Any]:
+    if values.dtype.kind == "f":
+        return ["" if value != value else value for value in values.tolist()]
+    if values.dtype.kind in "bO":
+        return [
+            ("true" if value else "false") if isinstance(value, bool) else value
+            for value in values.tolist()
+        ]
+    return ["" if value < 0 else value for value in values.tolist()]
+
+
+def _parquet(found: Results, path: Path) -> None:
+    """A row group for each task or more, units in the columns' metadata, null for none."""
+    try:
+        pyarrow, parquet = map(importlib.import_module, ("pyarrow", "pyarrow.parquet"))
+    except ImportError:
+        raise InputError(
+            "Parquet needs pyarrow, which is not installed: pip install 'asperity[parquet]'"
+        ) from None
+    schema = None
+    with contextlib.ExitStack() as stack:
+        for table in blocks(found):
+            if schema is None:
+                schema = _schema(pyarrow, found, table)
+                writer = stack.enter_context(parquet.ParquetWriter(path, schema))
+            columns = [
+                pyarrow.array(values, type=field.type, from_pandas=True, mask=_absent(values))
+                for values, field in zip(table.values(), schema, strict=True)
+            ]
+            writer.write_table(pyarrow.Table.from_arrays(columns, schema=schema))
+
+
+def _absent(values: np.ndarray) -> np.ndarray | None:
+    """Where whole numbers stand for none."""
+    return values < 0 if values.dtype.kind == "i" and bool(np.any(values < 0)) else None
+
+
+def _schema(pyarrow: Any, found: Results, table: dict[str, np.ndarray]) -> Any:
+    """Types and units of the table's columns."""
+    fields = []
+    for name, unit in units(found).items():
+        kind = table[name].dtype
+        if name == "captured":
+            held = pyarrow.bool_()
+        else:
+            held = pyarrow.string() if kind.kind == "O" else pyarrow.from_numpy_dtype(kind)
+        fields.append(pyarrow.field(name, held, metadata={"unit": unit} if unit else None))
+    about = {"study": found.study.canonical, "fingerprint": found.study.fingerprint}
+    return pyarrow.schema(fields, metadata=about)
+
+
+def _netcdf(found: Results, path: Path) -> None:
+    made = dataset_of(found, found.columns)
+    try:
+        made.to_netcdf(path, engine="netcdf4", format="NETCDF4")
+    except RuntimeError as error:  # what netCDF's library makes of a full disk
+        raise OSError(str(error)) from error
+
+
+_WRITERS: dict[str, Callable[[Results, Path], None]] = {
+    ".csv": _csv,
+    ".parquet": _parquet,
+    ".nc": _netcdf,
+}

@@ -1,0 +1,200 @@
+"""Restitution against impact speed, in the forms that codes for many particles read.
+
+Numbers are written with all the digits that a float has, so that reading them gives the same
+floats.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asperity.errors import InputError
+from asperity.sweeps.analysis.export import aside
+from asperity.sweeps.analysis.pareto import numbers
+from asperity.sweeps.analysis.view import axes_of, is_number, is_sample
+
+if TYPE_CHECKING:
+    import xarray
+
+_NEEDED = ("impact_speed", "restitution")
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """Restitution of the first impact against its speed.
+
+    Parameters
+    ----------
+    speed
+        Impact speeds [m/s], ascending, shape (points,).
+    restitution
+        Coefficients of restitution, 0 where the first impact captures, shape (points,).
+    about
+        What they belong to, in lines.
+    """
+
+    speed: np.ndarray
+    restitution: np.ndarray
+    about: tuple[str, ...]
+
+
+def restitution_of(dataset: xarray.Dataset, taken: str = "") -> Restitution:
+    """Restitution against impact speed along the one axis that is left.
+
+    Parameters
+    ----------
+    dataset
+        A grid's results with ``impact_speed`` and ``restitution``, all axes but one held fixed.
+    taken
+        What is held fixed, in words.
+
+    Raises
+    ------
+    InputError
+        Where the study is a sample, has not kept both measures, varies along several axes, or
+        two cases have one speed.
+    """
+    missing = [name for name in _NEEDED if name not in dataset]
+    if missing:
+        raise InputError(
+            f"`keep` must hold {' and '.join(_NEEDED)} for a table of restitution; "
+            f"got no {missing[0]}",
+            key="keep",
+        )
+    key = _only_axis(dataset)
+    speed, bounce = (numbers(dataset, name) for name in _NEEDED)
+    known = np.isfinite(speed) & np.isfinite(bounce)
+    order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
+    if order.size < 2:
+        raise InputError(
+            f"a table of restitution must have two points; got {order.size} along {key}"
+        )
+    if not np.all(np.diff(speed[order]) > 0.0):
+        raise InputError(
+            f"a table of restitution must have one value for each speed; along {key} two cases "
+            "have the same - vary impact.speed"
+        )
+    lost = int(known.size - order.size)
+    about = [
+        f"base case: {dataset.attrs['base']}",
+        *([taken] if taken else []),
+        *([f"{lost} of {known.size} cases have no restitution and are left out"] if lost else []),
+        "coefficient of restitution of the first impact, 0 where it captures",
+    ]
+    return Restitution(speed[order], bounce[order], tuple(about))
+
+
+def _only_axis(dataset: xarray.Dataset) -> str:
+    """The one axis along which the results vary."""
+    if is_sample(dataset):
+        raise InputError(
+            "a table of restitution must come from a grid; got a sample, whose cases differ in "
+            "every axis at once"
+        )
+    free = [key for key in axes_of(dataset) if dataset[key].ndim and dataset[key].size > 1]
+    numeric = [key for key in free if is_number(dataset[key])]
+    speeds = [key for key in numeric if key.startswith("impact.")] or numeric
+    others = [key for key in free if key not in speeds[:1]]
+    if others:
+        options = " ".join(f"--at {key}=VALUE" for key in others)
+        raise InputError(
+            f"a table of restitution must vary along one axis; add {options}", key="at"
+        )
+    if not speeds:
+        raise InputError("a table of restitution must have an axis of numbers; got none")
+    return speeds[0]
+
+
+def write_restitution(
+    table: Restitution, file: str | os.PathLike[str], *, force: bool = False
+) -> Path:
+    """Write restitution against speed; the file's ending says in which form.
+
+    ``.dat``
+        two columns under ``#`` comments, for anything that reads columns.
+    ``.txt``
+        two columns under ``%`` comments: COMSOL's spreadsheet format of an interpolation
+        function.
+    ``.csv``
+        two columns under their names: a file table of Simcenter STAR-CCM+, for
+        ``interpolateTable``.
+    ``.foam``
+        a list of pairs: the values of OpenFOAM's ``Function1`` ``table``.
+    ``.h``
+        arrays in C, for compiled boundary conditions such as Fluent's ``DEFINE_DPM_BC``.
+
+    Raises
+    ------
+    InputError
+        Where the ending is another, or the file is there already.
+    OutputError
+        Where it cannot be written.
+    """
+    target = Path(file)
+    form = _FORMS.get(target.suffix.lower())
+    if form is None:
+        raise InputError(
+            f"{target}: a table of restitution must end in one of {' '.join(_FORMS)}; got "
+            f"{target.suffix or 'no ending'!r}",
+            file=str(target),
+        )
+    with aside(target, force=force) as path:
+        path.write_text(form(table), encoding="utf-8")
+    return target
+
+
+def _commented(sign: str) -> Callable[[Restitution], str]:
+    def columns(table: Restitution) -> str:
+        heads = [*table.about, "impact speed [m/s], coefficient of restitution [-]"]
+        return "\n".join([*(f"{sign} {line}" for line in heads), *_rows(table, " "), ""])
+
+    return columns
+
+
+def _named(table: Restitution) -> str:
+    return "\n".join(["Speed (m/s),Restitution", *_rows(table, ","), ""])
+
+
+def _foam(table: Restitution) -> str:
+    heads = [*table.about, "(impact speed [m/s]  coefficient of restitution [-])"]
+    rows = [f"    ({row})" for row in _rows(table, " ")]
+    return "\n".join([*(f"// {line}" for line in heads), "(", *rows, ")", ""])
+
+
+def _c(table: Restitution) -> str:
+    lines = [f"/* {line.replace('*/', '* /')} */" for line in table.about]
+    lines += [
+        "#ifndef ASPERITY_RESTITUTION_H",
+        "#define ASPERITY_RESTITUTION_H",
+        f"#define ASPERITY_POINTS {table.speed.size}",
+    ]
+    for name, values, unit in (
+        ("speed", table.speed, "m/s"),
+        ("restitution", table.restitution, "-"),
+    ):
+        numbers_written = ",\n".join(f"    {value!r}" for value in values.tolist())
+        lines.append(
+            f"static const double asperity_{name}[ASPERITY_POINTS] = {{ /* [{unit}] */\n"
+            f"{numbers_written}\n}};"
+        )
+    return "\n".join([*lines, "#endif", ""])
+
+
+def _rows(table: Restitution, between: str) -> list[str]:
+    pairs = zip(table.speed.tolist(), table.restitution.tolist(), strict=True)
+    return [f"{speed!r}{between}{bounce!r}" for speed, bounce in pairs]
+
+
+_FORMS: dict[str, Callable[[Restitution], str]] = {
+    ".dat": _commented("#"),
+    ".txt": _commented("%"),
+    ".csv": _named,
+    ".foam": _foam,
+    ".h": _c,
+}

@@ -1,0 +1,1 @@
+"""Cases of a study computed: groups of one structure, batches, runners."""

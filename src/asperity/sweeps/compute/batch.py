@@ -1,0 +1,270 @@
+"""One task of a study: its cases as columns."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from asperity.config import Case
+from asperity.dynamics.problem import Problem
+from asperity.errors import InputError, Outcome, SimulationError
+from asperity.model import build
+from asperity.regimes.validity import AtDepth, check_surface
+from asperity.results.result import Result
+from asperity.solver import solve
+from asperity.sweeps.compute.batch_steps import Clock
+from asperity.sweeps.compute.building import Group, Values, built
+from asperity.sweeps.compute.critical_velocities import critical_velocities
+from asperity.sweeps.compute.integrate_batch import Flight, compile_ahead, fly_group
+from asperity.sweeps.compute.study_warnings import Warned, warnings_in
+from asperity.sweeps.study.columns import OUTCOMES, REASON_SIZE
+
+if TYPE_CHECKING:
+    from asperity.sweeps.study.study import Study
+
+Columns = dict[str, np.ndarray]
+
+_FAILED = OUTCOMES.index(Outcome.FAILED)
+
+
+class Effort(NamedTuple):
+    """What a task cost.
+
+    Attributes
+    ----------
+    cases
+        Number of cases.
+    lanes
+        Useful share of the vectorized lanes, 0 to 1.
+    compiled
+        Time in compiled code [s].
+    wall
+        Time in all [s].
+    looked
+        How many cases were looked at for the validity of their models.
+    warned
+        What is to be known of these.
+    """
+
+    cases: int
+    lanes: float
+    compiled: float
+    wall: float
+    looked: int = 0
+    warned: tuple[Warned, ...] = ()
+
+
+def compute(study: Study, task: int, stop: threading.Event | None = None) -> tuple[Columns, Effort]:
+    """The columns of one task of a study.
+
+    Parameters
+    ----------
+    study
+        The study.
+    task
+        Number of the task.
+    stop
+        Ends it when set, by `Stopped`.
+
+    Returns
+    -------
+    tuple
+        The columns, shape (cases[, values]), and what they cost. A case that cannot be computed
+        has the outcome FAILED and its reason.
+    """
+    cases = study.task(task)
+    corners = [number for number in study.corners if number in cases]
+    return _computed(
+        study, study.values(cases.start, cases.stop), Clock(stop), cases.start, corners
+    )
+
+
+def evaluate(
+    study: Study, values: Values, progress: Callable[[int], None] | None = None
+) -> Columns:
+    """The columns of cases with any values of a study's axes, shape (cases,) each.
+
+    Parameters
+    ----------
+    study
+        The study.
+    values
+        By the axes' keys, SI.
+    progress
+        Told of each number of cases that are computed.
+    """
+    count = next(iter(values.values())).shape[0]
+    parts = []
+    for begin in range(0, count, study.task_size):
+        some = {key: array[begin : begin + study.task_size] for key, array in values.items()}
+        columns, effort = _computed(study, some, Clock())
+        parts.append(columns)
+        if progress is not None:
+            progress(effort.cases)
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _computed(
+    study: Study, values: Values, clock: Clock, first: int = 0, corners: Sequence[int] = ()
+) -> tuple[Columns, Effort]:
+    """The columns of cases of which the first has a number, and what is to be known of some."""
+    began = time.perf_counter()
+    count = next(iter(values.values())).shape[0]
+    out = _blank(study, count)
+    whole = built(study, values)
+    looked = [number - first for number in corners]
+    lines: dict[int, list[str]] = {}
+    for row, reason in whole.refused.items():
+        _fail(out, row, reason)
+    compile_ahead(whole.groups)
+    for group in whole.groups:
+        flight = fly_group(group, clock)
+        if any(column.name == "critical_velocity" for column in study.columns) and flight.measures:
+            flight.measures["critical_velocity"] = critical_velocities(group, flight, clock)
+        _write(study, out, group, flight)
+        sound = out["outcome"][group.rows] != _FAILED
+        for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
+            row = int(group.rows[place])
+            try:
+                pair = group.cases[place] if group.cases else _built(study.case(first + row))
+            except InputError as error:  # a surface's file that is another one by now
+                _fail(out, row, str(error))
+            else:
+                lines[row] = warnings_in(*pair, flight, place)
+    for row, case in whole.alone:
+        found = _solve(study, out, row, case, clock)
+        if row in looked and found is not None:
+            lines[row] = found
+    warned = [(first + row, line) for row, of_case in lines.items() for line in of_case]
+    wall = time.perf_counter() - began
+    compiled = min(clock.compiled, wall)
+    return out, Effort(count, clock.lanes, compiled, wall, len(lines), tuple(sorted(warned)))
+
+
+def _built(case: Case) -> tuple[Case, Problem]:
+    return case, build(case)
+
+
+def _blank(study: Study, count: int) -> Columns:
+    out = {}
+    for column in study.columns:
+        shape = (count, study.width(column.along)) if column.along else (count,)
+        out[column.name] = np.full(shape, column.fill, column.dtype)
+    return out
+
+
+def _fail(out: Columns, row: int, reason: str) -> None:
+    """Write down that a case failed, and why; what it measured is not believed."""
+    for name, array in out.items():
+        if array.dtype.kind == "f":
+            array[row] = np.nan
+        elif name not in ("reason", "impacts"):
+            array[row] = -1
+    out["outcome"][row] = _FAILED
+    kept = reason.encode()[:REASON_SIZE].decode(errors="ignore").encode()
+    out["reason"][row] = 0
+    out["reason"][row, : len(kept)] = np.frombuffer(kept, np.uint8)
+
+
+def _write(study: Study, out: Columns, group: Group, flight: Flight) -> None:
+    """A flight's measures as columns."""
+    rows, made, past = group.rows, flight.made, flight.history
+    out["outcome"][rows] = flight.outcome
+    out["impacts"][rows] = made
+    flown = np.flatnonzero(made > 0)
+    if flown.size:
+        at = rows[flown]
+        closure = np.full(made.size, np.nan)
+        closure[flown] = past["closure"][flown].max(axis=1) / past["fastest"][flown, 0]
+        found = {**flight.measures, **_totals(group, flight), "closure": closure}
+        for column in study.columns:
+            if column.along == "turn":
+                out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[flown]
+            elif column.along == "impact":
+                known = found[column.name][flown][:, : out[column.name].shape[1]]
+                out[column.name][at, : known.shape[1]] = known
+            elif column.name in found:
+                out[column.name][at] = found[column.name][flown]
+    for place, reason in flight.reasons.items():
+        _fail(out, int(rows[place]), reason)
+    for place, (case, problem) in enumerate(group.cases):
+        if place not in flight.reasons:
+            at_depth = AtDepth(*flight.at_depth[place].tolist())
+            try:
+                check_surface(case, problem, at_depth)
+            except InputError as error:
+                _fail(out, int(rows[place]), str(error))
+
+
+def _totals(group: Group, flight: Flight) -> Columns:
+    """What is read off the impacts themselves."""
+    past, contact, body = flight.history, group.flown.contact, group.flown.body
+    out = {
+        "end_time": flight.end_time,
+        "deepest": past["deepest"][:, 0],
+        "energy_lost": flight.lost.sum(axis=1),
+    }
+    for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
+        key = f"lost_{name}"
+        out[key] = out.get(key, 0.0) + flight.lost[:, k]
+    return out
+
+
+def _turns(past: Columns, name: str, size: int) -> np.ndarray:
+    """Separations or times of the turning points, in order of time."""
+    what = "" if name == "turning_separation" else "_time"
+    both = np.stack([past[f"deepest{what}"], past[f"apex{what}"]], axis=2)
+    both = np.where(past["made"][..., None], both, np.nan)
+    flat = both.reshape(both.shape[0], -1)[:, :size]
+    return np.pad(flat, ((0, 0), (0, size - flat.shape[1])), constant_values=np.nan)
+
+
+def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> list[str] | None:
+    """A case that is stepped in time, by itself; its warnings, None where it cannot be solved."""
+    clock.look()
+    try:
+        critical = any(column.name == "critical_velocity" for column in study.columns)
+        result = solve(case, stop=clock.stop, critical=critical)
+    except (InputError, SimulationError) as error:
+        clock.look()
+        _fail(out, row, str(error))
+        return None
+    clock.look()  # a case that was cut short is not one that ended
+    found = _read(result)
+    out["outcome"][row] = OUTCOMES.index(result.outcome)
+    for column in study.columns:
+        if column.along == "turn":
+            turns = found[column.name][: out[column.name].shape[1]]
+            out[column.name][row, : len(turns)] = turns
+        elif column.along == "impact":
+            values = found[column.name][: study.keep_impacts]
+            out[column.name][row, : len(values)] = [math.nan if v is None else v for v in values]
+        elif found.get(column.name) is not None:
+            out[column.name][row] = found[column.name]
+    return result.warnings
+
+
+def _read(result: Result) -> dict[str, Any]:
+    """The columns of a result."""
+    ledger = result.ledger
+    events = result.events
+    places, times = (
+        np.stack([events[f"{at}_{what}"] for at in ("deepest", "apex")], axis=1).ravel()
+        for what in ("separation", "time")
+    )
+    return {
+        **result.measures,
+        "impacts": len(result.measures["restitution"]),
+        "closure": ledger["closure"],
+        "energy_lost": sum(ledger["lost"].values()),
+        **{f"lost_{name}": value for name, value in ledger["lost"].items()},
+        "end_time": times[-1],
+        "deepest": places[0],
+        "turning_separation": places,
+        "turning_time": times,
+    }

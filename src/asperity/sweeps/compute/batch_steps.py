@@ -1,0 +1,208 @@
+"""Cases of one structure flown side by side, a few impacts at a time; those at rest make room."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from asperity._jax import jax, jnp
+from asperity.contact import ElasticContact
+from asperity.dynamics import Body, Impacts, Limits, Motion, Progress, Table, fly, prepare, start
+from asperity.dynamics.curve_table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
+from asperity.dynamics.release import at_release
+from asperity.dynamics.static_equilibrium import Datum
+from asperity.numerics.compilation import Program, kept
+from asperity.results.measures import (
+    FirstContact,
+    Measures,
+    Passing,
+    first_contact,
+    measure,
+    passing_at,
+)
+from asperity.sweeps.compute.building import Flown
+
+IMPACTS = 16
+"""Impacts of a compiled call."""
+
+_FEW = 32  # lanes for a few cases, most of which would be empty in a wide call
+_FAST: dict[str, bool | int] = {"xla_cpu_multi_thread_eigen": False}
+"""XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
+
+
+@kept
+class Begun(NamedTuple):
+    """What a motion goes on from.
+
+    Attributes
+    ----------
+    table, datum, origin
+        Curves, static equilibrium, and mechanical energy at the release [J].
+    progress
+        The motion at its last apex.
+    first
+        The first contact; None before it.
+    """
+
+    table: Table
+    datum: Datum
+    origin: jax.Array
+    progress: Progress
+    first: FirstContact | None
+
+
+@kept
+class Checks(NamedTuple):
+    """What must hold before a motion is believed.
+
+    Attributes
+    ----------
+    error, residual
+        Relative errors of the interpolation and of the contact's equilibrium.
+    at_release, power, largest
+        Force at the release [N], by which power of the distance it falls there [-], and the
+        largest in the table [N].
+    at_depth
+        :class:`asperity.regimes.validity.AtDepth` of the first impact.
+    """
+
+    error: jax.Array
+    residual: jax.Array
+    at_release: jax.Array
+    power: jax.Array
+    largest: jax.Array
+    at_depth: jax.Array
+
+
+Rows = tuple[Impacts, Passing | None]
+"""Impacts without their phases, and the energies with which each passes the end of contact."""
+
+
+def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
+    """The curves of each case and its first impacts."""
+
+    def one(flown: Flown) -> tuple[Begun, Checks, Rows]:
+        contact, body = flown.contact, flown.body
+        table, datum = prepare(contact, body, True)
+        progress, origin = start(contact, body, table)
+        force, power, largest = at_release(table, body)
+        begun = Begun(table, datum, origin, progress, None)
+        progress, impacts = _flight(flown, begun)
+        deepest = outer_row(table, 0, impacts.deepest[0])
+        at_depth = jnp.stack([deepest[TOUCHING], deepest[FORCE] - deepest[PULL], deepest[CENTRAL]])
+        checks = Checks(table.error, table.residual, force, power, largest, at_depth)
+        begun = begun._replace(progress=progress, first=first_contact(table, impacts, body))
+        return begun, checks, _slim(body, begun, impacts)
+
+    return _over(flown)(one)(flown)
+
+
+def _go_on(flown: Flown, begun: Begun) -> tuple[Progress, Rows]:
+    """The next impacts of each case."""
+
+    def one(pair: tuple[Flown, Begun]) -> tuple[Progress, Rows]:
+        flown, begun = pair
+        progress, impacts = _flight(flown, begun)
+        return progress, _slim(flown.body, begun, impacts)
+
+    return _over(flown)(one)((flown, begun))
+
+
+def _flight(flown: Flown, begun: Begun) -> tuple[Progress, Impacts]:
+    limits = Limits(*(jnp.asarray(end) for end in flown[2:]))
+    return fly(
+        flown.contact, flown.body, begun.table, begun.datum, begun.origin, begun.progress, limits,
+        IMPACTS,
+    )  # fmt: skip
+
+
+def _slim(body: Body, begun: Begun, impacts: Impacts) -> Rows:
+    passing = None
+    if body.film is not None:
+        assert begun.first is not None
+        passing = passing_at(body, begun.table, impacts, begun.first.end)
+    return impacts._replace(fall=None, rise=None), passing  # type: ignore[arg-type]
+
+
+def _measure(
+    flown: Flown, ends: tuple[Datum, jax.Array, Progress, FirstContact], rows: Rows
+) -> Measures:
+    """Measures of motions that have ended."""
+
+    def one(flown: Flown, ends: Any, rows: Rows) -> Measures:
+        datum, origin, progress, first = ends
+        impacts, passing = rows
+        # The table is not needed where the first contact is known.
+        motion = Motion(impacts, progress, None, datum, origin)  # type: ignore[arg-type]
+        return measure(motion, flown.body, passing, first)
+
+    return jax.vmap(one)(flown, ends, rows)
+
+
+def _over(flown: Flown) -> Callable[[Any], Any]:
+    """Side by side, or one after the other where each is a large computation of its own."""
+    if isinstance(flown.contact, ElasticContact):
+        return lambda one: lambda values: jax.lax.map(one, values)
+    return jax.vmap
+
+
+_begin_program = Program(_begin, _FAST)
+_go_on_program = Program(_go_on, _FAST)
+_measure_program = Program(_measure, _FAST)
+
+
+def width(flown: Flown, count: int) -> int:
+    """Number of cases of a compiled call, for so many in all."""
+    if isinstance(flown.contact, ElasticContact):
+        return 8
+    if count <= 2 * _FEW:
+        return _FEW
+    return 256 if jax.default_backend() == "cpu" else 4096
+
+
+class Stopped(Exception):
+    """A task that was asked to stop; nothing of it is kept."""
+
+
+class Clock:
+    """Time in compiled code [s], and how many lanes of it did something.
+
+    Parameters
+    ----------
+    stop
+        Ends the task when set: `Stopped` is raised before the next compiled call.
+    """
+
+    def __init__(self, stop: threading.Event | None = None) -> None:
+        self.stop = stop
+        self.compiled = 0.0
+        self.useful = 0
+        self.all = 0
+
+    def run(self, program: Program[..., Any], *args: Any) -> Any:
+        """The answer of a compiled call."""
+        self.look()
+        call = program.ready(*args)
+        began = time.perf_counter()
+        answer = jax.block_until_ready(call())
+        self.compiled += time.perf_counter() - began
+        return answer
+
+    def look(self) -> None:
+        """Raise `Stopped` where the task is to end."""
+        if self.stop is not None and self.stop.is_set():
+            raise Stopped
+
+    def count(self, made: np.ndarray) -> None:
+        """Count the impacts that lanes made in a call: all wait for the last."""
+        self.useful += int(made.sum())
+        self.all += made.shape[0] * int(made.sum(axis=1).max(initial=0))
+
+    @property
+    def lanes(self) -> float:
+        """Share of the lanes' time that was of use."""
+        return self.useful / self.all if self.all else 1.0

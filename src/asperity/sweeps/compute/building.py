@@ -1,0 +1,327 @@
+"""Cases as objects, many at once: groups of one structure, ready to be flown side by side."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import equinox as eqx
+import numpy as np
+
+from asperity._jax import jax, jnp
+from asperity.config import Case
+from asperity.contact import Contact, ElasticContact, RigidContact
+from asperity.contact.resolution import Resolution, lengths_in_rms, resolution_of
+from asperity.dynamics import Body
+from asperity.dynamics.problem import Problem
+from asperity.errors import InputError
+from asperity.model import build
+from asperity.numerics.compilation import Program
+from asperity.sweeps.compute.rows import Rows, Split
+
+if TYPE_CHECKING:
+    from asperity.sweeps.study.study import Study
+
+Values = Mapping[str, np.ndarray]
+
+_KINDS = (
+    Resolution(6, 8, 1, 7),
+    Resolution(8, 16, 1, 7),
+    Resolution(8, 8, 2, 7),
+    Resolution(16, 16, 2, 14),
+    Resolution(32, 16, 4, 28),
+    Resolution(64, 16, 8, 56),
+)
+"""How finely curves are cut in a study, from coarse to fine; see `Resolution`."""
+
+_ROUNDING = 1e-12  # relative, between one case built alone and among others
+_UNRESOLVED = Resolution(1, 8, 1)
+
+
+class Flown(NamedTuple):
+    """What is flown side by side: each array has the cases along its first axis.
+
+    Attributes
+    ----------
+    contact, body
+        The contacts and bodies.
+    rest, time_limit, impacts
+        Ends of the motions: [-], [s], [-].
+    """
+
+    contact: Contact
+    body: Body
+    rest: np.ndarray
+    time_limit: np.ndarray
+    impacts: np.ndarray
+
+
+class Group(NamedTuple):
+    """Cases of one structure.
+
+    Attributes
+    ----------
+    rows
+        Their places among the values that were asked for.
+    flown
+        What is flown.
+    tolerance
+        Relative error allowed to each one's force curves [-].
+    cases
+        Each case with what was built of it, where they were built one by one; else empty.
+    launched
+        Whether speeds alone are given, and the release is to be found.
+    """
+
+    rows: np.ndarray
+    flown: Flown
+    tolerance: np.ndarray
+    cases: tuple[tuple[Case, Problem], ...] = ()
+    launched: bool = False
+
+
+class Built(NamedTuple):
+    """All cases that were asked for.
+
+    Attributes
+    ----------
+    groups
+        Those that are flown side by side.
+    alone
+        Places of those that are solved one by one, with their cases.
+    refused
+        Why a case cannot be, by its place.
+    """
+
+    groups: list[Group]
+    alone: list[tuple[int, Case]]
+    refused: dict[int, str]
+
+
+class _Differs(Exception):
+    """A model that cannot be built of many values at once."""
+
+
+def built(study: Study, values: Values) -> Built:
+    """The cases with some values of a study's axes, as groups of one structure.
+
+    Parameters
+    ----------
+    study
+        The study.
+    values
+        Values of its axes by key, shape (cases,).
+    """
+    count = next(iter(values.values())).shape[0]
+    out = Built([], [], {})
+    one_by_one = study.base.roughness is not None and study.base.roughness.files is not None
+    if one_by_one or not study.in_tables:
+        _each(study, values, np.arange(count), out)
+    else:
+        for rows in _kinds(values, count):
+            _together(study, values, rows, out)
+    return out._replace(groups=[_joined(same) for same in _alike(out.groups)])
+
+
+def _kinds(values: Values, count: int) -> Iterator[np.ndarray]:
+    """Rows with equal text, switches and whole numbers."""
+    kinds: dict[tuple[Any, ...], list[int]] = {}
+    fixed = [array.tolist() for array in values.values() if array.dtype.kind != "f"]
+    if not fixed:
+        yield np.arange(count)
+        return
+    for row, kind in enumerate(zip(*fixed, strict=True)):
+        kinds.setdefault(kind, []).append(row)
+    for found in kinds.values():
+        yield np.asarray(found)
+
+
+def _together(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
+    """Build rows as one case, and in parts where they turn out to be of several kinds."""
+    if rows.size < 3:
+        _each(study, values, rows, out)
+        return
+    try:
+        group, late = _as_one(study, values, rows)
+    except Split as split:
+        _together(study, values, rows[split.holds], out)
+        _together(study, values, rows[~split.holds], out)
+    except (InputError, _Differs):
+        _each(study, values, rows, out)  # for each one's own message, too
+    else:
+        if late:
+            out.alone.extend((int(row), _case(study, values, row)) for row in rows)
+        else:
+            out.groups.extend(_by_resolution(group))
+
+
+def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool]:
+    """Rows built as one case; and whether they are to be solved one by one after all."""
+    chosen: dict[str, Any] = {}
+    for key, array in values.items():
+        some = array[rows]
+        chosen[key] = Rows.of(some) if some.dtype.kind == "f" else some.tolist()[0]
+    try:
+        case = study.case_of(chosen)
+        problem = build(case, _UNRESOLVED)
+    except (InputError, Split):
+        raise
+    except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
+        raise _Differs from error
+    ends = _flown(case, problem)
+    both = [_case(study, values, row) for row in (rows[0], rows[-1])]
+    alone = [_flown(each, build(each, _UNRESOLVED)) for each in both]
+    flown = _spread(ends, alone, rows.size)
+    tolerance = np.broadcast_to(np.asarray(case.tolerance.relative, float), rows.shape)
+    launched = case.launch.release_gap is None
+    group = Group(rows, flown, tolerance, launched=launched)
+    return group, problem.late is not None or problem.creep is not None
+
+
+def _spread(flown: Flown, alone: list[Flown], count: int) -> Flown:
+    """Each array with all cases along its first axis; the first and the last are checked."""
+    leaves, structure = jax.tree_util.tree_flatten(flown)
+    first, last = (jax.tree_util.tree_flatten(each) for each in alone)
+    if [structure] * 2 != [first[1], last[1]]:
+        raise _Differs
+    out = []
+    for leaf, one, other in zip(leaves, first[0], last[0], strict=True):
+        if not _is_array(one):
+            if leaf != one or leaf != other:
+                raise _Differs
+            out.append(leaf)
+            continue
+        array, shape = np.asarray(leaf), np.shape(one)
+        if array.shape == shape:
+            array = np.broadcast_to(array, (count, *shape))
+        if array.shape != (count, *shape) or not (_near(array[0], one) and _near(array[-1], other)):
+            raise _Differs
+        out.append(array)
+    spread: Flown = jax.tree_util.tree_unflatten(structure, out)
+    return spread
+
+
+def _near(value: np.ndarray, one: Any) -> bool:
+    return np.allclose(value, np.asarray(one), rtol=_ROUNDING, atol=0.0, equal_nan=True)
+
+
+def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
+    """Build rows one by one."""
+    for row in rows.tolist():
+        try:
+            case = _case(study, values, row)
+            problem = build(case)
+        except InputError as error:
+            out.refused[row] = str(error)
+            continue
+        if problem.late is not None or problem.creep is not None:
+            out.alone.append((row, case))
+            continue
+        flown = jax.tree_util.tree_map(_raised, _flown(case, problem), is_leaf=_is_array)
+        tolerance = np.asarray([case.tolerance.relative])
+        launched = case.launch.release_gap is None
+        group = Group(np.asarray([row]), flown, tolerance, ((case, problem),), launched)
+        out.groups.append(_coarser(group))
+
+
+def _case(study: Study, values: Values, row: int) -> Case:
+    return study.case_of({key: array[row : row + 1].tolist()[0] for key, array in values.items()})
+
+
+def _flown(case: Case, problem: Problem) -> Flown:
+    ends = case.tolerance
+    rest, time_limit = (np.asarray(x, float) for x in (ends.rest, ends.time_limit))
+    impacts = np.asarray(ends.max_impacts)
+    return Flown(problem.contact, problem.body, rest, time_limit, impacts)
+
+
+def _is_array(leaf: Any) -> bool:
+    return isinstance(leaf, np.ndarray | np.generic) or eqx.is_array(leaf)
+
+
+def _raised(leaf: Any) -> Any:
+    return np.asarray(leaf)[None] if _is_array(leaf) else leaf
+
+
+def _by_resolution(group: Group) -> list[Group]:
+    """A group cut by how finely the curves are cut: as finely as each case asks for, and evenly."""
+    contact = group.flown.contact
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return [group]
+    deforms = isinstance(contact, ElasticContact)
+    interface = jax.tree_util.tree_map(
+        lambda leaf: jnp.asarray(leaf) if _is_array(leaf) else leaf, contact.interface
+    )
+    lengths = np.stack([np.asarray(x) for x in _lengths(interface)], axis=1)
+    kinds: dict[Resolution, list[int]] = {}
+    for row, each in enumerate(lengths.tolist()):
+        found = resolution_of(contact.interface, tuple(each), deforms=deforms)
+        kinds.setdefault(_even(found), []).append(row)
+    return [_taken(group, np.asarray(rows), kind) for kind, rows in kinds.items()]
+
+
+def _lengths_of_each(interface: Any) -> Any:
+    return jax.vmap(lengths_in_rms)(interface)
+
+
+_lengths = Program(_lengths_of_each)
+
+
+def _coarser(group: Group) -> Group:
+    contact = group.flown.contact
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return group
+    return _resolved(group, _even(contact.resolved))
+
+
+def _even(found: Resolution) -> Resolution:
+    """As fine at least, of few kinds: each is compiled."""
+    level = next((n for n, kind in enumerate(_KINDS) if _fits(found, kind)), None)
+    if level is None:  # finer than any: a kind of its own, of even numbers
+        return Resolution(*(1 << (number - 1).bit_length() for number in found))
+    return _KINDS[level]
+
+
+def _fits(found: Resolution, kind: Resolution) -> bool:
+    return all(number <= most for number, most in zip(found, kind, strict=True))
+
+
+def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:
+    take: Callable[[Any], Any] = lambda leaf: leaf[places] if _is_array(leaf) else leaf  # noqa: E731
+    flown = jax.tree_util.tree_map(take, group.flown)
+    part = Group(group.rows[places], flown, group.tolerance[places], launched=group.launched)
+    return _resolved(part, kind)
+
+
+def _resolved(group: Group, kind: Resolution) -> Group:
+    contact = group.flown.contact
+    assert isinstance(contact, RigidContact | ElasticContact)
+    contact = dataclasses.replace(contact, resolved=kind)
+    return group._replace(flown=group.flown._replace(contact=contact))
+
+
+def _alike(groups: list[Group]) -> list[list[Group]]:
+    """Groups of the same structure, together."""
+    kinds: dict[Hashable, list[Group]] = {}
+    for group in groups:
+        leaves, structure = jax.tree_util.tree_flatten(group.flown)
+        shapes = tuple(leaf.shape[1:] if _is_array(leaf) else (leaf,) for leaf in leaves)
+        kinds.setdefault((structure, shapes, group.launched), []).append(group)
+    return list(kinds.values())
+
+
+def _joined(groups: list[Group]) -> Group:
+    """Groups of the same structure as one."""
+    if len(groups) == 1:
+        return groups[0]
+
+    def joined(*leaves: Any) -> Any:
+        return np.concatenate(leaves) if _is_array(leaves[0]) else leaves[0]
+
+    flown = jax.tree_util.tree_map(joined, *(group.flown for group in groups))
+    rows = np.concatenate([group.rows for group in groups])
+    tolerance = np.concatenate([group.tolerance for group in groups])
+    whole = all(group.cases for group in groups)
+    cases = tuple(case for group in groups for case in group.cases) if whole else ()
+    return Group(rows, flown, tolerance, cases, groups[0].launched)

@@ -1,0 +1,44 @@
+"""Where a few cases of a study leave the validity of their models."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from asperity.config import Case
+from asperity.dynamics import Impacts, Motion
+from asperity.dynamics.problem import Problem
+from asperity.regimes.validity import AtDepth, pull_warnings, release_warnings, warnings_of
+from asperity.results.conversion import regime_of
+from asperity.sweeps.compute.integrate_batch import Flight
+
+Warned = tuple[int, str]
+"""The number of a case, and a line on where it leaves the validity of its models."""
+
+
+def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> list[str]:
+    """One line for each way in which a case of a flight leaves the validity of its models.
+
+    Parameters
+    ----------
+    case, problem
+        The case, and what was built from it.
+    flight
+        The flight, in which it made an impact.
+    place
+        Its place in the flight.
+    """
+    at_depth = AtDepth(*flight.at_depth[place].tolist())
+    rows: Any = {name: array[place] for name, array in flight.history.items()}
+    rows.pop("passing_in", None), rows.pop("passing_out", None)
+    none: Any = None
+    release: Any = flight.release[place]
+    motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
+    pull_off, held, reference = (
+        float(flight.measures[name][place])
+        for name in ("pull_off", "held_at_pull_off", "reference")
+    )
+    return [
+        *warnings_of(case, problem, regime_of(case, problem, at_depth), at_depth, motion),
+        *pull_warnings(case, pull_off, held),
+        *release_warnings(reference),
+    ]

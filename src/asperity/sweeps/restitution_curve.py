@@ -1,0 +1,281 @@
+"""Coefficient of restitution of the first impact against its speed, over decades."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+import os
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..config import Case
+from ..config.html_table import card, counted
+from ..critical_velocity import Launcher, Rebound, critical_measures
+from ..dynamics import Limits
+from ..errors import InputError, SimulationError
+from ..integration import Report, flown, silently
+from ..model import build
+from ..results.case_source import CaseLike, case_of
+from ..results.conversion import assessment_of, measured
+from ..results.result import drawing
+from ..results.summary import amount, warning_lines
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+_PICTURE = "asperity.plots.restitution_plot"
+
+POINTS = 61
+"""Speeds that are computed where none are given, besides some close to the edges of capture."""
+_NEAR = np.array([1e-4, 1e-3, 1e-2, 3e-2])  # relative: speeds on both sides of each edge
+_FINER = (4,)  # times as many panels where fast impacts ask for them
+_BELOW, _ABOVE = 0.1, 100.0  # from and to how many critical velocities it is drawn
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RestitutionCurve:
+    """Restitution of a case's first impact for many speeds of approach.
+
+    Parameters
+    ----------
+    case : Case
+        The resolved case; its own speed does not count.
+    name : str
+        What it is called.
+    speed : numpy.ndarray
+        Speeds of approach where forces begin [m/s], ascending.
+    restitution : numpy.ndarray
+        Coefficient of restitution, 0 where the first impact captures, NaN where gas alone holds
+        the body; as long as ``speed``.
+    captured : numpy.ndarray
+        Whether the first impact captures; as long as ``speed``.
+    critical_velocity : float, optional
+        Lowest speed at which capture gives way to rebound, or the reverse [m/s]; None where all
+        speeds that were tried do the same.
+    capture_edges : list of float
+        All such speeds [m/s], ascending.
+    note : str, optional
+        Why there is no critical velocity, or which speeds are captured where it is not just those
+        below it.
+    own_speed : float
+        Speed of approach of the case itself [m/s].
+    warnings : list of str
+        What to know before the numbers are used, for the case's own speed.
+    input_sha256 : str, optional
+        SHA-256 of the text that the case was read from.
+    case_file : str, optional
+        Path of the case's file, or which built-in case it is; None of a case made in Python.
+    """
+
+    case: Case
+    name: str
+    speed: np.ndarray
+    restitution: np.ndarray
+    captured: np.ndarray
+    critical_velocity: float | None
+    capture_edges: list[float]
+    note: str | None
+    own_speed: float
+    warnings: list[str]
+    input_sha256: str | None = None
+    case_file: str | None = None
+
+    def dataset(self) -> xarray.Dataset:
+        """The curve as a dataset over the speed, with units."""
+        import xarray
+
+        about = {"units": "1", "long_name": "coefficient of restitution of the first impact"}
+        speed = {"units": "m/s", "long_name": "speed of approach"}
+        return xarray.Dataset(
+            {
+                "restitution": ("speed", self.restitution, about),
+                "captured": ("speed", self.captured, {"long_name": "captured at first impact"}),
+            },
+            coords={"speed": ("speed", self.speed, speed)},
+            attrs={"name": self.name, "case": self.case.toml()},
+        )
+
+    def json_object(self) -> dict[str, Any]:
+        """Plain values in SI, None where one does not apply."""
+        from asperity.results import records
+
+        names = [field.name for field in dataclasses.fields(self) if field.name != "case"]
+        found: dict[str, Any] = records.plain({name: getattr(self, name) for name in names})
+        return found
+
+    def plot(self) -> Figure:
+        """Restitution against speed, with the critical velocity."""
+        figure: Figure = drawing(_PICTURE).figure(
+            self.speed,
+            self.restitution,
+            self.captured,
+            edges=tuple(self.capture_edges),
+            critical=self.critical_velocity,
+            own_speed=self.own_speed,
+            name=self.name,
+        )
+        return figure
+
+    def summary(self) -> str:
+        """Critical velocity and a table of restitution, as text."""
+        lines = [f"{self.name}: restitution of the first impact against speed of approach", ""]
+        lines.append(f"  {'critical velocity':<26}{self._critical()}")
+        lines.append(f"  {'speed of the case':<26}{amount(self.own_speed, 'm/s')}")
+        lines += ["", f"  {'speed':<26}restitution"]
+        lines += [f"  {speed:<26}{told}" for speed, told in self._points()]
+        return "\n".join([*lines, *warning_lines(self.warnings)])
+
+    def _critical(self) -> str:
+        """The critical velocity, or why there is none."""
+        if self.critical_velocity is None:
+            return self.note or ""
+        note = f"  ({self.note})" if self.note else ""
+        return amount(self.critical_velocity, "m/s") + note
+
+    def _points(self) -> list[tuple[str, str]]:
+        """Some thirteen of the speeds, and the restitution at each."""
+        found = []
+        for at in range(0, self.speed.size, max(1, (self.speed.size - 1) // 12)):
+            kept, held = self.restitution[at], self.captured[at]
+            told = "captured" if held else "-" if np.isnan(kept) else f"{kept:.4f}"
+            found.append((amount(float(self.speed[at]), "m/s"), told))
+        return found
+
+    def files(self, *, pictures: bool = True) -> dict[str, bytes]:
+        """Content of every file, by name: a table, its numbers as JSON, pictures, a summary."""
+        found = {
+            "restitution.csv": self._table().encode(),
+            "restitution.json": json.dumps(self.json_object(), allow_nan=False).encode() + b"\n",
+            "restitution.txt": self.summary().encode() + b"\n",
+        }
+        if pictures:
+            found |= drawing(_PICTURE).pictures(self.plot())
+        return found
+
+    def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:
+        """Write table, pictures and summary, all or none; as `Result.save`."""
+        from asperity.results import records
+
+        return records.write_folder(directory, self.files(), records.RESTITUTION_FILES, force=force)
+
+    def _table(self) -> str:
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["speed [m/s]", "restitution [-]", "captured"])
+        rows = zip(self.speed.tolist(), self.restitution.tolist(), self.captured, strict=True)
+        writer.writerows((speed, "" if e != e else e, int(held)) for speed, e, held in rows)
+        return out.getvalue()
+
+    def __repr__(self) -> str:
+        critical = amount(self.critical_velocity, "m/s")
+        return (
+            f"<RestitutionCurve {self.name}: {counted(self.speed.size, 'speed')}, critical "
+            f"velocity {critical}, {counted(len(self.warnings), 'warning')}>"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("critical velocity", self._critical()),
+            ("speed of the case", amount(self.own_speed, "m/s")),
+            *self._points(),
+        ]
+        sentence = "Restitution of the first impact against speed of approach."
+        return card(self.name, sentence, [("", rows)], self.warnings)
+
+
+def restitution_curve(
+    case: CaseLike,
+    speeds: np.ndarray | None = None,
+    *,
+    points: int = POINTS,
+    name: str | None = None,
+    progress: Report | None = None,
+    stop: threading.Event | None = None,
+) -> RestitutionCurve:
+    """Restitution of the first impact against speed of approach, and the critical velocity.
+
+    Parameters
+    ----------
+    case
+        A case, or the name or path of one; the body is launched where the forces on it begin.
+    speeds
+        Speeds of launch [m/s], all positive; by default over three decades about the critical
+        velocity, or about the case's own speed where there is none.
+    points
+        How many speeds, where they are chosen.
+    name, progress, stop
+        As for :func:`asperity.solve`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`asperity.solve`.
+    """
+    case = case_of(case)
+    name = case.name if name is None else name
+    if speeds is not None:
+        speeds = _checked(speeds)
+    tell, problem, _ = progress or silently, build(case), case.launch
+    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1, time_limit=np.inf))
+    numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
+    first = case.model_copy(update={"numerics": numerics})
+    flight = flown(first, problem, tell, stop)
+    about = assessment_of(case, name, problem, flight.contact, flight.motion)
+    measures = measured(flight, problem.body)
+    own = float(measures.impact_speed)  # none where gas stops the body before
+    own = own if np.isfinite(own) else float(measures.maximum_speed)
+    launcher = Launcher(problem, flight, limits, finer=_FINER, stop=stop)
+    tell(0.3, "critical velocity")
+    found = critical_measures(launcher.edges(flight))
+    if speeds is None:
+        speeds = _decades(found["capture_edges"], own, points)
+    rebounds: list[Rebound] = []
+    for number, speed in enumerate(speeds.tolist()):
+        tell(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
+        rebounds.append(launcher(speed))
+    known = sorted((r for r in rebounds if np.isfinite(r.speed)), key=lambda r: r.speed)
+    if not known:
+        raise SimulationError("no first impact could be computed at any of the speeds")
+    warnings = list(about.warnings)
+    if len(known) < len(rebounds):
+        warnings.append(
+            f"{len(rebounds) - len(known)} of {len(rebounds)} speeds are left out: their force "
+            "curves are not fine enough, or their motion could not be solved"
+        )
+    tell(1.0, "done")
+    return RestitutionCurve(
+        case=case,
+        name=name,
+        speed=np.array([rebound.speed for rebound in known]),
+        restitution=np.array([rebound.restitution for rebound in known]),
+        captured=np.array([rebound.captured for rebound in known]),
+        critical_velocity=found["critical_velocity"],
+        capture_edges=found["capture_edges"],
+        note=found["critical_velocity_note"],
+        own_speed=own,
+        warnings=warnings,
+    )
+
+
+def _checked(speeds: np.ndarray) -> np.ndarray:
+    """Speeds [m/s] in order, once each."""
+    found = np.unique(np.asarray(speeds, float))
+    if not found.size or not np.all(np.isfinite(found)) or found[0] <= 0.0:
+        raise InputError("`speeds` must be positive and finite, in m/s", key="speeds")
+    return found
+
+
+def _decades(edges: list[float], own: float, points: int) -> np.ndarray:
+    """Speeds [m/s] over decades: about the edges of capture, and about the case's own."""
+    low, high = (edges[0], edges[-1]) if edges else (own, own)
+    first, last = min(_BELOW * low, own), max(_ABOVE * high, own)
+    # Where capture begins or ends restitution falls to 0 as a root does.
+    near = np.outer(edges, 1.0 + np.concatenate([-_NEAR, _NEAR])).ravel()
+    return np.unique(np.concatenate([np.geomspace(first, last, points), near]))

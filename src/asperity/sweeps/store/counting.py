@@ -1,0 +1,45 @@
+"""How the cases of a store ended."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from asperity.errors import Outcome
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.columns import OUTCOMES
+
+
+def outcomes(store: Store) -> dict[str, int]:
+    """Number of finished cases by outcome.
+
+    Parameters
+    ----------
+    store : Store
+        The store.
+
+    Raises
+    ------
+    InputError
+        Where a chunk of the column is not what was written.
+    """
+    counts = np.zeros(len(OUTCOMES), np.int64)
+    for task in list(store.done):
+        counts += np.bincount(store.read(task, "outcome"), minlength=len(OUTCOMES))
+    return {outcome.value: int(n) for outcome, n in zip(OUTCOMES, counts, strict=True)}
+
+
+def first_failure(store: Store) -> tuple[int, str] | None:
+    """Number of the first case that failed, and why; None where none did.
+
+    Raises
+    ------
+    InputError
+        As `outcomes`.
+    """
+    for task in sorted(store.done):
+        failed = store.read(task, "outcome") == OUTCOMES.index(Outcome.FAILED)
+        if failed.any():
+            row = int(np.argmax(failed))
+            text = store.read(task, "reason")[row].tobytes().rstrip(b"\0")
+            return task * store.task_size + row, text.decode(errors="replace")
+    return None

@@ -1,0 +1,227 @@
+"""The results of a study as one dataset: the study has its dimensions, a store its values."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asperity.config.problems import did_you_mean
+from asperity.errors import InputError, Outcome
+from asperity.sweeps.store.store import REPAIR, Store
+from asperity.sweeps.study.columns import OUTCOMES, Column
+from asperity.sweeps.study.study import Axis, Study, parse
+from asperity.units import shown
+
+if TYPE_CHECKING:
+    import xarray
+
+CASE = "case"
+"""Dimension of the cases of a sample; a grid has its axes' keys instead."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """A store that was opened for reading.
+
+    Parameters
+    ----------
+    study
+        The study that it belongs to.
+    store
+        The store.
+    """
+
+    study: Study
+    store: Store
+
+    @property
+    def path(self) -> str:
+        """Its folder."""
+        return str(self.store.path)
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        """Its columns by name."""
+        return {column.name: column for column in self.study.columns}
+
+    def checked(self, names: Iterable[str]) -> list[str]:
+        """Names of columns, once each.
+
+        Raises
+        ------
+        InputError
+            Where the study has not kept one of them, or its array is missing.
+        """
+        wanted = list(dict.fromkeys(names))
+        for name in wanted:
+            if name not in self.columns:
+                raise InputError(
+                    f"{self.path}: a column must be one of {', '.join(self.columns)}; "
+                    f"got {shown(name)}{did_you_mean(name, self.columns)}",
+                    file=self.path,
+                )
+            if name not in self.store.arrays:
+                raise InputError(
+                    f"{self.path}: must hold an array {name}; it is missing - {REPAIR}",
+                    file=self.path,
+                )
+        return wanted
+
+    def refuse_empty(self) -> None:
+        """Refuse a store in which nothing is computed yet.
+
+        Raises
+        ------
+        InputError
+            Where no task is finished.
+        """
+        if not self.store.done:
+            raise InputError(
+                f"{self.path}: must hold results; none is computed yet - `asperity sweep STUDY "
+                "--resume` goes on",
+                file=self.path,
+            )
+
+
+def open_results(path: str | os.PathLike[str]) -> Results:
+    """Open a store for reading.
+
+    Parameters
+    ----------
+    path
+        The folder, e.g. ``"study.zarr"``.
+
+    Raises
+    ------
+    InputError
+        Where there is none, it is no store of a study, or one of a newer schema.
+    """
+    store = Store.open(Path(path))
+    return Results(parse(store.text, file=os.fspath(path)), store)
+
+
+def open_study(
+    path: str | os.PathLike[str], columns: Iterable[str] | None = None
+) -> xarray.Dataset:
+    """The results of a study as a dataset with units.
+
+    Parameters
+    ----------
+    path
+        The store, e.g. ``"study.zarr"``; it need not be complete.
+    columns
+        Names of the columns wanted; without it all but ``reason``.
+
+    Returns
+    -------
+    xarray.Dataset
+        A grid has a dimension for each axis, named by its key; a sample has the dimension
+        ``case``, with the axes' values along it. All values are SI, with ``units`` and
+        ``long_name``. The attributes ``cases``, ``computed`` and ``failed`` are numbers of cases;
+        cases not yet computed have the outcome -1, no integers (-1) and NaN elsewhere.
+
+    Raises
+    ------
+    InputError
+        Where it is no store, a column is unknown, or a chunk is damaged.
+    """
+    found = open_results(path)
+    if columns is None:
+        columns = [name for name in found.columns if name != "reason"]
+    return dataset_of(found, ("outcome", *columns))
+
+
+def dataset_of(found: Results, names: Iterable[str]) -> xarray.Dataset:
+    """Some columns of an open store as a dataset; see `open_study`."""
+    values = {name: found.store.column(name) for name in found.checked(names)}
+    return dataset_in(found.study, values)
+
+
+def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset:
+    """Columns of a study as a dataset, ``outcome`` among them; see `open_study`.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    values : mapping of str to ndarray
+        Columns by name, shape (cases[, width]).
+    """
+    import xarray
+
+    columns = {column.name: column for column in study.columns}
+    coordinates = _coordinates(study)
+    dimensions = tuple(axis.key for axis in study.axes) if study.sample is None else (CASE,)
+    variables = {
+        name: _variable(columns[name], column, dimensions, study.shape)
+        for name, column in values.items()
+    }
+    outcome = values["outcome"]
+    return xarray.Dataset(
+        variables,
+        coordinates,
+        {
+            "title": f"{study.base_name}: {study.size} cases",
+            "base": study.base_name,
+            "axes": [axis.key for axis in study.axes],
+            "cases": study.size,
+            "computed": int(np.count_nonzero(outcome >= 0)),
+            "failed": int(np.count_nonzero(outcome == OUTCOMES.index(Outcome.FAILED))),
+            "study": study.canonical,
+            "fingerprint": study.fingerprint,
+        },
+    )
+
+
+def reasons(texts: np.ndarray) -> np.ndarray:
+    """Why cases failed, as text, from bytes of shape (cases, width); "" where they did not."""
+    rows = np.ascontiguousarray(texts)
+    joined = rows.view(f"S{rows.shape[1]}")[:, 0]
+    return np.array([text.decode("utf-8", "ignore") for text in joined.tolist()], dtype=object)
+
+
+def _coordinates(study: Study) -> dict[str, Any]:
+    """The axes' values: one of a grid along its own dimension, those of a sample along `CASE`."""
+    if study.sample is None:
+        return {
+            axis.key: ((axis.key,), axis.at(np.arange(axis.size)), _about(axis))
+            for axis in study.axes
+        }
+    drawn = study.values(0, study.size)
+    return {axis.key: ((CASE,), drawn[axis.key], _about(axis)) for axis in study.axes}
+
+
+def _about(axis: Axis) -> dict[str, str]:
+    """Unit, name and scale of an axis."""
+    unit = {"units": axis.unit} if axis.unit else {}
+    return {**unit, "long_name": axis.label, "scale": axis.scale}
+
+
+def _variable(
+    column: Column, values: np.ndarray, dimensions: tuple[str, ...], shape: tuple[int, ...]
+) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+    """A column along the dimensions of the study."""
+    about: dict[str, Any] = {"long_name": column.meaning}
+    if column.unit:
+        about["units"] = column.unit
+    if column.along == "byte":
+        return dimensions, reasons(values).reshape(shape), about
+    if column.name in _FLAGS:
+        names = _FLAGS[column.name]
+        codes = np.arange(-1, len(names) - 1, dtype=column.dtype)
+        about |= {"flag_values": codes, "flag_meanings": " ".join(names)}
+    if column.along:
+        return (*dimensions, column.along), values.reshape(*shape, -1), about
+    return dimensions, values.reshape(shape), about
+
+
+_FLAGS = {
+    "outcome": ("not_computed", *(outcome.value for outcome in OUTCOMES)),
+    "captured": ("undecided", "rebounds", "captured"),
+}
+"""Meanings of the codes -1, 0, 1, ... of a column."""

@@ -1,0 +1,1 @@
+"""A study: its file, base case, axes, samples and columns."""

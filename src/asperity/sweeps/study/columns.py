@@ -1,0 +1,132 @@
+"""What a study keeps of each case: names, kinds and units of the columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from asperity.config.problems import did_you_mean
+from asperity.errors import InputError, Outcome
+from asperity.units import shown
+
+OUTCOMES: tuple[Outcome, ...] = (
+    Outcome.REST,
+    Outcome.OSCILLATING,
+    Outcome.ESCAPED,
+    Outcome.TIME_LIMIT,
+    Outcome.MAX_IMPACTS,
+    Outcome.FAILED,
+    Outcome.STOPPED,
+)
+"""How a case ended, in the order of the codes in the column ``outcome``."""
+
+REASON_SIZE = 160
+"""Bytes kept of the reason why a case failed: UTF-8, ended by zeros."""
+
+
+class Column(NamedTuple):
+    """A column of a store: one row a case.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    dtype
+        NumPy's name of its type: "float64", "int8" (-1 is none), "int32", "uint8".
+    unit
+        SI unit; "1" for numbers, "" for codes and text.
+    meaning
+        What it is, in a few words, for labels.
+    along
+        Dimension besides the cases: "" (none), "impact", "byte".
+    """
+
+    name: str
+    dtype: str
+    unit: str
+    meaning: str
+    along: str = ""
+
+    @property
+    def fill(self) -> float | int:
+        """What stands where a measure does not apply."""
+        return np.nan if self.dtype == "float64" else (0 if self.dtype == "uint8" else -1)
+
+
+ALWAYS: tuple[Column, ...] = (
+    Column("outcome", "int8", "", "how the motion ended"),
+    Column("impacts", "int32", "1", "number of impacts"),
+    Column("closure", "float64", "1", "closure of the energy ledger over the impact energy"),
+    Column("reason", "uint8", "", "why the case failed", "byte"),
+)
+"""Columns of every study."""
+
+LOSSES = ("adhesion", "capillary", "plastic", "gas", "waves", "viscous")
+"""Mechanisms whose losses can be kept, as ``lost_NAME``."""
+
+MEASURES: tuple[Column, ...] = (
+    Column("impact_speed", "float64", "m/s", "impact speed"),
+    Column("maximum_speed", "float64", "m/s", "largest speed on the first way in"),
+    Column("captured", "int8", "", "whether the first impact captures"),
+    Column("critical_velocity", "float64", "m/s", "critical velocity"),
+    Column("capture_time", "float64", "s", "time of the impact that captures"),
+    Column("stiction_time", "float64", "s", "time from release to rest"),
+    Column("end_time", "float64", "s", "time of the last apex"),
+    Column("deepest", "float64", "m", "deepest rigid separation of the first impact"),
+    Column("contact_time", "float64", "s", "time in contact at the first impact"),
+    Column("maximum_force", "float64", "N", "largest contact force of the first impact"),
+    Column("pull_off", "float64", "N", "pull-off force"),
+    Column("pull_off_separation", "float64", "m", "rigid separation at pull-off"),
+    Column("work_of_separation", "float64", "J", "work of separation"),
+    Column("preload", "float64", "N", "load that pull-off and work depend on"),
+    Column("energy_lost", "float64", "J", "energy lost in all"),
+    *(Column(f"lost_{name}", "float64", "J", f"energy lost to {name}") for name in LOSSES),
+    Column("rebound_height", "float64", "m", "rebound height", "impact"),
+    Column("restitution", "float64", "1", "coefficient of restitution", "impact"),
+    Column("log_decrement", "float64", "1", "logarithmic decrement", "impact"),
+    Column("impact_time", "float64", "s", "time from apex to apex", "impact"),
+    Column("power_loss", "float64", "W", "power lost from apex to apex", "impact"),
+)
+"""What ``keep`` can name; those along "impact" have one value for each impact kept."""
+
+MOTION: tuple[Column, ...] = (
+    Column("turning_separation", "float64", "m", "rigid separation at a turning point", "turn"),
+    Column("turning_time", "float64", "s", "time of a turning point", "turn"),
+)
+"""What ``motions = true`` keeps: deepest point and apex of each impact, in order of time."""
+
+DEFAULT_KEEP = ("captured", "impact_speed", "restitution", "stiction_time", "energy_lost")
+"""Measures of a study that names none."""
+
+
+def columns(keep: Iterable[str], *, motions: bool) -> tuple[Column, ...]:
+    """The columns of a study.
+
+    Parameters
+    ----------
+    keep : iterable of str
+        Names of measures, see `MEASURES`.
+    motions : bool
+        Whether the turning points of every impact are kept too.
+
+    Raises
+    ------
+    InputError
+        Where a name is no measure's, or stands twice.
+    """
+    known = {column.name: column for column in MEASURES}
+    kept: dict[str, Column] = {}
+    for name in keep:
+        if name not in known:
+            raise InputError(
+                f"`keep` must name measures ({', '.join(known)}); "
+                f"got {shown(name)}{did_you_mean(str(name), known)}",
+                key="keep",
+            )
+        if name in kept:
+            twice = f"`keep` must name a measure once; got {shown(name)} twice"
+            raise InputError(twice, key="keep")
+        kept[name] = known[name]
+    return (*ALWAYS, *kept.values(), *(MOTION if motions else ()))

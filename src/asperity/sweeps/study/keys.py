@@ -1,0 +1,206 @@
+"""The keys of a case that a study can vary, found from the case's own schema."""
+
+from __future__ import annotations
+
+import functools
+import types
+import typing
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, create_model
+from pydantic.fields import FieldInfo
+
+from asperity.config.case_text import unit_of
+from asperity.config.fields import Number, Quantity
+from asperity.config.key_labels import label
+from asperity.config.problems import check, did_you_mean, tables_of
+from asperity.config.schema import Case
+from asperity.errors import InputError
+from asperity.units import shown
+
+_NOT_VARIED = {
+    "schema": "the version of the case's schema, of which there is one",
+    "output": "what a run writes to its folder, which a study does not do",
+}
+
+Value = float | int | str | bool
+"""A value of a key: SI float, whole number, text or switch."""
+
+
+class _Strict(BaseModel):
+    """A table of one key, with the rules of every table of a case."""
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", strict=True)
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a case, with the rules of its values.
+
+    Attributes
+    ----------
+    name
+        Dotted, e.g. "roughness.rms_height".
+    unit
+        SI unit of its values; "1" for plain numbers, "" for text and switches.
+    label
+        What it is, for the axis of a picture.
+    numeric
+        Whether its values are numbers, and a range of them has a meaning.
+    whole
+        Whether its values are whole numbers.
+    """
+
+    name: str
+    unit: str
+    label: str
+    numeric: bool
+    whole: bool
+
+    @property
+    def last(self) -> str:
+        """The key in its table, e.g. "rms_height"."""
+        return self.name.rpartition(".")[2]
+
+    def read(self, value: object) -> Value:
+        """A value as it stands in a case file, in SI.
+
+        Raises
+        ------
+        InputError
+            With the rule that it breaks: the same as in a case file.
+        """
+        try:
+            table = check(_table_of(self.name), {self.last: value})
+        except InputError as error:
+            rule = str(error).removeprefix(f"{self.last}: ")
+            if error.key != self.last:  # one kind of value of several
+                rule = f"`{self.last}` must be text or a whole number; got {shown(value)}"
+            raise InputError(rule, key=self.name) from None
+        result: Value = getattr(table, self.last)
+        return result
+
+
+def written(value: Value, unit: str) -> Value:
+    """A value in SI as it stands in a case file; `Key.read` gives the same value back."""
+    return value if unit in ("", "1") else f"{value!r} {unit}"
+
+
+def find(name: str, materials: Iterable[str] = ()) -> Key:
+    """The key of a dotted name.
+
+    Parameters
+    ----------
+    name : str
+        E.g. "roughness.rms_height", or "materials.glass.density" for a material of the case.
+    materials : iterable of str
+        Names of the base case's own materials.
+
+    Raises
+    ------
+    InputError
+        Where a case has no such key, or no study can vary it.
+    """
+    table = name.partition(".")[0]
+    if table in _NOT_VARIED:
+        raise InputError(
+            f"must not go over `{name}`: it is {_NOT_VARIED[table]}", key=f"axes.{name}"
+        )
+    own, field, material = tuple(materials), _field(name), _material(name)
+    if field is None:
+        raise InputError(_unknown(name, own), key=f"axes.{name}")
+    if material is not None and material not in own:
+        raise InputError(
+            f"must go over a material of the base case, which has no [materials.{material}]"
+            f"{did_you_mean(material, own)}",
+            key=f"axes.{name}",
+        )
+    kinds = set(_kinds(field))
+    if list in kinds:
+        raise InputError(
+            f"must not go over `{name}`, whose value is a list; write a study for each",
+            key=f"axes.{name}",
+        )
+    numeric = bool(kinds & {Quantity, Number})
+    return Key(name, unit_of(field), label(name), numeric, Number in kinds and int in kinds)
+
+
+def known(materials: Iterable[str] = ()) -> list[str]:
+    """Dotted names of all keys that a study can vary."""
+    found = [
+        f"{table}.{key}"
+        for table, model in _tables().items()
+        for key, field in model.model_fields.items()
+        if table not in _NOT_VARIED and table != "materials" and list not in set(_kinds(field))
+    ]
+    own = _tables()["materials"].model_fields
+    return found + [f"materials.{name}.{key}" for name in materials for key in own]
+
+
+def _unknown(name: str, materials: tuple[str, ...]) -> str:
+    """What to say of a name that is no key of a case."""
+    names = known(materials)
+    if name in _tables():
+        return f"must go over a key; `{name}` is a table of a case"
+    same = [each for each in names if each.rpartition(".")[2] == name.rpartition(".")[2]]
+    hint = f" - did you mean '{same[0]}'?" if len(same) == 1 else did_you_mean(name, names)
+    return f"must go over a key of a case, such as 'body.radius'; got {shown(name)}{hint}"
+
+
+@functools.cache
+def _tables() -> dict[str, type[BaseModel]]:
+    """The tables of a case by name; for [materials.NAME] that of one material."""
+    fields = Case.model_fields.items()
+    return {name: inside[0] for name, field in fields if (inside := tables_of(field.annotation))}
+
+
+def _material(name: str) -> str | None:
+    """Name of the material of a key of [materials.NAME], which may hold dots itself."""
+    table, _, rest = name.partition(".")
+    return rest.rpartition(".")[0] if table == "materials" else None
+
+
+def place(name: str) -> tuple[str, ...]:
+    """Names of the tables around a key, and the key itself."""
+    material = _material(name)
+    above, _, last = name.rpartition(".")
+    return ("materials", material, last) if material is not None else (above, last)
+
+
+def _field(name: str) -> FieldInfo | None:
+    """Field of a dotted key; None where there is none."""
+    table, *_, last = place(name)
+    model = _tables().get(table)
+    return None if model is None else model.model_fields.get(last)
+
+
+@functools.cache
+def _table_of(name: str) -> type[BaseModel]:
+    """A model of one key alone, that checks its values as a case's table does."""
+    field = _field(name)
+    assert field is not None
+    kind: Any = field.annotation
+    for rule in field.metadata:
+        kind = typing.Annotated[kind, rule]
+    fields: dict[str, Any] = {name.rpartition(".")[2]: (kind, ...)}
+    return create_model("One", __base__=_Strict, **fields)
+
+
+def _kinds(field: FieldInfo) -> Iterator[type]:
+    """Python's types of a field's values, and its rules' types."""
+    yield from (type(rule) for rule in field.metadata)
+    yield from _inside(field.annotation)
+
+
+def _inside(annotation: Any) -> Iterator[type]:
+    origin = typing.get_origin(annotation)
+    if origin is typing.Annotated:
+        yield from (type(rule) for rule in annotation.__metadata__)
+        yield from _inside(annotation.__origin__)
+    elif origin in (typing.Union, types.UnionType):
+        for part in typing.get_args(annotation):
+            yield from _inside(part)
+    elif isinstance(origin or annotation, type):
+        yield origin or annotation

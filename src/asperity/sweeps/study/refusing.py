@@ -1,0 +1,47 @@
+"""What no study can be: unknown columns, cases beyond counting, a text that no store holds."""
+
+from __future__ import annotations
+
+from asperity.config.case_file import refuse_size
+from asperity.errors import InputError
+from asperity.sweeps.study.definition import StudyDefinition
+from asperity.sweeps.study.keys import place
+
+CASES_LIMIT = 1 << 53
+"""Most cases that a study can count: each has a number that a float can hold."""
+
+
+def refuse_unusable(study: StudyDefinition) -> None:
+    """Refuse columns that there are not, cases without a motion, and cases beyond counting.
+
+    Raises
+    ------
+    InputError
+        With the rule, and the key at fault.
+    """
+    _ = study.columns
+    if study.base.impact is None and not any(place(a.key)[0] == "impact" for a in study.axes):
+        raise InputError("`base` must have an [impact] table, for motions; got none", key="base")
+    if study.size > CASES_LIMIT:
+        got = f"at least 10^{len(str(study.size)) - 1}"
+        raise InputError(f"[axes] must give at most 2^53 cases; got {got}", key="axes")
+    if study.sample is not None:
+        study.sample.refuse_axes(len(study.axes))
+
+
+def refuse_unstorable(text: str) -> None:
+    """Refuse a study whose canonical text no store could hold.
+
+    Raises
+    ------
+    InputError
+        With the rule, and the key at fault.
+    """
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise InputError(
+            "`base` must name its files in UTF-8, for the store to hold; got other bytes",
+            key="base",
+        ) from None
+    refuse_size(text, None, "a study")

@@ -1,0 +1,60 @@
+"""What kinds of case a study holds, and how many of them a task has."""
+
+from __future__ import annotations
+
+from asperity.sweeps.study.definition import StudyDefinition
+from asperity.sweeps.study.keys import place
+
+QUICK = 4096
+"""Cases of a task where the force is a closed form or a sum over heights."""
+
+SLOW = 512
+"""Cases of a task where the motion is integrated in time, or the law iterates."""
+
+ELASTIC = 64
+"""Cases of a task where a rough half-space is solved for each force."""
+
+
+def task_size(study: StudyDefinition) -> int:
+    """Number of cases of a task: by the slowest kind of case that the study can hold."""
+    rough = _has(study, "roughness")
+    bulk = "half-space" in _values(study, "counterface", "deformation")
+    if rough and bulk and study.base.publication is None:
+        return ELASTIC
+    return QUICK if _quick(study) else SLOW
+
+
+def largest_max_impacts(study: StudyDefinition) -> int:
+    """Largest number of impacts that a case of the study can have."""
+    for axis in study.axes:
+        if axis.key == "numerics.max_impacts":
+            return int(axis.high)
+    return study.base.numerics.max_impacts
+
+
+def _quick(study: StudyDefinition) -> bool:
+    """Whether no case has a rate, a memory of time, single summits, or adhesion beyond DMT's."""
+    lossy = ("waves", "viscoelasticity", "plasticity")
+    return not (
+        _has(study, "gas")
+        or any(_values(study, table, "model") - {"none"} for table in lossy)
+        or _values(study, "adhesion", "model") - {"dmt", "none"}
+        or any(_values(study, "capillary", "formation_time"))
+        or "summits" in _values(study, "roughness", "source")
+    )
+
+
+def _has(study: StudyDefinition, table: str) -> bool:
+    """Whether a case of the study can have a table."""
+    varied = any(place(axis.key)[0] == table for axis in study.axes)
+    return varied or getattr(study.base, table) is not None
+
+
+def _values(study: StudyDefinition, table: str, key: str) -> set[object]:
+    """All values of a key within the study; {"none"} for a model whose table is absent."""
+    for axis in study.axes:
+        if axis.key == f"{table}.{key}":
+            return set(axis.listed) or {axis.low, axis.high}
+    found = getattr(study.base, table)
+    absent = "none" if key == "model" else None
+    return {absent if found is None else getattr(found, key)}

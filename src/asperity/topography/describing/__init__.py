@@ -1,1 +1,0 @@
-"""What a surface is: summits, spectrum, distribution, and two as one."""

@@ -1,1 +1,0 @@
-"""Files of surfaces: read and written, in metres."""

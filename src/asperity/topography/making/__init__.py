@@ -1,1 +1,0 @@
-"""Surfaces that are made."""

@@ -1,1 +1,0 @@
-"""A surface made ready: gaps, scan lines, form, wavelengths."""
