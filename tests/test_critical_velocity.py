@@ -1,27 +1,13 @@
 """The critical velocity: below it the first impact captures."""
 
-from math import pi, sqrt
-
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import asperity
 from asperity.config import load_file
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
 from asperity.errors import InputError
-from test_pull_off import MODULUS, RADIUS, UNIT, W, jkr, smooth
-
-MASS = 2500.0 * 4.0 / 3.0 * pi * RADIUS**3
-
-
-def cycle_loss():
-    """What a JKR contact loses over in and out, for w = R = E* = 1: 7.092196."""
-    first, last = (2.0 * pi) ** (1.0 / 3.0), (pi / 8.0) ** (1.0 / 3.0)
-    return quad(lambda a: jkr(a)[0] * (2.0 * a - sqrt(0.5 * pi / a)), last, first)[0] * -1.0
-
-
-CRITICAL = sqrt(2.0 * abs(cycle_loss()) * UNIT / MASS)
+from jkr_spheres import CRITICAL, MODULUS, RADIUS, W, smooth
 
 
 @pytest.mark.parametrize("speed", ["0.1 m/s", "0.6 m/s", "5 m/s"])

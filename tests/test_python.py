@@ -14,7 +14,7 @@ import asperity
 from asperity import InputError
 from asperity.config import load
 from fake_result import bounce
-from test_pull_off import SMOOTH
+from jkr_spheres import SMOOTH
 
 PUBLIC = sorted([*asperity.__all__, "__version__"])
 
