@@ -99,7 +99,7 @@ def build(case: Case, resolved: Resolution | None = None) -> Problem:
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, 0.0, contact.reach + CLEARANCE)
     if (impact := case.impact) is not None:
-        release = body.release if impact.release_gap is None else impact.release_gap
+        release = body.release if impact.release_separation is None else impact.release_separation
         speed = impact.speed or 0.0
         body = Body(mass, impact.gravity, release, speed, _film(case), _waves(case))
     late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
@@ -194,7 +194,7 @@ def _film(case: Case) -> SqueezeFilm | None:
     gas = case.gas
     if gas is None:
         return None
-    closest = gas.closest_gap
+    closest = gas.cutoff_separation
     if closest is None:
         assert case.asperities is not None
         closest = case.asperities.rms_height
@@ -236,7 +236,7 @@ def _published(
         bands=assumed.bands,
     )
     return PublishedContact(
-        pressure, Sphere(case.body.radius), float(assumed.pull_while_parting_only)
+        pressure, Sphere(case.body.radius), float(assumed.attraction_during_retraction_only)
     )
 
 

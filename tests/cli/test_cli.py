@@ -129,7 +129,7 @@ def test_curve_writes_its_own_files_and_prints_its_own_json(place: Path):
     assert call("curve", CASE).exit_code == 0
     assert names(place / f"{CASE}-out") == sorted([*records.RUN_FILES, *records.CURVE_FILES])
     found = strict(call("curve", CASE, "--json").stdout)
-    assert len(found["force_parting"]) == len(found["rigid_separation"])
+    assert len(found["force_unloading"]) == len(found["rigid_separation"])
     assert isinstance(found["pull_off"], float)
     assert isinstance(read(f"{CASE}-out/curve.nc"), Curve)
 
@@ -366,7 +366,7 @@ def test_the_solvers_refusal_is_bad_input(monkeypatch: pytest.MonkeyPatch, place
     monkeypatch.setitem(sys.modules, "asperity.solver", solver("refuse"))
     ran = call("run", CASE)
     assert ran.exit_code == 2
-    assert_one_line(ran.stderr, "impact.release_gap", "45.9 nm")
+    assert_one_line(ran.stderr, "impact.release_separation", "45.9 nm")
     assert names(place) == []
 
 

@@ -53,7 +53,11 @@ def test_the_published_case_is_the_one_of_the_publication():
     assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "contact")
     assert (case.capillary.humidity, case.capillary.temperature) == (0.6, 293.15)
     assert case.capillary.contact_angle == math.radians(73)
-    assert (case.impact.release_gap, case.impact.speed, case.impact.gravity) == (60e-9, None, 9.81)
+    assert (case.impact.release_separation, case.impact.speed, case.impact.gravity) == (
+        60e-9,
+        None,
+        9.81,
+    )
     assert case.counterface.deformation == "half-space"
     assert case.body_solid == SOLIDS["silica"]
     assert case.counterface_solid == SOLIDS["silicon carbide"]
@@ -200,8 +204,8 @@ def test_the_example_of_every_key_is_read(place, name, field):
         given = {"viscosity": "18 uPa s", "slip_length": "0 nm"} if by_number else {
             "name": "argon", "pressure": "1 kPa", "temperature": "300 K",
         }  # fmt: skip
-        table["gas"] = {**given, "closest_gap": "2 nm"}
-        table["impact"]["release_gap"] = "1 um"
+        table["gas"] = {**given, "cutoff_separation": "2 nm"}
+        table["impact"]["release_separation"] = "1 um"
     table.setdefault(place[0], {})[name] = field.examples[0]
     value = getattr(getattr(Case.model_validate(table), place[0]), name)
     unit, example = field.json_schema_extra["unit"], field.examples[0]
@@ -227,7 +231,7 @@ def test_a_case_reads_back_exactly_from_its_own_text(name, radius, angle, gap, h
             "body.radius": f"{radius!r} m",
             "capillary.contact_angle": f"{angle!r} rad" if angle > 1e-9 else "0 rad",
             "capillary.humidity": humidity,
-            "impact.release_gap": f"{gap!r} m",
+            "impact.release_separation": f"{gap!r} m",
             "impact.speed": "0.1 m/s",
             "numerics.time_limit": "1 ms",
             "output.directory": name.replace("\0", "0") + "x",

@@ -85,7 +85,7 @@ class Capillary(Table):
     )
     humidity: fields.Humidity | None = entry(
         "1",
-        "Vapour pressure over saturated vapour pressure; 1 needs `film_thickness`.",
+        "Vapour pressure over saturated vapour pressure; 1 needs `adsorbed_film_thickness`.",
         0.6,
         default=None,
         shown=True,
@@ -102,7 +102,7 @@ class Capillary(Table):
     molar_volume: fields.MolarVolume | None = entry(
         "m^3/mol", "Molar volume, in place of the catalogue's.", "18.05 cm^3/mol", default=None
     )
-    film_thickness: fields.Length | None = entry(
+    adsorbed_film_thickness: fields.Length | None = entry(
         "m",
         "Adsorbed film on each surface, from which menisci draw: they span no gap wider than both.",
         "0.5 nm",

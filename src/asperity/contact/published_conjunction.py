@@ -65,7 +65,7 @@ class PublishedContact(Contact):
 
     pressure: PublishedPressure
     shape: Sphere
-    parting_only: Real = quantity(1.0)
+    retraction_only: Real = quantity(1.0)
     count: int = eqx.field(static=True, default=_PANELS)
 
     @property
@@ -98,7 +98,7 @@ class PublishedContact(Contact):
         self, separation: jax.Array, memory: jax.Array, force: jax.Array, energy: jax.Array
     ) -> State:
         """From the integrals of each pressure, asperities that touch last."""
-        lost = self.parting_only
+        lost = self.retraction_only
         pull = force[1:3]
         parts = jnp.concatenate([force[:1], -(1.0 - lost * (1.0 - memory)) * pull])
         return State(
@@ -160,7 +160,7 @@ class PublishedContact(Contact):
         return memory
 
     def turned(self, memory: jax.Array, separation: jax.Array, held: Held) -> jax.Array:
-        return jnp.where(held.parting, 0.0, 1.0)
+        return jnp.where(held.unloading, 0.0, 1.0)
 
     def bonded(self, memory: jax.Array) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
@@ -176,7 +176,7 @@ class PublishedContact(Contact):
         places = ladder[:, None] + 0.5 * width * (_FEW + 1.0)
         weights = pi * self.shape.radius * width * _FEW_WEIGHTS
         # More than all menisci pull in full; less than the energy is stored, then.
-        pull = (1.0 - self.parting_only) * (1.0 + _DOUBT) * p.strongest_pull(places)
+        pull = (1.0 - self.retraction_only) * (1.0 + _DOUBT) * p.strongest_pull(places)
         pressure = p.contact(places) - pull
         steps = jnp.sum(weights * pressure, axis=1)
         force = jnp.cumsum(steps) - steps

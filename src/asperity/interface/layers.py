@@ -118,13 +118,13 @@ class Layers(eqx.Module):
         each = [part.touched(own) for part, own in self._shares(memory)]
         return jnp.any(jnp.stack(each))
 
-    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on an outermost branch; see :meth:`Interface.swept`."""
-        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, parting))
+        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, unloading))
 
-    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the outermost branch."""
-        return [d for part, own in self._shares(memory) for d in part.merging(own, parting)]
+        return [d for part, own in self._shares(memory) for d in part.merging(own, unloading)]
 
     def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""

@@ -67,7 +67,7 @@ def computed(result: Result) -> dict[str, float | None]:
     decrements = result.measures["log_decrement"]
     return {
         "log_decrement": decrements[0] if decrements else None,
-        "stiction_time": result.measures["stiction_time"],
+        "time_to_rest": result.measures["time_to_rest"],
         "power_loss": mean_power_loss(result),
     }
 
@@ -97,7 +97,7 @@ def power_of(entry: Entry, result: Result) -> dict[str, float | None]:
     """Published power loss over the two energy balances, and over the mean of eq. 23."""
     published, measures = entry.values["power_loss"], result.measures
     first, mean = measures["power_loss"][0], mean_power_loss(result)
-    rest, release = measures["stiction_time"], result.ledger["initial"]
+    rest, release = measures["time_to_rest"], result.ledger["initial"]
     whole = release / rest if rest else None
 
     def ratio(balance: float | None) -> float | None:

@@ -164,11 +164,11 @@ class Evidence:
         """
         motion, gravity = self.wet, self.case.launch.gravity
         rise = first(motion.measures["rebound_height"])
-        fall = self.wet_inputs.release_gap - float(self.contact.pressure.end)
+        fall = self.wet_inputs.release_separation - float(self.contact.pressure.end)
         if not rise > 0.0:
             return float(np.nan)
         flight = sqrt(2.0 * fall / gravity) + sqrt(2.0 * rise / gravity)
-        return first(motion.measures["impact_time"]) - flight
+        return first(motion.measures["rebound_period"]) - flight
 
     @cached_property
     def conjunction(self) -> tuple[np.ndarray, ...]:
@@ -234,7 +234,7 @@ def _variants(case: Case) -> dict[str, Case]:
         "printed": case.replace({"publication.polynomials": "printed"}),
         "wet": case,
         "dry": case.replace({"capillary.model": "none", **few}),
-        "both_ways": case.replace({"publication.pull_while_parting_only": False}),
+        "both_ways": case.replace({"publication.attraction_during_retraction_only": False}),
         "exact_damp": exact.replace({"capillary.humidity": damp}),
     }
 
@@ -247,7 +247,7 @@ def _printed_off(stop: threading.Event) -> dict[str, float]:
         motion = solve(entry.within(case), name=entry.name, stop=stop, critical=False)
         found = {
             "log_decrement": first(motion.measures["log_decrement"]),
-            "stiction_time": motion.measures["stiction_time"] or np.nan,
+            "time_to_rest": motion.measures["time_to_rest"] or np.nan,
         }
         for name, value in found.items():
             published = entry.values[name]

@@ -227,7 +227,7 @@ def _publication(case: Case) -> list[str]:
     if assumed is None:
         return []
     pulls = "adhesion and menisci pull only while the bodies part, " * (
-        assumed.pull_while_parting_only
+        assumed.attraction_during_retraction_only
     )
     factor = assumed.capillary_factor
     menisci = f", and menisci pull {factor:g} times as much as their equation says" * (
@@ -298,7 +298,7 @@ def _ledger(problem: Problem, motion: Motion) -> list[str]:
     if isinstance(problem.contact, ElasticContact) and problem.creep is None:
         what += f" or the deformation on {problem.contact.rings} rings"
     rows = motion.impacts
-    off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
+    off = float(np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.fastest[0])
     if off <= CLOSED:
         return []
     return [

@@ -85,7 +85,7 @@ def _polynomials(evidence: Evidence) -> list[Claim]:
         other = (
             f". With an end at {PRINTED.conjunction_ends:.4g} and other inputs the printed "
             f"polynomials give the decrements within {100.0 * worst['log_decrement']:.1f} % and "
-            f"the stiction times within {100.0 * worst['stiction_time']:.1f} %: the tables do not "
+            f"the stiction times within {100.0 * worst['time_to_rest']:.1f} %: the tables do not "
             "tell which were used"
         )
     return [

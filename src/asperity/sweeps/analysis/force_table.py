@@ -59,8 +59,8 @@ def branches_of(curve: Curve) -> tuple[Branch, Branch]:
         Where the curve has too few points, or one at no positive distance.
     """
     return (
-        _branch("APPROACH", curve, curve.force_approach),
-        _branch("PARTING", curve, curve.force_parting),
+        _branch("APPROACH", curve, curve.force_loading),
+        _branch("PARTING", curve, curve.force_unloading),
     )
 
 
