@@ -108,7 +108,7 @@ def test_a_stop_set_before_the_first_impact_leaves_nothing(case):
 
 def test_a_stop_set_on_the_way_keeps_what_was_computed(case):
     stop = threading.Event()
-    longer = case.replace({"numerics.max_impacts": 250, "numerics.rest": 1e-12})
+    longer = case.replace({"numerics.max_impacts": 250, "numerics.rest_height_ratio": 1e-12})
 
     def report(fraction, text):
         if text.startswith("impact"):

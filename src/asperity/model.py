@@ -186,7 +186,9 @@ def _adhesion(case: Case, tip: float, modulus: float) -> AdhesionChoice:
     given = case.adhesion
     if given.model != "auto":
         return AdhesionChoice(given.model)
-    return choose_adhesion(tabor_number(tip, _given(given.work), modulus, _given(given.range)))
+    return choose_adhesion(
+        tabor_number(tip, _given(given.work), modulus, _given(given.equilibrium_spacing))
+    )
 
 
 def _film(case: Case) -> SqueezeFilm | None:
@@ -247,7 +249,7 @@ def _law(case: Case, model: str, tip: float, modulus: float, smallest: float | N
     if model == "jkr":
         contact = Jkr(tip, modulus, _given(adhesion.work))
     elif model == "maugis":
-        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.range))
+        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.equilibrium_spacing))
     beside = _beside(case, model, tip, smallest or tip)
     return Sum([contact, *beside]) if beside else contact
 
@@ -259,7 +261,7 @@ def _beside(case: Case, model: str, tip: float, smallest: float) -> list[Law]:
     if model == "dmt":
         return [Dmt(tip, _given(adhesion.work)), *menisci]
     if model == "bradley":
-        return [Bradley(tip, _given(adhesion.work), _given(adhesion.range)), *menisci]
+        return [Bradley(tip, _given(adhesion.work), _given(adhesion.equilibrium_spacing)), *menisci]
     return menisci
 
 

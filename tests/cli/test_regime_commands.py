@@ -236,11 +236,15 @@ def test_terminal_and_summary_say_why_the_law_was_chosen(auto: Case, place: Path
 
 def test_a_choice_needs_the_range():
     case = Path(BOUNCE).read_text(encoding="utf-8")
-    lines = [line for line in case.replace('"jkr"', '"auto"').splitlines() if "range" not in line]
+    lines = [
+        line
+        for line in case.replace('"jkr"', '"auto"').splitlines()
+        if "equilibrium_spacing" not in line
+    ]
     Path("case.toml").write_text("\n".join(lines), encoding="utf-8")
     ran = call("regime", "case.toml")
     assert ran.exit_code == 2
-    assert "`range` must be given with model = 'auto'" in ran.stderr
+    assert "`equilibrium_spacing` must be given with model = 'auto'" in ran.stderr
 
 
 @pytest.mark.parametrize(
@@ -300,7 +304,7 @@ def test_the_maps_file_must_be_a_png():
     ("changes", "parts"),
     [
         ({"adhesion": None}, ("adhesion.model", "got 'none'")),
-        ({"adhesion.range": None}, ("adhesion.range", "must be given")),
+        ({"adhesion.equilibrium_spacing": None}, ("adhesion.equilibrium_spacing", "must be given")),
     ],
 )
 def test_a_case_without_a_place_is_refused_with_what_it_lacks(

@@ -742,8 +742,8 @@ def test_a_force_table_reads_back_to_the_same_forces(
     sections: dict[str, tuple[list[str], np.ndarray]],
 ):
     curve = linear_curve()
-    assert list(sections) == ["APPROACH", "PARTING"]
-    for name, force in (("APPROACH", curve.force_loading), ("PARTING", curve.force_unloading)):
+    assert list(sections) == ["LOADING", "UNLOADING"]
+    for name, force in (("LOADING", curve.force_loading), ("UNLOADING", curve.force_unloading)):
         distance, _, read = sections[name][1]
         np.testing.assert_array_equal(read, force)
         np.testing.assert_array_equal(distance, curve.rigid_separation + curve.case.body.radius)
@@ -765,7 +765,7 @@ def test_forces_of_a_table_agree_with_its_energies_as_lammps_checks(
     sections: dict[str, tuple[list[str], np.ndarray]],
 ):
     # Its reader warns where a force lies beyond both secants beside it, off inflections.
-    distance, energy, force = sections["APPROACH"][1]
+    distance, energy, force = sections["LOADING"][1]
     secants = -np.diff(energy) / np.diff(distance)
     inner = slice(1, 38)  # the spring; beyond it the force jumps to nothing
     low = np.minimum(secants[:-1], secants[1:])[inner]

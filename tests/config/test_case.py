@@ -49,7 +49,11 @@ def test_the_published_case_is_the_one_of_the_publication():
     assert case.roughness.asperity_density == 1.69e16
     assert case.roughness.asperity_radius == 0.25e-9
     assert case.roughness.rms_height == 10.5e-9
-    assert (case.adhesion.model, case.adhesion.work, case.adhesion.range) == ("dmt", 0.03, 2e-10)
+    assert (case.adhesion.model, case.adhesion.work, case.adhesion.equilibrium_spacing) == (
+        "dmt",
+        0.03,
+        2e-10,
+    )
     assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "contact")
     assert (case.capillary.humidity, case.capillary.temperature) == (0.6, 293.15)
     assert case.capillary.contact_angle == math.radians(73)
@@ -117,7 +121,10 @@ def test_ones_own_table_comes_before_the_catalogue():
 
 
 def test_jkr_needs_no_range():
-    assert load(SMALL + '[adhesion]\nmodel = "jkr"\nwork = "50 mJ/m^2"').adhesion.range is None
+    assert (
+        load(SMALL + '[adhesion]\nmodel = "jkr"\nwork = "50 mJ/m^2"').adhesion.equilibrium_spacing
+        is None
+    )
 
 
 def test_a_case_may_float_without_gravity_where_it_has_a_speed():

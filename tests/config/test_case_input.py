@@ -84,7 +84,8 @@ BAD = [
     ('model = "auto"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "auto"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
     ('work = "60 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'auto'"),
-    ('range = "0.2 nm"', "", "`range` must be given with model = 'auto'"),
+    ('equilibrium_spacing = "0.2 nm"', "",
+     "`equilibrium_spacing` must be given with model = 'auto'"),
     ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 70): `humidity` must lie in "
      "[0, 1]; got 1.2"),
     ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',

@@ -38,7 +38,7 @@ source = "summits"
 [adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 [capillary]
 model = "equilibrium"
 liquid = "water"
@@ -343,7 +343,7 @@ def test_too_few_classes_of_radius_are_warned_about(case):
 
 def test_a_law_chosen_for_all_radii_that_would_differ_is_named(case):
     """Tips whose Tabor numbers lie on both sides of a border of the laws."""
-    adhesion = case.adhesion.model_copy(update={"model": "auto", "range": 3e-10})
+    adhesion = case.adhesion.model_copy(update={"model": "auto", "equilibrium_spacing": 3e-10})
     said = {}
     for work in (1e-4, 0.017):
         each = case.model_copy(update={"adhesion": adhesion.model_copy(update={"work": work})})

@@ -16,7 +16,7 @@ BONDS = {
     "roughness.asperity_radius": "100 nm",
     "roughness.rms_height": "3 nm",
     "adhesion.model": "jkr",
-    "adhesion.range": "0.2 nm",
+    "adhesion.equilibrium_spacing": "0.2 nm",
     "counterface.deformation": "half-space",
     "numerics.rings": 32,
     "numerics.max_impacts": 3,

@@ -26,7 +26,7 @@ rms_height = "5 nm"
 [adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.3 nm"
+equilibrium_spacing = "0.3 nm"
 [plasticity]
 model = "kogut-etsion"
 hardness = "2 GPa"

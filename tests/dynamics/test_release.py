@@ -45,7 +45,7 @@ material = "silicon carbide"
 [{at}adhesion]
 model = "{adhesion}"
 {"" if adhesion == "none" else f'work = "{WORK} J/m^2"'}
-{"" if adhesion == "none" else f'range = "{SPACING} m"'}
+{"" if adhesion == "none" else f'equilibrium_spacing = "{SPACING} m"'}
 {water}
 [{at}impact]
 speed = "{speed}"

@@ -165,7 +165,7 @@ def test_a_body_torn_in_by_adhesion_faster_than_waves_is_warned_of():
     """1 nm of radius and 200 J/m^2: released slowly, it comes in faster than any wave."""
     case = changed(
         SMOOTH, body__radius="1 nm", impact__speed="1 mm/s", impact__gravity="0 m/s^2",
-        adhesion={"model": "dmt", "work": "200 J/m^2", "range": "0.3 nm"},
+        adhesion={"model": "dmt", "work": "200 J/m^2", "equilibrium_spacing": "0.3 nm"},
     )  # fmt: skip
     (line,) = warned(case, "waves in a bar")
     assert "not quasi-static" in line

@@ -281,10 +281,10 @@ def test_corners_have_each_axis_at_both_ends_with_the_others_low_and_high():
     axes = {
         "impact.speed": '["0.1 m/s", "1 m/s", "2 m/s"]',
         "adhesion.work": '["20 mJ/m^2", "30 mJ/m^2"]',
-        "adhesion.range": '["0.2 nm"]',
+        "adhesion.equilibrium_spacing": '["0.2 nm"]',
         "body.radius": '["40 um", "50 um"]',
         "numerics.max_impacts": "[3, 4]",
-        "numerics.rest": "[1e-3, 1e-4]",
+        "numerics.rest_height_ratio": "[1e-3, 1e-4]",
     }
     found = study("\n".join(f'"{key}" = {{values = {values}}}' for key, values in axes.items()))
     places = np.array(np.unravel_index(found.corners, found.shape)).T

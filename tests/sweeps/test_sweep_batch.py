@@ -39,7 +39,7 @@ rms_height = "10.5 nm"
 [base.adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 [base.capillary]
 model = "equilibrium"
 formation = "contact"
@@ -63,7 +63,7 @@ material = "silicon carbide"
 [base.adhesion]
 model = "jkr"
 work = "30 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 [base.impact]
 speed = "0.5 m/s"
 gravity = "0 m/s^2"

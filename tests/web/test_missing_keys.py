@@ -149,7 +149,13 @@ def test_a_case_tells_all_that_is_wrong_with_it_at_once(client: TestClient):
     case["bodi"] = {}
     answer = client.post("/api/explore", json={"case": case})
     error = answer.json()["error"]
-    wanted = {"bodi", "body.radius", "capillary.humidity", "adhesion.work", "adhesion.range"}
+    wanted = {
+        "bodi",
+        "body.radius",
+        "capillary.humidity",
+        "adhesion.work",
+        "adhesion.equilibrium_spacing",
+    }
     assert {one["key"] for one in error["problems"]} == wanted
     assert error["problems"][0] == {key: error[key] for key in ("key", "message")}
     assert error["key"] == "bodi"

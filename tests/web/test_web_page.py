@@ -287,7 +287,7 @@ def test_two_designs_stand_side_by_side(page):
     assert page.locator("#verdicts .said").count() == 2
     heads = page.locator("#measures thead th").all_text_contents()
     assert heads == ["A: drop", "B: drop"]
-    assert "B parting" in page.locator("#curve .legend").inner_text()
+    assert "B unloading" in page.locator("#curve .legend").inner_text()
     first, second = state(page)
     assert first["tables"]["capillary"]["humidity"] == 0.6
     assert second["tables"]["capillary"]["humidity"] == 0.3
@@ -614,7 +614,7 @@ def test_the_critical_velocity_is_waited_for_without_dimming(page):
 def test_every_bad_field_is_marked_with_its_own_message(page):
     write(page, "body.radius", "-5 um")
     write(page, "capillary.humidity", "1.5")
-    write(page, "adhesion.range", "")
+    write(page, "adhesion.equilibrium_spacing", "")
     for key, words in (
         ("body-radius", "must be positive"),
         ("capillary-humidity", "must lie in [0, 1]"),
@@ -629,7 +629,7 @@ def test_every_bad_field_is_marked_with_its_own_message(page):
     focused = page.evaluate("() => document.activeElement.id")
     assert focused in ("field-capillary-humidity", "field-adhesion-range", "field-body-radius")
     write(page, "capillary.humidity", "0.6")
-    write(page, "adhesion.range", "0.2 nm")
+    write(page, "adhesion.equilibrium_spacing", "0.2 nm")
     settled(page)
     expect(page.locator("#field-body-radius-wrong")).to_be_visible()
     expect(page.locator("#field-capillary-humidity-wrong")).to_be_hidden()

@@ -73,7 +73,7 @@ def adhesion(model: str) -> Changes:
     """A law of dry adhesion in place of the base's."""
     if model == "none":
         return {"adhesion": None}
-    return {"adhesion": {"model": model, "work": 0.03, "range": 2e-10}}
+    return {"adhesion": {"model": model, "work": 0.03, "equilibrium_spacing": 2e-10}}
 
 
 def drawn_work(model: str) -> Ranges:

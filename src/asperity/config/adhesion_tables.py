@@ -46,9 +46,9 @@ class Adhesion(Table):
     work: fields.SurfaceEnergy | None = entry(
         "J/m^2", "Work of adhesion.", "60 mJ/m^2", default=None, shown=True
     )
-    range: fields.Length | None = entry(
+    equilibrium_spacing: fields.Length | None = entry(
         "m",
-        "Interatomic spacing, the range of the adhesion ('jkr' needs none).",
+        "Equilibrium spacing of the atoms, the range of the adhesion ('jkr' needs none).",
         "0.2 nm",
         default=None,
         shown=True,
@@ -56,7 +56,7 @@ class Adhesion(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        needed = {"none": (), "jkr": ("work",)}.get(self.model, ("work", "range"))
+        needed = {"none": (), "jkr": ("work",)}.get(self.model, ("work", "equilibrium_spacing"))
         return need(self, needed)
 
 

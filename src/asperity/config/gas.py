@@ -114,7 +114,8 @@ class Gas(Table):
         if closest is not None and closest >= release:
             raise InputError(
                 "`cutoff_separation` must be smaller than `release_separation` "
-                f"({release * 1e9:.6g} nm), or the film would never thin; got {closest * 1e9:.6g} nm",
+                f"({release * 1e9:.6g} nm), or the film would never thin; "
+                f"got {closest * 1e9:.6g} nm",
                 key="gas.cutoff_separation",
             )
 

@@ -198,8 +198,8 @@ def _bounded_liquid(case: CaseTables) -> None:
     if air.humidity == 1.0 and air.adsorbed_film_thickness is None:
         raise InputError(
             "`humidity` must lie in [0, 1) without an `adsorbed_film_thickness` (at 1 the Kelvin "
-            "radius is infinite: menisci would reach to any gap, and only the adsorbed film that they "
-            "draw from bounds them); got 1",
+            "radius is infinite: menisci would reach to any gap, and only the adsorbed film that "
+            "they draw from bounds them); got 1",
             key="capillary.humidity",
         )
     if air.model == "kelvin-filling":

@@ -56,7 +56,7 @@ class Numerics(Table):
     tolerance: Annotated[float, Number("[1e-12, 1e-3]")] = entry(
         "1", "Relative error allowed to the force curves.", 1e-8, default=_NUMERICS.relative
     )
-    rest: Annotated[float, Number("(0, 1)")] = entry(
+    rest_height_ratio: Annotated[float, Number("(0, 1)")] = entry(
         "1", "At rest below this fraction of the first rebound.", 1e-3, default=_NUMERICS.rest
     )
     time_limit: fields.Time | None = entry(

@@ -181,7 +181,7 @@ class CaseTables(Table):
         """The numerics as the solver takes them."""
         n = self.numerics
         limit = math.inf if n.time_limit is None else n.time_limit
-        return Tolerance(n.tolerance, n.rest, limit, n.max_impacts, n.rings)
+        return Tolerance(n.tolerance, n.rest_height_ratio, limit, n.max_impacts, n.rings)
 
     @functools.cached_property
     def name(self) -> str:

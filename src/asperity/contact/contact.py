@@ -78,7 +78,7 @@ class Held(NamedTuple):
     ----------
     outer
         Whether on an outermost branch, else still on the way to it.
-    parting
+    unloading
         Whether the phase led outwards.
     size, field
         As in :class:`State`.

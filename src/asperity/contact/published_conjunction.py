@@ -49,7 +49,7 @@ class PublishedContact(Contact):
         The mean pressures.
     shape
         The body.
-    parting_only
+    retraction_only
         1 where adhesion and menisci pull only while the bodies part: what the published
         decrements say, and no law that a bond could follow. 0 where they always pull.
     count
@@ -57,7 +57,7 @@ class PublishedContact(Contact):
 
     Notes
     -----
-    With ``parting_only`` the way out takes from the body what the pull does over it. It is
+    With ``retraction_only`` the way out takes from the body what the pull does over it. It is
     booked like bonds that break: :attr:`State.bonds` holds the work [J] that each pull would
     still do from here to the edge, a joule of it is lost for each joule that goes, and
     nothing when it comes back on the way in. The memory is whether the bodies part.

@@ -184,7 +184,9 @@ def _leg(
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
     branch = contact.branch_of(progress.memory, unloading)
-    ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, unloading)
+    ahead = look_ahead(
+        table, branch, inner, progress.kinetic, body.weight, progress.place, unloading
+    )
     if not body.damped:
         wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(unloading))
         turn, heat = find_turn(ahead, wanted), jnp.zeros(0)

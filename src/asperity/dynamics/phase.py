@@ -62,7 +62,7 @@ class Ahead(NamedTuple):
         Work from the top of the table to there, of the force and of its attractive part [J].
     panel
         Panel of the branch in which it begins.
-    parting
+    unloading
         Whether the body moves outwards.
     """
 
@@ -196,7 +196,10 @@ def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     table, panel = ahead.table, turn.piece - ahead.pieces
     panels = jnp.stack([ahead.panel, panel])
     low, high = table.ends[panels], table.ends[panels + 1]
-    near, far = jnp.where(ahead.unloading, high[0], low[0]), jnp.where(ahead.unloading, low[1], high[1])
+    near, far = (
+        jnp.where(ahead.unloading, high[0], low[0]),
+        jnp.where(ahead.unloading, low[1], high[1]),
+    )
     first = jnp.stack([ahead.begin, far])
     last = jnp.stack([_until(ahead, turn, near), turn.place])
     span = last - first

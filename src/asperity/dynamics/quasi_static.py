@@ -135,4 +135,6 @@ losses = Program(_losses, AT_ONCE)
 def _loss(contact: Contact, approach: np.ndarray, unloading: np.ndarray) -> float:
     """Energy lost in and out: bonds made on the way in, and broken on the way out."""
     formation, rupture = (np.asarray(x) for x in losses(contact))
-    return float((approach[0] - approach[-1]) @ formation + (unloading[0] - unloading[-1]) @ rupture)
+    return float(
+        (approach[0] - approach[-1]) @ formation + (unloading[0] - unloading[-1]) @ rupture
+    )

@@ -107,7 +107,7 @@ class Interface(eqx.Module):
         return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.hysteretic)
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return tuple(jnp.full(jnp.shape(place), -jnp.inf) for _ in self.hysteretic)
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:

@@ -93,7 +93,7 @@ class Layers(eqx.Module):
         return tuple(b for part in self.parts for b in part.fresh(place))
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return tuple(b for part in self.parts for b in part.torn(place))
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:

@@ -35,7 +35,7 @@ class BranchTable(eqx.Module):
     ----------
     cells
         Coefficients of powers, shape (lifts, branches, cells, rows, 6): lift 0 and 1, the branch
-        of approach and that of parting, the mechanisms of the force and then the energy.
+        of loading and that of unloading, the mechanisms of the force and then the energy.
     origin
         Separation [m] at which the even cells begin.
     step

@@ -118,7 +118,7 @@ class RadiusClasses(eqx.Module):
         return self.stacked.fresh(place) * self.count
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return self.stacked.torn(place) * self.count
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:

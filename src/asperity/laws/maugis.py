@@ -73,7 +73,7 @@ class Maugis(Law):
 
     @property
     def rupture_gap(self) -> jax.Array:
-        """Gap [m] at which the contact proper ends on parting."""
+        """Gap [m] at which the contact proper ends on unloading."""
         return -self._depth * contact_end(self.elasticity).overlap
 
     @property

@@ -56,7 +56,7 @@ def _difference(axes: Axes, curve: Curve) -> None:
     axes.fill_between(gap, 0.0, difference / newtons, color=colour("lost"), lw=0.0)
     axes.plot(gap, difference / newtons, color=colour("unloading"))
     axes.set_xlabel(style.label("rigid separation", length_unit))
-    axes.set_ylabel(style.label("parting less approach", unit))
+    axes.set_ylabel(style.label("unloading less loading", unit))
     axes.margins(x=0.02)
     axes.set_title("energy lost")
 

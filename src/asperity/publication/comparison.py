@@ -23,9 +23,11 @@ def table_1(case: Case) -> list[dict[str, Any]]:
     assert rough is not None
     assert liquid is not None
     assert adhesion.work is not None
-    assert adhesion.range is not None
+    assert adhesion.equilibrium_spacing is not None
     modulus = contact_modulus(body, flat)
-    tabor = tabor_number(rough.asperity_radius, adhesion.work, modulus, adhesion.range)
+    tabor = tabor_number(
+        rough.asperity_radius, adhesion.work, modulus, adhesion.equilibrium_spacing
+    )
     lines = (
         ("Young's modulus of silica", "Pa", 80e9, body.youngs_modulus),
         ("Young's modulus of silicon carbide", "Pa", 161e9, flat.youngs_modulus),

@@ -205,9 +205,9 @@ class Evidence:
         """Contact of bodies that never touched, by the exact model."""
         return _first_touch(self.exact_contact, jnp.asarray(separation))
 
-    def parting_forces(self, separations: np.ndarray) -> np.ndarray:
+    def retraction_forces(self, separations: np.ndarray) -> np.ndarray:
         """Elastic force, adhesion and menisci [N] of bodies that begin to part at separations."""
-        return np.asarray(_parting(self.contact, jnp.asarray(separations)))
+        return np.asarray(_retraction(self.contact, jnp.asarray(separations)))
 
     def kelvin_radius(self, humidity: float) -> float:
         """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
@@ -264,12 +264,12 @@ def _fresh_state(contact: Contact, separation: jax.Array) -> FirstTouch:
 _first_touch = Program(_fresh_state)
 
 
-def _parting_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:
+def _retraction_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:
     memory = jnp.ones(())
     return jax.vmap(lambda separation: contact.state(separation, memory).parts)(separations)
 
 
-_parting = Program(_parting_parts)
+_retraction = Program(_retraction_parts)
 
 
 def first(values: list[float | None]) -> float:

@@ -198,7 +198,7 @@ class _Problem:
         problem = build(plain)
         assert isinstance(problem.contact, PublishedContact)
         self._contact, self._body = problem.contact, problem.body
-        self._rest = plain.numerics.rest
+        self._rest = plain.numerics.rest_height_ratio
         surfaces = sorted({entry.surface for entry in entries})
         self._surfaces = jnp.asarray(surfaces)
         self._highest = max(height for _, height in surfaces)

@@ -111,11 +111,13 @@ def _one_law(case: Case, problem: Problem) -> list[str]:
     rough, given, table = case.asperities, case.adhesion, case.roughness
     if given.model != "auto" or rough is None or rough.summits is None or table is None:
         return []
-    if table.source != "summits" or given.work is None or given.range is None:
+    if table.source != "summits" or given.work is None or given.equilibrium_spacing is None:
         return []
     ends = np.quantile(rough.summits.radii, (0.05, 0.95))
     laws = [
-        choose_adhesion(tabor_number(tip, given.work, problem.modulus, given.range)).law
+        choose_adhesion(
+            tabor_number(tip, given.work, problem.modulus, given.equilibrium_spacing)
+        ).law
         for tip in ends
     ]
     if laws == [problem.adhesion.law] * 2:

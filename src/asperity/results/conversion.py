@@ -254,7 +254,7 @@ def assessment_of(
 def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     """The dimensionless numbers of a case, by its contact at closest approach."""
     adhesion, rough = case.adhesion, case.asperities
-    work, spacing = adhesion.work, adhesion.range
+    work, spacing = adhesion.work, adhesion.equilibrium_spacing
     tabor = plasticity = load = None
     if work and spacing:
         tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
