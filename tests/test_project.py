@@ -77,7 +77,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_wheel_holds_the_package_its_cases_and_the_licence(wheel: Path):
-    cases = sorted((SOURCE / "cases").glob("*.toml"))
+    cases = sorted((SOURCE / "config" / "cases").glob("*.toml"))
     assert cases
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())

@@ -278,7 +278,7 @@ def test_replacing_values_checks_them():
 
 
 def test_the_built_in_cases_are_those_of_the_package():
-    files = (importlib.resources.files("asperity") / "cases").iterdir()
+    files = (importlib.resources.files("asperity.config") / "cases").iterdir()
     assert sorted(BUILTINS) == sorted(Path(file.name).stem for file in files)
     assert "published-exact" in BUILTINS
 

@@ -95,7 +95,7 @@ BAD = [
      "`viscosity` must not be given beside `name`"),
     ("# [gas]", '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "50 K"',
      "gas.temperature"),
-    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "1 um"',
+    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\ncutoff_separation = "1 um"',
      "`cutoff_separation` must be smaller than `release_separation` (1000 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
     ('deformation = "rigid"', 'deformation = "half-space"\n[publication]',

@@ -43,7 +43,7 @@ asperity_density = "10 1/um^2"
 asperity_radius = "100 nm"
 rms_height = "5 nm"
 """
-ADHESION = '[adhesion]\nmodel = "dmt"\nwork = "20 mJ/m^2"\nrange = "0.2 nm"\n'
+ADHESION = '[adhesion]\nmodel = "dmt"\nwork = "20 mJ/m^2"\nequilibrium_spacing = "0.2 nm"\n'
 WATER = """
 [capillary]
 model = "equilibrium"
@@ -92,7 +92,7 @@ def put(text, table, line):
         (CREEPS + WATER, "capillary.model (line"),
         (CREEPS + '[plasticity]\nmodel = "thornton-ning"\n', "plasticity.model (line"),
         (
-            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\nclosest_gap = "1 nm"\n',
+            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\ncutoff_separation = "1 nm"\n',
             "gas (line",
         ),
         (CREEPS + '[waves]\nmodel = "hunter"\n', "waves.model (line"),

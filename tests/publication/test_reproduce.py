@@ -380,7 +380,7 @@ def test_a_refit_of_smoother_surfaces_keeps_its_inputs(tmp_path: Path, monkeypat
     assert Path("out/figure-8.png").is_file()
 
 
-def test_a_power_loss_needs_an_impact_time(tmp_path: Path):
+def test_a_power_loss_needs_a_rebound_period(tmp_path: Path):
     """Where all spheres stick at the first impact there is neither."""
     file = tmp_path / "t.csv"
     file.write_text(HEADER + "2,50,10.5,3,2,5\n")

@@ -67,9 +67,9 @@ def test_what_no_model_describes_is_refused_before_it_is_computed(key, value, wo
 def test_the_speed_of_a_fall_counts_as_well():
     fall = {"impact__speed": None, "body__youngs_modulus": "1 kPa"}
     height = 1e3 / 2500.0 / (2.0 * 9.81)
-    changed(SMOOTH, **fall, impact__release_gap=f"{0.999 * height} m")
+    changed(SMOOTH, **fall, impact__release_separation=f"{0.999 * height} m")
     with pytest.raises(InputError, match="quasi-static") as refused:
-        changed(SMOOTH, **fall, impact__release_gap=f"{1.001 * height} m")
+        changed(SMOOTH, **fall, impact__release_separation=f"{1.001 * height} m")
     assert refused.value.key == "impact.release_separation"
 
 

@@ -78,7 +78,7 @@ def test_energies_are_compared_where_contact_ends(flown):
     assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
 
 
-def test_impact_time_is_from_maximum_to_maximum(flown):
+def test_rebound_period_is_from_maximum_to_maximum(flown):
     motion, found = flown
     times = np.concatenate([[0.0], motion.impacts.apex_time])
     np.testing.assert_allclose(found.rebound_period, np.diff(times), rtol=1e-12)
@@ -123,7 +123,7 @@ def test_what_does_not_apply_is_not_a_number(flown):
     assert np.isnan(float(found.capture_time))
 
 
-def test_a_body_that_rests_has_a_stiction_time():
+def test_a_body_that_rests_has_a_time_to_rest():
     run = eqx.filter_jit(lambda c, b, t: simulate(c, b, tolerance=t))
     motion = run(CONTACT, BODY, Tolerance(max_impacts=3, rest=2.0))
     found = measure(motion, BODY)

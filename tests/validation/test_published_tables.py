@@ -48,7 +48,7 @@ def figures():
 
 
 @pytest.mark.parametrize("row", rows(), ids=lambda r: f"{r['table']}-{r['asperity_radius_nm']}")
-def test_decrements_within_3_and_stiction_times_within_5_percent(row):
+def test_decrements_within_3_and_times_to_rest_within_5_percent(row):
     assert not misses(compared(row))
 
 
