@@ -454,7 +454,7 @@ def test_a_folder_without_permission_is_found_before_computing(place: Path):
     # Rights are given up after the imports, within the folder, and only where there are root's,
     # which no permission stops.
     program = (
-        "import os; from asperity import records; "
+        "import os; from asperity.results import records; "
         "os.geteuid() or (os.setgroups([]), os.setgid(65534), os.setuid(65534)); "
         "records.check_folder('out', records.RUN_FILES)"
     )

@@ -92,7 +92,8 @@ def put(text, table, line):
         (CREEPS + WATER, "capillary.model (line"),
         (CREEPS + '[plasticity]\nmodel = "thornton-ning"\n', "plasticity.model (line"),
         (
-            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\ncutoff_separation = "1 nm"\n',
+            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\n'
+            'cutoff_separation = "1 nm"\n',
             "gas (line",
         ),
         (CREEPS + '[waves]\nmodel = "hunter"\n', "waves.model (line"),
