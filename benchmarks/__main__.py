@@ -96,7 +96,7 @@ def _wet(**changes: object) -> Problem:
         "roughness.asperity_radius": "25 nm",
         "roughness.rms_height": "1 nm",
         "adhesion.work": "30 mJ/m^2",
-        "adhesion.range": "0.2 nm",
+        "adhesion.equilibrium_spacing": "0.2 nm",
     }
     return build(drop.replace({**finer, **changes}))
 

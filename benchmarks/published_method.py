@@ -66,14 +66,14 @@ class Conjunction:
         object.__setattr__(self, "rise", (x**2 + y**2) / (2.0 * self.radius))
         object.__setattr__(self, "influence", np.fft.rfft2(_influence(self.points, cell)))
 
-    def pressure(self, gap: np.ndarray, parting: bool) -> np.ndarray:
+    def pressure(self, gap: np.ndarray, unloading: bool) -> np.ndarray:
         """Net pressure of every cell [Pa], eqs. 9, 15 and 16 per area."""
         reduced = gap / self.rms
         inside = reduced < self.edge
         reduced = np.where(inside, reduced, self.edge)
         scale = 4.0 / 3.0 * self.density * np.sqrt(self.summit_radius) * self.rms**1.5
         total = self.modulus * scale * self.f32(reduced)
-        if parting:
+        if unloading:
             share = self.f0(reduced)
             around = 2.0 * np.pi * self.summit_radius * self.density
             total = total - around * self.work * share
@@ -89,15 +89,15 @@ class Conjunction:
         found: np.ndarray = whole[:count, :count] / self.modulus
         return found
 
-    def force(self, place: float, parting: bool, guess: np.ndarray) -> tuple[float, np.ndarray]:
+    def force(self, place: float, unloading: bool, guess: np.ndarray) -> tuple[float, np.ndarray]:
         """Sum over the grid [N], steps 1 to 5, and the displacement for the next guess."""
         lift = guess
-        pressure = self.pressure(place + self.rise + lift, parting)
+        pressure = self.pressure(place + self.rise + lift, unloading)
         if not self.deforms:
             return float(np.sum(pressure)) * self.area, lift
         for _ in range(200):
             lift = 0.5 * (lift + self.displacement(pressure))
-            new = self.pressure(place + self.rise + lift, parting)
+            new = self.pressure(place + self.rise + lift, unloading)
             # Eq. 22 divides by zero elsewhere; and a cell that its own pressure lifts over the
             # edge comes back without it, for ever.
             known = (pressure != 0.0) & (new != 0.0)

@@ -27,7 +27,7 @@ MILLION = 1000
 PUBLISHED = """
 schema = 1
 base = "published"
-keep = ["captured", "restitution", "stiction_time", "energy_lost"]
+keep = ["captured", "restitution", "time_to_rest", "energy_lost"]
 [axes]
 "roughness.rms_height" = {{from = "9 nm", to = "12 nm", steps = {rows}}}
 "capillary.humidity" = {{from = 0.995, to = 1.0, steps = {columns}}}

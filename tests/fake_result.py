@@ -76,8 +76,8 @@ def _add(*pairs) -> None:
 
 def _result(arrays, heights, deepest, restitution, case, name, outcome) -> Result:
     time, gap, speed, stored, lost = arrays
-    parting = np.where(speed > 0, restitution, 1.0)
-    elastic = SPRING * np.maximum(-gap, 0) * parting**2
+    unloading = np.where(speed > 0, restitution, 1.0)
+    elastic = SPRING * np.maximum(-gap, 0) * unloading**2
     capillary = np.where((gap < 0.3e-9) & (speed > 0), -PULL, 0.0)
     adhesion = np.where(gap < 0, -PULL / 10, 0.0)
     contact = elastic + capillary + adhesion
@@ -120,18 +120,18 @@ def _result(arrays, heights, deepest, restitution, case, name, outcome) -> Resul
             "impact_speed": float(np.sqrt(2 * heights[0] * GRAVITY)),
             "captured": False,
             "capture_time": None,
-            "stiction_time": float(time[-1]) if outcome is Outcome.REST else None,
+            "time_to_rest": float(time[-1]) if outcome is Outcome.REST else None,
             "rebound_height": heights[1:].tolist(),
             "restitution": [restitution] * len(losses),
             "log_decrement": (-np.diff(np.log(heights))).tolist(),
-            "impact_time": periods.tolist(),
+            "rebound_period": periods.tolist(),
             "power_loss": (losses / periods).tolist(),
             "power_loss_published": [*(0.36 * losses / periods)[:-1].tolist(), None],
         },
         ledger={
             "initial": MASS * GRAVITY * RELEASE,
             "lost": {"adhesion": 0.02 * losses.sum(), "capillary": 0.98 * losses.sum()},
-            "closure": 3.1e-12,
+            "energy_balance_error": 3.1e-12,
         },
         warnings=[
             "About 0.07 asperities touch at closest approach: single impacts scatter widely."
@@ -157,10 +157,10 @@ def loading(*, case: Case | None = None, name: str = "published-exact") -> Curve
         name=name,
         rigid_separation=separation,
         central_separation=separation + 1e-11,
-        force_approach=elastic,
-        force_parting=elastic + bridge,
-        components_approach={"elastic": elastic, "adhesion": nothing, "capillary": nothing},
-        components_parting={"elastic": elastic, "adhesion": nothing, "capillary": bridge},
+        force_loading=elastic,
+        force_unloading=elastic + bridge,
+        components_loading={"elastic": elastic, "adhesion": nothing, "capillary": nothing},
+        components_unloading={"elastic": elastic, "adhesion": nothing, "capillary": bridge},
         deepest=44e-9,
         pull_off=float(-(elastic + bridge).min()),
         pull_off_separation=float(separation[np.argmin(elastic + bridge)]),

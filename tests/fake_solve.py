@@ -25,8 +25,8 @@ def solver(behaviour: str = "quick") -> Any:
     def solve(case: Any, *, name: str = "case", progress: Any = None, stop: Any = None) -> Any:
         result = bounce(impacts=6, case=case, name=name)
         if behaviour == "refuse":
-            rule = "`release_gap` must be above 45.9 nm; got 40 nm"
-            raise InputError(rule, key="impact.release_gap")
+            rule = "`release_separation` must be above 45.9 nm; got 40 nm"
+            raise InputError(rule, key="impact.release_separation")
         if behaviour == "fail":
             raise SimulationError("no equilibrium at 44 nm", result)
         if behaviour == "break":

@@ -38,7 +38,7 @@ class FakeStudy:
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        return columns(["captured", "restitution", "stiction_time"], motions=False)
+        return columns(["captured", "restitution", "time_to_rest"], motions=False)
 
     def width(self, along: str) -> int:
         return {"impact": self.keep_impacts, "byte": REASON_SIZE}[along]
@@ -80,11 +80,11 @@ def expected(study: FakeStudy, cases: range) -> dict[str, np.ndarray]:
     return {
         "outcome": np.where(failed, 5, number % 2).astype(np.int8),
         "impacts": (number % 40).astype(np.int32),
-        "closure": np.sin(number) * 1e-12,
+        "energy_balance_error": np.sin(number) * 1e-12,
         "reason": reason,
         "captured": np.where(failed, -1, number % 2).astype(np.int8),
         "restitution": np.where(failed[:, None], np.nan, restitution),
-        "stiction_time": np.sqrt(number.astype(float)),
+        "time_to_rest": np.sqrt(number.astype(float)),
     }
 
 

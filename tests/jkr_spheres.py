@@ -23,7 +23,7 @@ density = "2500 kg/m^3"
 [adhesion]
 model = "jkr"
 work = "100 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 [impact]
 speed = "2 m/s"
 gravity = "0 m/s^2"

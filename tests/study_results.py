@@ -16,7 +16,7 @@ LEAST_SPEED = 0.1
 
 KEEP = """schema = 1
 base = "published"
-keep = ["captured", "impact_speed", "restitution", "stiction_time"]
+keep = ["captured", "impact_speed", "restitution", "time_to_rest"]
 """
 GRID = (
     KEEP
@@ -58,11 +58,11 @@ def columns_of(study: Study, cases: range, failed: frozenset[int]) -> dict[str, 
     found = {
         "outcome": np.where(lost, FAILED, REST),
         "impacts": np.full(len(cases), 3),
-        "closure": np.full(len(cases), 1e-15),
+        "energy_balance_error": np.full(len(cases), 1e-15),
         "captured": np.where(lost, -1, bounce == 0.0),
         "impact_speed": np.where(lost, np.nan, speed),
         "restitution": np.where(lost, np.nan, bounce),
-        "stiction_time": np.where(lost, np.nan, 1e-3 * (1.0 + bounce)),
+        "time_to_rest": np.where(lost, np.nan, 1e-3 * (1.0 + bounce)),
     }
     out = {}
     for column in study.columns:

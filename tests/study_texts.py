@@ -27,5 +27,5 @@ GRID = f"""
     "{RMS}" = {{from = "8 nm", to = "12 nm", steps = 5, scale = "log"}}
     "{HUMIDITY}" = {{values = [0.2, 0.4, 0.3]}}
     "adhesion.model" = {{values = ["dmt", "none"]}}
-    "publication.pull_while_parting_only" = {{values = [true, false]}}
+    "publication.attraction_during_retraction_only" = {{values = [true, false]}}
 """

@@ -83,8 +83,10 @@ def test_a_response_is_the_largest_change():
     ],
 )
 def test_a_balance_is_a_bound(stored, found, same):
-    found = answer(bounds={"closure": found})
-    assert quantities(answer(bounds={"closure": stored}), found) == ["bounds.closure"] * (not same)
+    found = answer(bounds={"energy_balance_error": found})
+    assert quantities(answer(bounds={"energy_balance_error": stored}), found) == [
+        "bounds.energy_balance_error"
+    ] * (not same)
 
 
 def test_counts_switches_and_words_are_the_same():

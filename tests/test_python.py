@@ -182,7 +182,7 @@ def test_a_table_takes_numbers_in_si_too():
         ({"boddy.radius": 1e-5}, "did you mean 'body'?"),
         ({"radius": 1e-5}, "it belongs in [body]"),
         ({"numerics.max_impacts": 2.0}, "must be a whole number"),
-        ({"numerics.rest": float("nan")}, "must be finite"),
+        ({"numerics.rest_height_ratio": float("nan")}, "must be finite"),
         ({5: 1e-5}, "a key must be text, such as 'body.radius'; got 5"),
         ("body.radius", "`changes` must be values by their dotted key"),
     ],

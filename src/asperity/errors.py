@@ -124,7 +124,8 @@ class Outcome(enum.Enum):
 
 
 _MESSAGES = {
-    Outcome.REST: "The body came to rest: its rebound fell below `numerics.rest` of the first.",
+    Outcome.REST: "The body came to rest: its rebound fell below `numerics.rest_height_ratio` of "
+    "the first.",
     Outcome.OSCILLATING: "The body oscillates: a whole cycle loses no energy, so it never rests.",
     Outcome.ESCAPED: "The body escaped: it left the surface and nothing brings it back.",
     Outcome.STOPPED: "The gas film stopped the body where nothing else acts on it.",

@@ -159,7 +159,7 @@ def _released(
     Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
     without an [impact] table is not released by its user.
     """
-    chosen = case.impact is not None and case.impact.release_gap is None
+    chosen = case.impact is not None and case.impact.release_separation is None
     for _ in range(TRIES):
         curves = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=drawn, many=many)
         if not chosen:
@@ -285,9 +285,9 @@ def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) 
     share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
     at_rest = _at_rest(problem, many)
     raise InputError(
-        f"`release_gap` must lie outside contact: the contact force there must be below {share} "
-        f"({limit:.3g} N), and is {force:.3g} N; {at_rest}got {release * 1e9:.6g} nm",
-        key="impact.release_gap",
+        "`release_separation` must lie outside contact: the contact force there must be below "
+        f"{share} ({limit:.3g} N), and is {force:.3g} N; {at_rest}got {release * 1e9:.6g} nm",
+        key="impact.release_separation",
     )
 
 

@@ -99,7 +99,7 @@ def build(case: Case, resolved: Resolution | None = None) -> Problem:
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
     body = Body(mass, 0.0, contact.reach + CLEARANCE)
     if (impact := case.impact) is not None:
-        release = body.release if impact.release_gap is None else impact.release_gap
+        release = body.release if impact.release_separation is None else impact.release_separation
         speed = impact.speed or 0.0
         body = Body(mass, impact.gravity, release, speed, _film(case), _waves(case))
     late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
@@ -186,7 +186,9 @@ def _adhesion(case: Case, tip: float, modulus: float) -> AdhesionChoice:
     given = case.adhesion
     if given.model != "auto":
         return AdhesionChoice(given.model)
-    return choose_adhesion(tabor_number(tip, _given(given.work), modulus, _given(given.range)))
+    return choose_adhesion(
+        tabor_number(tip, _given(given.work), modulus, _given(given.equilibrium_spacing))
+    )
 
 
 def _film(case: Case) -> SqueezeFilm | None:
@@ -194,7 +196,7 @@ def _film(case: Case) -> SqueezeFilm | None:
     gas = case.gas
     if gas is None:
         return None
-    closest = gas.closest_gap
+    closest = gas.cutoff_separation
     if closest is None:
         assert case.asperities is not None
         closest = case.asperities.rms_height
@@ -236,7 +238,7 @@ def _published(
         bands=assumed.bands,
     )
     return PublishedContact(
-        pressure, Sphere(case.body.radius), float(assumed.pull_while_parting_only)
+        pressure, Sphere(case.body.radius), float(assumed.attraction_during_retraction_only)
     )
 
 
@@ -247,7 +249,7 @@ def _law(case: Case, model: str, tip: float, modulus: float, smallest: float | N
     if model == "jkr":
         contact = Jkr(tip, modulus, _given(adhesion.work))
     elif model == "maugis":
-        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.range))
+        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.equilibrium_spacing))
     beside = _beside(case, model, tip, smallest or tip)
     return Sum([contact, *beside]) if beside else contact
 
@@ -259,7 +261,7 @@ def _beside(case: Case, model: str, tip: float, smallest: float) -> list[Law]:
     if model == "dmt":
         return [Dmt(tip, _given(adhesion.work)), *menisci]
     if model == "bradley":
-        return [Bradley(tip, _given(adhesion.work), _given(adhesion.range)), *menisci]
+        return [Bradley(tip, _given(adhesion.work), _given(adhesion.equilibrium_spacing)), *menisci]
     return menisci
 
 

@@ -129,7 +129,7 @@ def test_curve_writes_its_own_files_and_prints_its_own_json(place: Path):
     assert call("curve", CASE).exit_code == 0
     assert names(place / f"{CASE}-out") == sorted([*records.RUN_FILES, *records.CURVE_FILES])
     found = strict(call("curve", CASE, "--json").stdout)
-    assert len(found["force_parting"]) == len(found["rigid_separation"])
+    assert len(found["force_unloading"]) == len(found["rigid_separation"])
     assert isinstance(found["pull_off"], float)
     assert isinstance(read(f"{CASE}-out/curve.nc"), Curve)
 
@@ -366,7 +366,7 @@ def test_the_solvers_refusal_is_bad_input(monkeypatch: pytest.MonkeyPatch, place
     monkeypatch.setitem(sys.modules, "asperity.solver", solver("refuse"))
     ran = call("run", CASE)
     assert ran.exit_code == 2
-    assert_one_line(ran.stderr, "impact.release_gap", "45.9 nm")
+    assert_one_line(ran.stderr, "impact.release_separation", "45.9 nm")
     assert names(place) == []
 
 
@@ -454,7 +454,7 @@ def test_a_folder_without_permission_is_found_before_computing(place: Path):
     # Rights are given up after the imports, within the folder, and only where there are root's,
     # which no permission stops.
     program = (
-        "import os; from asperity import records; "
+        "import os; from asperity.results import records; "
         "os.geteuid() or (os.setgroups([]), os.setgid(65534), os.setuid(65534)); "
         "records.check_folder('out', records.RUN_FILES)"
     )

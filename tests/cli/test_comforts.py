@@ -214,7 +214,7 @@ def test_plot_of_a_store_says_what_it_drew_and_the_whole_front(place: Path):
     found = strict(call("plot", study, "--json").stdout)
     assert found["files"] == ["map.png", "map.svg"]
     assert (found["cases"], found["computed"], found["failed"]) == (861, 861, 1)
-    goals = ("max:restitution", "min:stiction_time")
+    goals = ("max:restitution", "min:time_to_rest")
     front = strict(call("plot", study, "--pareto", *goals, "--json").stdout)["front"]
     assert front["goals"] == list(goals)
     assert front["of"] == 860
@@ -317,8 +317,8 @@ def test_the_command_that_describes_a_made_surface_can_be_pasted(place: Path):
 
 def test_a_front_of_many_axes_is_told_in_paragraphs(place: Path):
     study = store("study.zarr", SAMPLE)
-    ran = call("plot", study, "--pareto", "max:restitution", "min:stiction_time")
-    assert "Pareto front of max:restitution, min:stiction_time" in ran.stdout
+    ran = call("plot", study, "--pareto", "max:restitution", "min:time_to_rest")
+    assert "Pareto front of max:restitution, min:time_to_rest" in ran.stdout
     assert "adhesion.model" in ran.stdout
     assert_narrow(ran.stdout)
 

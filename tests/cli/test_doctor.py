@@ -276,4 +276,4 @@ def test_speed_is_that_of_a_motion_and_its_ledger_closes():
     found = speed.speed("published")
     assert 0.0 < found.warm < found.first < time.perf_counter() - begun
     assert found.impacts == 11
-    assert found.closure < 1e-9
+    assert found.energy_balance_error < 1e-9

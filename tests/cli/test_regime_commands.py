@@ -93,7 +93,7 @@ def test_regime_warns_of_slow_menisci_as_a_run_does_whatever_its_time_limit(
 ):
     """On a rigid plane, from above the reach of all forces; the first contact lasts 10.5 us."""
     case = asperity.load("published-exact").replace(
-        {"counterface.deformation": "rigid", "impact.release_gap": "2 um",
+        {"counterface.deformation": "rigid", "impact.release_separation": "2 um",
          "capillary.formation_time": time, "numerics.time_limit": limit,
          "numerics.max_impacts": 1}
     )  # fmt: skip
@@ -169,10 +169,12 @@ def test_errors_are_those_of_a_run(command: str, change: tuple[str, str] | None)
 
 
 def test_a_release_inside_contact_is_refused_as_by_a_run():
-    written("low.toml", asperity.load("published-exact").replace({"impact.release_gap": "40 nm"}))
+    written(
+        "low.toml", asperity.load("published-exact").replace({"impact.release_separation": "40 nm"})
+    )
     run, ran = call("run", "low.toml"), call("regime", "low.toml")
     assert run.exit_code == 2
-    assert "release_gap" in run.stderr
+    assert "release_separation" in run.stderr
     assert (ran.exit_code, ran.stderr) == (run.exit_code, run.stderr)
 
 
@@ -234,11 +236,15 @@ def test_terminal_and_summary_say_why_the_law_was_chosen(auto: Case, place: Path
 
 def test_a_choice_needs_the_range():
     case = Path(BOUNCE).read_text(encoding="utf-8")
-    lines = [line for line in case.replace('"jkr"', '"auto"').splitlines() if "range" not in line]
+    lines = [
+        line
+        for line in case.replace('"jkr"', '"auto"').splitlines()
+        if "equilibrium_spacing" not in line
+    ]
     Path("case.toml").write_text("\n".join(lines), encoding="utf-8")
     ran = call("regime", "case.toml")
     assert ran.exit_code == 2
-    assert "`range` must be given with model = 'auto'" in ran.stderr
+    assert "`equilibrium_spacing` must be given with model = 'auto'" in ran.stderr
 
 
 @pytest.mark.parametrize(
@@ -298,7 +304,7 @@ def test_the_maps_file_must_be_a_png():
     ("changes", "parts"),
     [
         ({"adhesion": None}, ("adhesion.model", "got 'none'")),
-        ({"adhesion.range": None}, ("adhesion.range", "must be given")),
+        ({"adhesion.equilibrium_spacing": None}, ("adhesion.equilibrium_spacing", "must be given")),
     ],
 )
 def test_a_case_without_a_place_is_refused_with_what_it_lacks(

@@ -76,7 +76,7 @@ def test_a_case_without_an_impact_has_a_curve_and_no_motion(place: Path):
     assert ran.exit_code == 0, ran.output
     curve = read(place / "still-out" / "curve.nc")
     assert isinstance(curve, asperity.Curve)
-    assert curve.force_approach[0] == pytest.approx(1e-6, rel=1e-9)
+    assert curve.force_loading[0] == pytest.approx(1e-6, rel=1e-9)
     assert curve.preload is None  # any larger load gives the same
     shutil.rmtree(place / "still-out")
     found = json.loads(call("curve", "still.toml", "--depth", "3 nm", "--json").stdout)

@@ -70,7 +70,7 @@ def test_a_grid_has_its_axes_as_dimensions_with_units(grid: xarray.Dataset):
     np.testing.assert_allclose(grid[ROUGH], 8e-9 * 1.5 ** (np.arange(41) / 40.0), rtol=1e-14)
     np.testing.assert_allclose(grid[HUMID], 0.1 + 0.02 * np.arange(21), rtol=1e-14)
     assert grid[ROUGH].attrs["units"] == "m"
-    assert grid["stiction_time"].attrs["units"] == "s"
+    assert grid["time_to_rest"].attrs["units"] == "s"
     assert "reason" not in grid
 
 
@@ -243,26 +243,26 @@ def test_pictures_that_cannot_be_are_refused(
 
 def test_a_study_over_speed_spends_no_panel_on_the_speed_itself(stores: dict[str, Path]):
     found = open_study(stores["speeds"])
-    assert view_of(found).measures == ("restitution", "stiction_time")
+    assert view_of(found).measures == ("restitution", "time_to_rest")
     assert view_of(found, measure="impact_speed").measures == ("impact_speed",)
 
 
 def test_an_impact_speed_that_all_cases_share_gets_no_panel(grid: xarray.Dataset):
     held, _ = at(grid.copy(deep=True), {HUMID: "0.3"})
-    assert view_of(held).measures == ("restitution", "stiction_time")
+    assert view_of(held).measures == ("restitution", "time_to_rest")
     held["impact_speed"].values[:10] *= 1.1
-    assert view_of(held).measures == ("restitution", "stiction_time", "impact_speed")
+    assert view_of(held).measures == ("restitution", "time_to_rest", "impact_speed")
 
 
 def test_a_measure_that_no_case_has_gets_no_panel(stores: dict[str, Path]):
     found = open_study(stores["speeds"])
-    found["stiction_time"].values[...] = np.nan
+    found["time_to_rest"].values[...] = np.nan
     assert view_of(found).measures == ("restitution",)
 
 
 def test_panels_side_by_side_span_the_same_values(stores: dict[str, Path]):
     found = open_study(stores["speeds"])
-    found["stiction_time"].values[9:] = np.nan  # these never come to rest
+    found["time_to_rest"].values[9:] = np.nan  # these never come to rest
     _, drawn = study.figure(found)
     first, second = (axes.get_xlim() for axes in drawn.axes)
     assert first == second
@@ -270,7 +270,7 @@ def test_panels_side_by_side_span_the_same_values(stores: dict[str, Path]):
 
 
 def test_capture_is_drawn_before_how_the_motion_ended(tmp_path: Path):
-    text = SPEEDS.replace('"impact_speed", "restitution", "stiction_time"', '"impact_speed"')
+    text = SPEEDS.replace('"impact_speed", "restitution", "time_to_rest"', '"impact_speed"')
     found = open_study(stored(tmp_path, text))
     assert view_of(found).measures[0] == "captured"
 
@@ -398,9 +398,9 @@ def test_goals_of_another_form_are_refused(text: str):
 
 def test_the_front_is_listed_with_the_axes_of_its_cases(stores: dict[str, Path]):
     found = open_study(stores["sample"])
-    goals = (goal_of("min:stiction_time"), goal_of("max:restitution"))
+    goals = (goal_of("min:time_to_rest"), goal_of("max:restitution"))
     listed = study.pictures(found, pareto=goals)["pareto.csv"].decode().splitlines()
-    assert listed[0] == f"{ROUGH} [m],{HUMID} [1],adhesion.model,stiction_time [s],restitution [1]"
+    assert listed[0] == f"{ROUGH} [m],{HUMID} [1],adhesion.model,time_to_rest [s],restitution [1]"
     for row in csv.reader(listed[1:]):
         values = {ROUGH: np.array([float(row[0])]), HUMID: np.array([float(row[1])]),
                   "adhesion.model": np.array([row[2]])}  # fmt: skip
@@ -420,7 +420,7 @@ DRAWN = {
     "close values": ("close", {"held": {"adhesion.model": "none"}, "measure": "restitution"}),
     "flags along a line": ("grid", {"held": {HUMID: "0.33"}, "measure": "outcome"}),
     "sample": ("sample", {}),
-    "sample over one axis": ("sample", {"x": "adhesion.model", "measure": "stiction_time"}),
+    "sample over one axis": ("sample", {"x": "adhesion.model", "measure": "time_to_rest"}),
 }
 
 
@@ -481,7 +481,7 @@ def test_no_text_of_a_picture_leaves_it_or_lies_on_another(stores: dict[str, Pat
 
 
 def test_lines_stand_at_the_values_in_the_unit_of_the_label(stores: dict[str, Path]):
-    found = open_study(stores["speeds"], ["restitution", "stiction_time"])
+    found = open_study(stores["speeds"], ["restitution", "time_to_rest"])
     _, drawn = study.figure(found)
     speed, bounce = law({SPEED: found[SPEED].values})
     for axes, values in zip(drawn.axes, (bounce, 1e3 * 1e-3 * (1.0 + bounce)), strict=True):
@@ -583,7 +583,7 @@ def test_parquet_keeps_types_units_and_what_is_absent(stores: dict[str, Path], t
     table = parquet.read_table(export(stores["grid"], tmp_path / "all.parquet"))
     found = open_study(stores["grid"])
     assert table.num_rows == 861
-    assert table.schema.field("stiction_time").metadata == {b"unit": b"s"}
+    assert table.schema.field("time_to_rest").metadata == {b"unit": b"s"}
     assert table.column("captured").null_count == len(LOST)
     read = table.column("restitution").to_numpy()
     np.testing.assert_array_equal(read, found["restitution"].values.ravel())
@@ -707,9 +707,9 @@ def linear_curve() -> Curve:
     separation = np.unique(np.concatenate([np.linspace(-5e-9, 5e-9, 41), [1e-8, 2e-8]]))
     push = -STIFF * separation
     gone = np.where(separation < 5e-9, 1.0, 0.0)
-    approach, parting = push * gone, (push - PULL) * gone
+    approach, unloading = push * gone, (push - PULL) * gone
     return Curve(
-        asperity.load("published"), "spring", separation, separation, approach, parting, {}, {},
+        asperity.load("published"), "spring", separation, separation, approach, unloading, {}, {},
         float(separation[0]), PULL, float(separation[0]), 0.0, None, 1e-15, [],
     )  # fmt: skip
 
@@ -742,8 +742,8 @@ def test_a_force_table_reads_back_to_the_same_forces(
     sections: dict[str, tuple[list[str], np.ndarray]],
 ):
     curve = linear_curve()
-    assert list(sections) == ["APPROACH", "PARTING"]
-    for name, force in (("APPROACH", curve.force_approach), ("PARTING", curve.force_parting)):
+    assert list(sections) == ["LOADING", "UNLOADING"]
+    for name, force in (("LOADING", curve.force_loading), ("UNLOADING", curve.force_unloading)):
         distance, _, read = sections[name][1]
         np.testing.assert_array_equal(read, force)
         np.testing.assert_array_equal(distance, curve.rigid_separation + curve.case.body.radius)
@@ -753,7 +753,7 @@ def test_the_energy_of_a_force_table_is_the_work_of_the_force():
     separation = np.linspace(-4e-9, 6e-9, 201)
     cubic = STIFF * 1e9 * (separation - 6e-9) ** 2  # a polynomial, so that the spline is exact
     curve = dataclasses.replace(
-        linear_curve(), rigid_separation=separation, force_approach=cubic, force_parting=cubic
+        linear_curve(), rigid_separation=separation, force_loading=cubic, force_unloading=cubic
     )
     branch, _ = force_table.branches_of(curve)
     work = STIFF * 1e9 * (6e-9 - separation) ** 3 / 3.0
@@ -765,7 +765,7 @@ def test_forces_of_a_table_agree_with_its_energies_as_lammps_checks(
     sections: dict[str, tuple[list[str], np.ndarray]],
 ):
     # Its reader warns where a force lies beyond both secants beside it, off inflections.
-    distance, energy, force = sections["APPROACH"][1]
+    distance, energy, force = sections["LOADING"][1]
     secants = -np.diff(energy) / np.diff(distance)
     inner = slice(1, 38)  # the spring; beyond it the force jumps to nothing
     low = np.minimum(secants[:-1], secants[1:])[inner]
@@ -777,9 +777,9 @@ def test_forces_of_a_table_agree_with_its_energies_as_lammps_checks(
 def test_both_sections_of_a_force_table_differ_by_the_loss_of_the_cycle():
     # The curve's loss counts bonds made and broken; the table's energies integrate forces.
     curve = asperity.curve(asperity.load("published"), name="published")
-    approach, parting = force_table.branches_of(curve)
-    assert approach.energy[0] - parting.energy[0] == pytest.approx(curve.loss, rel=1e-4)
-    assert np.all(approach.force - parting.force >= -1e-12 * np.abs(approach.force).max())
+    approach, unloading = force_table.branches_of(curve)
+    assert approach.energy[0] - unloading.energy[0] == pytest.approx(curve.loss, rel=1e-4)
+    assert np.all(approach.force - unloading.force >= -1e-12 * np.abs(approach.force).max())
 
 
 def test_a_force_table_refuses_other_endings_and_files_that_are_there(tmp_path: Path):

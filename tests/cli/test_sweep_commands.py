@@ -112,7 +112,7 @@ def test_repair_names_corrupt_chunks_and_computes_them_again(
 ):
     path = place / "study.zarr"
     fill(STUDY, Store.create(path, STUDY), in_order)
-    flip(path / "closure" / "c.3")
+    flip(path / "energy_balance_error" / "c.3")
     (path / "impacts" / "c.5").unlink()
     (path / "impacts" / "zarr.json").write_text("{")
     ran = program("sweep", "study.toml", "--resume")
@@ -123,7 +123,10 @@ def test_repair_names_corrupt_chunks_and_computes_them_again(
     assert json.loads(ran.stdout)["computed"] == 16
     written, *corrupt = ran.stderr.splitlines()
     assert "impacts/zarr.json: written again" in written
-    assert ["closure, task 3" in corrupt[0], "impacts, task 5" in corrupt[1]] == [True, True]
+    assert ["energy_balance_error, task 3" in corrupt[0], "impacts, task 5" in corrupt[1]] == [
+        True,
+        True,
+    ]
     assert contents(path) == undisturbed
 
 

@@ -49,11 +49,19 @@ def test_the_published_case_is_the_one_of_the_publication():
     assert case.roughness.asperity_density == 1.69e16
     assert case.roughness.asperity_radius == 0.25e-9
     assert case.roughness.rms_height == 10.5e-9
-    assert (case.adhesion.model, case.adhesion.work, case.adhesion.range) == ("dmt", 0.03, 2e-10)
+    assert (case.adhesion.model, case.adhesion.work, case.adhesion.equilibrium_spacing) == (
+        "dmt",
+        0.03,
+        2e-10,
+    )
     assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "contact")
     assert (case.capillary.humidity, case.capillary.temperature) == (0.6, 293.15)
     assert case.capillary.contact_angle == math.radians(73)
-    assert (case.impact.release_gap, case.impact.speed, case.impact.gravity) == (60e-9, None, 9.81)
+    assert (case.impact.release_separation, case.impact.speed, case.impact.gravity) == (
+        60e-9,
+        None,
+        9.81,
+    )
     assert case.counterface.deformation == "half-space"
     assert case.body_solid == SOLIDS["silica"]
     assert case.counterface_solid == SOLIDS["silicon carbide"]
@@ -113,7 +121,10 @@ def test_ones_own_table_comes_before_the_catalogue():
 
 
 def test_jkr_needs_no_range():
-    assert load(SMALL + '[adhesion]\nmodel = "jkr"\nwork = "50 mJ/m^2"').adhesion.range is None
+    assert (
+        load(SMALL + '[adhesion]\nmodel = "jkr"\nwork = "50 mJ/m^2"').adhesion.equilibrium_spacing
+        is None
+    )
 
 
 def test_a_case_may_float_without_gravity_where_it_has_a_speed():
@@ -200,8 +211,8 @@ def test_the_example_of_every_key_is_read(place, name, field):
         given = {"viscosity": "18 uPa s", "slip_length": "0 nm"} if by_number else {
             "name": "argon", "pressure": "1 kPa", "temperature": "300 K",
         }  # fmt: skip
-        table["gas"] = {**given, "closest_gap": "2 nm"}
-        table["impact"]["release_gap"] = "1 um"
+        table["gas"] = {**given, "cutoff_separation": "2 nm"}
+        table["impact"]["release_separation"] = "1 um"
     table.setdefault(place[0], {})[name] = field.examples[0]
     value = getattr(getattr(Case.model_validate(table), place[0]), name)
     unit, example = field.json_schema_extra["unit"], field.examples[0]
@@ -227,7 +238,7 @@ def test_a_case_reads_back_exactly_from_its_own_text(name, radius, angle, gap, h
             "body.radius": f"{radius!r} m",
             "capillary.contact_angle": f"{angle!r} rad" if angle > 1e-9 else "0 rad",
             "capillary.humidity": humidity,
-            "impact.release_gap": f"{gap!r} m",
+            "impact.release_separation": f"{gap!r} m",
             "impact.speed": "0.1 m/s",
             "numerics.time_limit": "1 ms",
             "output.directory": name.replace("\0", "0") + "x",

@@ -84,7 +84,8 @@ BAD = [
     ('model = "auto"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "auto"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
     ('work = "60 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'auto'"),
-    ('range = "0.2 nm"', "", "`range` must be given with model = 'auto'"),
+    ('equilibrium_spacing = "0.2 nm"', "",
+     "`equilibrium_spacing` must be given with model = 'auto'"),
     ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 70): `humidity` must lie in "
      "[0, 1]; got 1.2"),
     ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',
@@ -94,8 +95,8 @@ BAD = [
      "`viscosity` must not be given beside `name`"),
     ("# [gas]", '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "50 K"',
      "gas.temperature"),
-    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\nclosest_gap = "1 um"',
-     "`closest_gap` must be smaller than `release_gap` (1000 nm)"),
+    ("# [gas]", '[gas]\nviscosity = "1 Pa s"\nslip_length = "0 m"\ncutoff_separation = "1 um"',
+     "`cutoff_separation` must be smaller than `release_separation` (1000 nm)"),
     ("humidity = 0.6", "humidity = 1", "at 1 the Kelvin radius is infinite"),
     ('deformation = "rigid"', 'deformation = "half-space"\n[publication]',
      "counterface.deformation (line 20): `deformation` must be 'rigid' with a [publication] table, "
@@ -113,7 +114,8 @@ BAD = [
     ('"20 degC"', '"200 degC"', "capillary.temperature (line 71): `temperature` must lie in "
      "[273.15 K, 373.15 K]"),
     ('"20 degC"', '"-300 degC"', "`temperature` must lie in [1, 10000] K; got '-300 degC'"),
-    ('release_gap = "1 um"', "", "`release_gap` or `speed` must be given; got neither"),
+    ('release_separation = "1 um"', "",
+     "`release_separation` or `speed` must be given; got neither"),
     ('"9.81 m/s^2"', '"0 m/s^2"', "the body would never fall; got 0 m/s^2"),
     ('"9.81 m/s^2"', '"-9.81 m/s^2"', "`gravity` must not be negative; got '-9.81 m/s^2'"),
     ('# speed = "0.1 m/s"', 'speed = "0 m/s"', "`speed` must be positive; got '0 m/s'"),

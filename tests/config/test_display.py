@@ -81,8 +81,11 @@ def test_a_curve_shows_its_pull_off_and_its_warnings():
 
 def test_keys_in_a_warning_are_code():
     curve = loading()
-    curve.warnings[:] = ["a smaller `numerics.rest` <tells> more"]
-    assert "a smaller <code>numerics.rest</code> &lt;tells&gt; more" in curve._repr_html_()
+    curve.warnings[:] = ["a smaller `numerics.rest_height_ratio` <tells> more"]
+    assert (
+        "a smaller <code>numerics.rest_height_ratio</code> &lt;tells&gt; more"
+        in curve._repr_html_()
+    )
 
 
 def test_a_restitution_curve_shows_where_capture_ends():

@@ -38,7 +38,7 @@ source = "summits"
 [adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 [capillary]
 model = "equilibrium"
 liquid = "water"
@@ -114,7 +114,7 @@ def test_gaussian_takes_rms_mean_height_density_and_radius_of_the_summits(case):
 
 def test_the_ledger_of_measured_summits_closes(solved):
     assert solved.outcome is Outcome.MAX_IMPACTS
-    assert solved.ledger["closure"] < 1e-6
+    assert solved.ledger["energy_balance_error"] < 1e-6
     assert solved.ledger["lost"]["capillary"] > 0.0
     assert solved.measures["restitution"][0] < 1.0
 
@@ -125,7 +125,7 @@ DRY = {"adhesion": None, "capillary": None, "numerics.max_impacts": 1}
 def test_hertz_alone_on_measured_summits_returns_all_energy(case):
     result = asperity.solve(case.replace(DRY))
     assert result.measures["restitution"][0] == pytest.approx(1.0, abs=1e-8)
-    assert result.ledger["closure"] < 1e-6
+    assert result.ledger["energy_balance_error"] < 1e-6
 
 
 @pytest.mark.long
@@ -143,7 +143,7 @@ def test_the_ledger_closes_with_either_source_on_either_body(case, source, chang
     """Few summits make a coarse law: with 80 rings the last closes to 2.5e-6, and says so."""
     changes = {"numerics.max_impacts": 2, **changes}
     result = asperity.solve(changed(case, source=source).replace(changes))
-    assert result.ledger["closure"] < limit
+    assert result.ledger["energy_balance_error"] < limit
 
 
 def test_record_and_json_hold_the_surface_and_come_back(solved, folder, tmp_path):
@@ -343,7 +343,7 @@ def test_too_few_classes_of_radius_are_warned_about(case):
 
 def test_a_law_chosen_for_all_radii_that_would_differ_is_named(case):
     """Tips whose Tabor numbers lie on both sides of a border of the laws."""
-    adhesion = case.adhesion.model_copy(update={"model": "auto", "range": 3e-10})
+    adhesion = case.adhesion.model_copy(update={"model": "auto", "equilibrium_spacing": 3e-10})
     said = {}
     for work in (1e-4, 0.017):
         each = case.model_copy(update={"adhesion": adhesion.model_copy(update={"work": work})})

@@ -212,7 +212,7 @@ def test_the_catalogue_lists_yield_strengths_with_their_source():
 
 # --- what is refused ---------------------------------------------------------------------------
 
-ADHESION = '[adhesion]\nmodel = "{}"\nwork = "50 mJ/m^2"\nrange = "0.2 nm"\n'
+ADHESION = '[adhesion]\nmodel = "{}"\nwork = "50 mJ/m^2"\nequilibrium_spacing = "0.2 nm"\n'
 FILES = '[roughness]\nfiles = ["surface.csv"]\nsource = "summits"\n'
 TWO = 'hardness = "1 GPa"\nyield_strength = "2 GPa"'
 BELOW = "`hardness` must be at least the yield strength (2000 MPa)"

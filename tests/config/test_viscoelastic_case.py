@@ -33,7 +33,7 @@ density = "1050 kg/m^3"
 [counterface]
 material = "silica"
 [impact]
-release_gap = "5 um"
+release_separation = "5 um"
 [numerics]
 max_impacts = 3
 """
@@ -43,7 +43,7 @@ asperity_density = "10 1/um^2"
 asperity_radius = "100 nm"
 rms_height = "5 nm"
 """
-ADHESION = '[adhesion]\nmodel = "dmt"\nwork = "20 mJ/m^2"\nrange = "0.2 nm"\n'
+ADHESION = '[adhesion]\nmodel = "dmt"\nwork = "20 mJ/m^2"\nequilibrium_spacing = "0.2 nm"\n'
 WATER = """
 [capillary]
 model = "equilibrium"
@@ -92,7 +92,8 @@ def put(text, table, line):
         (CREEPS + WATER, "capillary.model (line"),
         (CREEPS + '[plasticity]\nmodel = "thornton-ning"\n', "plasticity.model (line"),
         (
-            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\nclosest_gap = "1 nm"\n',
+            CREEPS + '[gas]\nviscosity = "18 uPa s"\nslip_length = "75 nm"\n'
+            'cutoff_separation = "1 nm"\n',
             "gas (line",
         ),
         (CREEPS + '[waves]\nmodel = "hunter"\n', "waves.model (line"),
@@ -135,7 +136,7 @@ def test_a_smooth_sphere_runs_to_a_record_its_pictures_and_its_json():
     assert {"record.nc", "summary.txt", "motion.png", "forces.png", "energy.png"} <= files
     found = json.loads(ran("run", "drop.toml", "--json", "--force"))
     assert found["outcome"] == "max_impacts"
-    assert found["ledger"]["closure"] < 1e-8
+    assert found["ledger"]["energy_balance_error"] < 1e-8
     assert set(found["ledger"]["lost"]) == {"viscous"}
     assert all(0.3 < e < 0.9 for e in found["measures"]["restitution"])
     Path("drop-out/energy.png").unlink()
@@ -156,7 +157,7 @@ def test_the_curve_is_that_of_the_relaxed_bulk():
     modulus = 0.4 * contact_modulus(case.body_solid, case.counterface_solid)
     overlap = np.maximum(-found.rigid_separation, 0.0)
     hertz = 4.0 / 3.0 * modulus * math.sqrt(case.body.radius) * overlap**1.5
-    np.testing.assert_allclose(found.force_approach, hertz, atol=1e-8 * hertz.max())
+    np.testing.assert_allclose(found.force_loading, hertz, atol=1e-8 * hertz.max())
     assert found.loss == 0.0
 
 
@@ -167,7 +168,7 @@ def test_a_smooth_case_may_be_assessed():
 
 def test_a_rough_sphere_with_adhesion_and_menisci_runs():
     result = solver.solve(load(SMOOTH + CREEPS + ROUGH + ADHESION + WATER))
-    assert result.ledger["closure"] < 1e-6
+    assert result.ledger["energy_balance_error"] < 1e-6
     lost = result.ledger["lost"]
     assert lost["viscous"] > 0.0
     assert lost["capillary"] > 0.0

@@ -38,7 +38,7 @@ slip_length = "75 nm"
 model = "hunter"
 [impact]
 speed = "0.5 m/s"
-release_gap = "100 nm"
+release_separation = "100 nm"
 gravity = "1e6 m/s^2"
 [numerics]
 max_impacts = 2
@@ -102,7 +102,7 @@ def test_waves_are_booked_apart_from_gas_and_menisci(result):
     lost = result.ledger["lost"]
     assert set(lost) == {"capillary", "gas", "waves"}
     assert all(energy > 0.0 for energy in lost.values())
-    assert result.ledger["closure"] < 1e-9
+    assert result.ledger["energy_balance_error"] < 1e-9
     whole = sum(result.energies.values())
     assert np.ptp(whole) < 1e-9 * result.ledger["initial"]
     assert result.energies["lost_waves"][-1] == pytest.approx(lost["waves"], rel=1e-9)
@@ -141,7 +141,7 @@ def test_a_rough_half_space_radiates_too():
     found = _from_forces(result, float(build(case).body.waves.coefficient))
     assert set(result.ledger["lost"]) == {"capillary", "waves"}
     assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
-    assert result.ledger["closure"] < 1e-8
+    assert result.ledger["energy_balance_error"] < 1e-8
 
 
 @pytest.mark.parametrize("table", [None, {"model": "none"}])

@@ -141,7 +141,7 @@ def test_a_smooth_sphere_loses_one_bridge_an_impact():
     motion = simulate(SmoothContact(law), body, tolerance=Tolerance(max_impacts=1))
     assert ENDS[int(motion.end.outcome)] is Outcome.ESCAPED
     assert float(motion.impacts.lost[0, 0]) == pytest.approx(float(bridge_.rupture_loss), rel=1e-12)
-    assert float(motion.impacts.closure[0] / motion.impacts.fastest[0]) < 1e-8
+    assert float(motion.impacts.energy_balance_error[0] / motion.impacts.fastest[0]) < 1e-8
 
 
 CASE = asperity.load("published-exact")
@@ -156,7 +156,7 @@ def regime_at(humidity, **changes):
 
 
 def test_regimes_follow_each_other_from_dry_to_flooded():
-    thick = {"capillary.film_thickness": "50 nm"}
+    thick = {"capillary.adsorbed_film_thickness": "50 nm"}
     found = [regime_at(humidity, **thick) for humidity in (0.0, 0.5, 0.9, 0.95, 0.999, 1.0)]
     assert found == [
         "dry", "isolated menisci", "isolated menisci", "coalesced", "flooded", "flooded",
@@ -170,17 +170,17 @@ def test_menisci_merge_where_the_kelvin_radius_reaches_the_spacing():
 
 
 def test_a_film_bounds_what_menisci_span():
-    case = CASE.replace({"capillary.humidity": 1.0, "capillary.film_thickness": "2 nm"})
+    case = CASE.replace({"capillary.humidity": 1.0, "capillary.adsorbed_film_thickness": "2 nm"})
     assert case.liquid_span == pytest.approx(4e-9)
     assert case.liquid_radius == pytest.approx(2e-9 / cos(radians(73.0)))
-    dry = CASE.replace({"capillary.film_thickness": "2 nm"})
+    dry = CASE.replace({"capillary.adsorbed_film_thickness": "2 nm"})
     assert dry.liquid_radius == pytest.approx(CASE.kelvin_radius)
 
 
 @pytest.mark.parametrize(
     ("changes", "key", "message"),
     [
-        ({"capillary.humidity": 1.0}, "capillary.humidity", "without a `film_thickness`"),
+        ({"capillary.humidity": 1.0}, "capillary.humidity", "without a `adsorbed_film_thickness`"),
         ({"capillary.model": "kelvin-filling"}, "capillary.surface_rms_height", "must be given"),
         (
             {"capillary.surface_rms_height": "11 nm"},
@@ -272,5 +272,5 @@ def test_the_loss_of_an_impact_is_the_area_between_the_branches(name, monkeypatc
     assert lost > 0.0
     # The bonds that hold at the apex were not broken: the curve goes on until all are.
     assert drawn.loss == pytest.approx(lost, rel=1e-4)
-    area = simpson(drawn.force_approach - drawn.force_parting, x=drawn.rigid_separation)
+    area = simpson(drawn.force_loading - drawn.force_unloading, x=drawn.rigid_separation)
     assert area == pytest.approx(lost, rel=1e-4)

@@ -26,7 +26,7 @@ rms_height = "{rms}"
 [adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.2 nm"
+equilibrium_spacing = "0.2 nm"
 {menisci}
 [impact]
 speed = "0.1 m/s"

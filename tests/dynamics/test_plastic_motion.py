@@ -26,7 +26,7 @@ rms_height = "5 nm"
 [adhesion]
 model = "dmt"
 work = "30 mJ/m^2"
-range = "0.3 nm"
+equilibrium_spacing = "0.3 nm"
 [plasticity]
 model = "kogut-etsion"
 hardness = "2 GPa"
@@ -87,7 +87,7 @@ def test_the_hundredth_impact_on_the_same_asperities_keeps_nothing_by_yield(solv
 
 
 def test_the_ledger_of_a_hundred_impacts_closes(solved):
-    assert solved.ledger["closure"] < 1e-7
+    assert solved.ledger["energy_balance_error"] < 1e-7
 
 
 def test_the_run_says_how_many_yield_and_what_elastic_asperities_would_return(solved):
@@ -138,7 +138,7 @@ SOFT = {"plasticity.hardness": "50 MPa", "numerics.max_impacts": 3}
 
 def test_asperities_far_softer_than_stiff_meet_the_usual_tolerance(case):
     result = asperity.solve(case.replace({**SOFT, "numerics.tolerance": 1e-8}))
-    assert result.ledger["closure"] < 1e-6
+    assert result.ledger["energy_balance_error"] < 1e-6
     assert result.ledger["lost"]["plastic"] > 0.9 * result.ledger["initial"]
 
 

@@ -67,7 +67,7 @@ def test_bonds_made_by_contact_pull_more_after_a_larger_load_and_say_so():
     assert [curve.preload for curve in curves] == pytest.approx(loads, rel=1e-6)
     assert curves[0].pull_off < curves[1].pull_off < curves[2].pull_off
     for curve in curves:
-        tension = -curve.force_parting
+        tension = -curve.force_unloading
         assert curve.pull_off == pytest.approx(tension.max(), rel=1e-3)
         assert curve.pull_off >= tension.max() * (1.0 - 1e-9)
         there = curve.rigid_separation[np.argmax(tension)]
@@ -76,7 +76,7 @@ def test_bonds_made_by_contact_pull_more_after_a_larger_load_and_say_so():
 
 def test_the_work_of_a_rough_contact_is_the_integral_of_its_drawn_tension():
     curve = asperity.curve(load_file("examples/wet-drop.toml"), load=1e-5)
-    drawn = np.minimum(curve.force_parting, 0.0)
+    drawn = np.minimum(curve.force_unloading, 0.0)
     area = -np.trapezoid(drawn, curve.rigid_separation)
     assert curve.work_of_separation == pytest.approx(area, rel=1e-2)
 
@@ -85,7 +85,7 @@ def test_the_work_of_a_rough_contact_is_the_integral_of_its_drawn_tension():
 def test_a_case_without_an_impact_is_loaded_to_what_is_asked(load):
     still = smooth("jkr").replace({"impact": None})
     curve = asperity.curve(still, load=load)
-    assert curve.force_approach[0] == pytest.approx(load, rel=1e-9, abs=1e-15)
+    assert curve.force_loading[0] == pytest.approx(load, rel=1e-9, abs=1e-15)
     assert curve.case.impact is None
 
 

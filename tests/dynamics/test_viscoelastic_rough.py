@@ -86,7 +86,7 @@ def test_ledger_closes_and_creep_is_booked_apart(creeping):
     motion, trajectory, outcome = creeping
     rows = motion.impacts
     assert outcome is Outcome.MAX_IMPACTS
-    assert float(np.max(rows.closure)) < 1e-7 * float(rows.fastest[0])
+    assert float(np.max(rows.energy_balance_error)) < 1e-7 * float(rows.fastest[0])
     assert kept(motion) < -0.15
     lost = trajectory.lost
     assert np.all(np.diff(lost, axis=0) >= -1e-12 * lost[-1])
@@ -108,7 +108,7 @@ def test_tighter_steps_close_the_ledger_better(monkeypatch):
     for tolerance in (1e-7, 1e-9):
         monkeypatch.setattr(rough_phase, "TOLERANCE", tolerance)
         motion = flown(0.5, 3e-7)[0]
-        off.append(float(motion.impacts.closure[0] / motion.impacts.fastest[0]))
+        off.append(float(motion.impacts.energy_balance_error[0] / motion.impacts.fastest[0]))
     assert off[1] < 0.1 * off[0]
 
 

@@ -271,11 +271,11 @@ def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(t
     """p = -dF/dh at fixed gaps of the bonds, and a work of approach that is the energy."""
     surface, _ = two_ways
     places = jnp.asarray(SIGMA * np.linspace(-20.0, 3.0, 24))
-    for parting in (surface.fresh(), surface.torn()):
+    for unloading in (surface.fresh(), surface.torn()):
         slope = jax.jvp(
-            lambda h, m=parting: surface.pressure(h, m, 1), (places,), (1 + 0 * places,)
+            lambda h, m=unloading: surface.pressure(h, m, 1), (places,), (1 + 0 * places,)
         )
-        pressure = surface.pressure(places, parting)
+        pressure = surface.pressure(places, unloading)
         largest = float(jnp.max(jnp.abs(pressure)))
         np.testing.assert_allclose(-slope[1], pressure, rtol=1e-5, atol=1e-7 * largest)
     np.testing.assert_array_equal(
@@ -283,14 +283,14 @@ def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(t
     )
 
 
-@pytest.mark.parametrize("parting", [True, False])
-def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, parting):
+@pytest.mark.parametrize("unloading", [True, False])
+def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, unloading):
     """Both ends and all pieces of the way, against a quadrature at each of its places."""
     surface, start = two_ways[0], 0.5 * SIGMA
-    gaps = [part.law.forming_gap if parting else part.law.breaking_gap for part in surface.parts]
+    gaps = [part.law.forming_gap if unloading else part.law.breaking_gap for part in surface.parts]
     memory = tuple(jnp.asarray(start - gap) for gap in gaps)
-    ends = np.sort([float(end) for end in surface.merging(memory, jnp.asarray(parting))])
-    marks = np.array([start, *(ends if parting else ends[::-1])])
+    ends = np.sort([float(end) for end in surface.merging(memory, jnp.asarray(unloading))])
+    marks = np.array([start, *(ends if unloading else ends[::-1])])
     steps = np.array([1e-6, 0.1, 0.4, 0.7, 0.9, 1.0 - 1e-6])
     places = jnp.asarray(marks[:-1, None] + np.diff(marks)[:, None] * steps)
     exact = _all_means(surface, places, memory, 1)
@@ -384,9 +384,9 @@ def test_the_ledger_closes_on_summits_of_two_levels(law, spread):
     surface = measured_surface(law, heights, RADII, N, radius=RADIUS)
     contact = RigidContact(surface, Sphere(BALL))
     motion = simulate(contact, BODY, tolerance=Tolerance(max_impacts=2))
-    closure = motion.impacts.closure / (0.5 * MASS * 1e-3**2)
+    energy_balance_error = motion.impacts.energy_balance_error / (0.5 * MASS * 1e-3**2)
     assert np.asarray(motion.impacts.made).all()
-    assert float(jnp.max(closure)) < 1e-6
+    assert float(jnp.max(energy_balance_error)) < 1e-6
 
 
 def decrement(surface):

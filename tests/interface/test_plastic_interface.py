@@ -85,8 +85,8 @@ def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(besid
         assert worst(-work, pressure, 1e-3) < 1e-7
         # Menisci neither form nor break within their reach of the closest approach.
         turns = h - jnp.linspace(0.05, 0.95, BATCH) * REACH
-        parting = tuple(turns for _ in interface.fresh())
-        pressure, energy, _ = slopes(interface, h, parting, lift)
+        unloading = tuple(turns for _ in interface.fresh())
+        pressure, energy, _ = slopes(interface, h, unloading, lift)
         assert worst(-energy, pressure, 1e-3) < 1e-7
 
 

@@ -56,7 +56,7 @@ def test_a_case_that_yields_is_drawn_with_the_force_of_its_law():
     pushed = made.time <= made.time[np.argmin(made.separation)]
     for separation, force in (
         (made.separation[pushed], made.forces["elastic"][pushed]),
-        (drawn.rigid_separation, drawn.force_approach),
+        (drawn.rigid_separation, drawn.force_loading),
     ):
         overlap = np.maximum(-separation, 0.0)
         exact = np.where(overlap > 0.0, law.loading_force(overlap), 0.0)

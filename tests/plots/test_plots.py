@@ -139,11 +139,11 @@ def test_no_text_runs_over_the_edge_or_over_another(motion: Result):
 @pytest.mark.parametrize("stiff", [1.0, 1e4])
 def test_a_curve_is_drawn_with_its_pull_off_enlarged_where_it_is_small(stiff: float):
     curve = loading()
-    elastic = curve.components_approach["elastic"]
+    elastic = curve.components_loading["elastic"]
     curve = dataclasses.replace(
         curve,
-        force_approach=curve.force_approach + stiff * elastic,
-        force_parting=curve.force_parting + stiff * elastic,
+        force_loading=curve.force_loading + stiff * elastic,
+        force_unloading=curve.force_unloading + stiff * elastic,
     )
     figure = curve.plot()
     assert len(figure.axes) == (2 if stiff > 100 else 1)
@@ -314,12 +314,12 @@ def test_a_loss_without_a_pull_off_is_drawn_as_the_difference_of_the_branches():
     curve = loading()
     lifted = dataclasses.replace(
         curve,
-        force_approach=curve.force_approach + 1e-6,
-        force_parting=curve.force_parting + 1e-6,
+        force_loading=curve.force_loading + 1e-6,
+        force_unloading=curve.force_unloading + 1e-6,
         pull_off=0.0,
     )
     axes = lifted.plot().axes[1]
-    bridge = curve.components_parting["capillary"]
+    bridge = curve.components_unloading["capillary"]
     np.testing.assert_allclose(axes.lines[-1].get_ydata(), bridge * 1e9, atol=1e-6)
     assert texts_outside(lifted.plot()) == []
 

@@ -38,8 +38,8 @@ def pressure(functions=None, reach=None, bands=100, edge=EDGE, **changes):
     return PublishedPressure(functions or HeightFunctions(), bands, reach, edge=edge, **values)
 
 
-def contact(parting_only=1.0, **options):
-    return PublishedContact(pressure(**options), Sphere(RADIUS), parting_only)
+def contact(retraction_only=1.0, **options):
+    return PublishedContact(pressure(**options), Sphere(RADIUS), retraction_only)
 
 
 def phi(x):
@@ -102,13 +102,13 @@ def test_force_is_the_slope_of_the_energy_in_both_directions(options, place):
     """On the way in of the stored energy, on the way out less the work that the pulls take."""
     made = contact(**options)
 
-    def energy(d, parting):
-        state = made.state(d, jnp.asarray(parting))
-        return state.stored - parting * jnp.sum(state.bonds)
+    def energy(d, unloading):
+        state = made.state(d, jnp.asarray(unloading))
+        return state.stored - unloading * jnp.sum(state.bonds)
 
-    for parting in (0.0, 1.0):
-        slope = float(jax.grad(energy)(jnp.asarray(place), parting))
-        force = float(made.state(jnp.asarray(place), jnp.asarray(parting)).force)
+    for unloading in (0.0, 1.0):
+        slope = float(jax.grad(energy)(jnp.asarray(place), unloading))
+        force = float(made.state(jnp.asarray(place), jnp.asarray(unloading)).force)
         assert force == pytest.approx(-slope, rel=1e-9)
 
 
@@ -138,7 +138,7 @@ def stepped(made, gap, impacts):
     p = made.pressure
     end, scale = float(p.end), 1e-9
 
-    def force(d, parting):
+    def force(d, unloading):
         if d >= end:
             return 0.0
         places = d + 0.5 * (end - d) * (nodes + 1.0)
@@ -146,7 +146,7 @@ def stepped(made, gap, impacts):
         push = np.array([moment(v) for v in x]) * 4.0 / 3.0 * N * np.sqrt(BETA) * SIGMA**1.5 * E
         touching = ndtr(-x)
         pull = 2.0 * pi * BETA * W * N * touching + 4.0 * pi * BETA * TENSION * N * (0.5 - touching)
-        total = push - parting * pull
+        total = push - unloading * pull
         return 2.0 * pi * RADIUS * float(0.5 * (end - d) * weights @ total)
 
     fine, weight = np.polynomial.legendre.leggauss(40)
@@ -155,20 +155,20 @@ def stepped(made, gap, impacts):
         t = 0.5 * (fine + 1.0)  # s = l + 6 t^2
         return float(np.sum(0.5 * weight * 12.0 * t * (6.0 * t**2) ** 1.5 * phi(l + 6.0 * t**2)))
 
-    def rate(_, y, parting):
-        return [y[1], (force(y[0] * scale, parting) / MASS - GRAVITY) * 1e-12 / scale]
+    def rate(_, y, unloading):
+        return [y[1], (force(y[0] * scale, unloading) / MASS - GRAVITY) * 1e-12 / scale]
 
     found, state, time = [], [gap / scale, 0.0], 0.0
     for _ in range(impacts):
-        for parting in (0.0, 1.0):
+        for unloading in (0.0, 1.0):
             turns = lambda t, y, _: y[1]  # noqa: E731
-            turns.terminal, turns.direction = True, 1.0 - 2.0 * parting
+            turns.terminal, turns.direction = True, 1.0 - 2.0 * unloading
             reaches = lambda t, y, _: y[0] - end / scale  # noqa: E731
             reaches.terminal = True
             # Free flight and contact apart: the force jumps at neither end of a piece.
             for event in (reaches, turns):
                 answer = solve_ivp(
-                    rate, (0.0, 1e5), state, "DOP853", events=event, args=(parting,),
+                    rate, (0.0, 1e5), state, "DOP853", events=event, args=(unloading,),
                     rtol=1e-11, atol=1e-12,
                 )  # fmt: skip
                 time += float(answer.t_events[0][0])
@@ -188,7 +188,7 @@ def test_motion_agrees_with_an_integration_in_time():
 
 
 def test_pulls_in_both_directions_lose_nothing():
-    _, found = flown(contact(parting_only=0.0), 41.5e-9, 4)
+    _, found = flown(contact(retraction_only=0.0), 41.5e-9, 4)
     assert float(found.restitution[0]) == pytest.approx(1.0, abs=1e-8)
 
 
@@ -196,7 +196,7 @@ def test_the_ledger_closes_where_pulls_act_while_parting():
     motion, found = flown(contact(), 41.5e-9)
     made = np.asarray(motion.impacts.made)
     energy = float(motion.impacts.fastest[0])
-    assert np.max(np.asarray(motion.impacts.closure)[made]) < 1e-10 * energy
+    assert np.max(np.asarray(motion.impacts.energy_balance_error)[made]) < 1e-10 * energy
     lost = float(np.sum(np.asarray(motion.impacts.lost)[made][0]))
     heights = 41.5e-9 - float(motion.impacts.apex[0])
     assert lost == pytest.approx(MASS * GRAVITY * heights, rel=1e-9)
@@ -233,7 +233,7 @@ def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
     assert case.kelvin_radius == np.inf
     assert build(case).contact.pressure.reach is None
     with pytest.raises(
-        InputError, match=r"`humidity` must lie in \[0, 1\) without a `film_thickness`"
+        InputError, match=r"`humidity` must lie in \[0, 1\) without a `adsorbed_film_thickness`"
     ):
         case.replace({"publication": None})
 
@@ -286,16 +286,16 @@ def test_the_built_in_case_rests_and_says_what_it_assumes(case):
 )
 def test_every_variant_closes_its_ledger(case, changes):
     result = asperity.solve(case.replace({**changes, "numerics.max_impacts": 5}))
-    assert result.ledger["closure"] < 1e-6
+    assert result.ledger["energy_balance_error"] < 1e-6
 
 
 def test_the_curve_of_the_published_case_loses_what_the_first_impact_loses(case):
     curve, result = asperity.curve(case), asperity.solve(case)
     measures = result.measures
-    lost = measures["power_loss"][0] * measures["impact_time"][0]
+    lost = measures["power_loss"][0] * measures["rebound_period"][0]
     # From the deepest point to far apart, all that the pulls take.
     assert curve.loss == pytest.approx(lost, rel=1e-6)
-    assert np.all(curve.force_parting <= curve.force_approach + 1e-18)
+    assert np.all(curve.force_unloading <= curve.force_loading + 1e-18)
 
 
 @pytest.mark.parametrize("reach", [3e-9, 15e-9, 300e-9])

@@ -22,9 +22,7 @@ from asperity.publication.published_tables import Entry, read_tables
 from asperity.publication.reproduce import Reproduction, reproduce
 from asperity.results.records import REPRODUCTION_FILES
 
-HEADER = (
-    "table,asperity_radius_nm,rms_height_nm,stiction_time_us,power_loss_1e-4_nW,log_decrement\n"
-)
+HEADER = "table,asperity_radius_nm,rms_height_nm,time_to_rest_us,power_loss_1e-4_nW,log_decrement\n"
 TABLES = "".join(
     f"{','.join(row)}\n"
     for row in (
@@ -59,7 +57,7 @@ def number(text, pattern):
 def test_every_published_number_has_a_row(done):
     assert len(done.rows) == 18
     assert {row["quantity"] for row in done.rows} == {
-        "log_decrement", "stiction_time", "power_loss",
+        "log_decrement", "time_to_rest", "power_loss",
     }  # fmt: skip
     for row in done.rows:
         off = row["computed"] / row["published"] - 1.0
@@ -67,7 +65,7 @@ def test_every_published_number_has_a_row(done):
 
 
 def test_ten_numbers_are_met_with_one_set_of_inputs(done):
-    within = {"log_decrement": 0.03, "stiction_time": 0.05, "power_loss": 0.12}
+    within = {"log_decrement": 0.03, "time_to_rest": 0.05, "power_loss": 0.12}
     for row in done.rows:
         assert abs(row["relative_difference"]) < within[row["quantity"]]
     assert done.found["rms"] < 0.018  # a prototype's
@@ -222,8 +220,8 @@ def test_tables_csv_holds_every_row(done, files):
         ("# nothing\n", "tables must have rows; got none"),
         (HEADER, "tables must have rows; got none"),
         ("a,b\n1,2\n", "the column `table` is missing"),
-        (HEADER + "2,0.2,10.5,x,2,0.4\n", "(line 2): `stiction_time_us` must be a number in"),
-        (HEADER + "2,0.2,10.5,-5,2,0.4\n", "`stiction_time_us` must be a number in [1e-06, 1e+12]"),
+        (HEADER + "2,0.2,10.5,x,2,0.4\n", "(line 2): `time_to_rest_us` must be a number in"),
+        (HEADER + "2,0.2,10.5,-5,2,0.4\n", "`time_to_rest_us` must be a number in [1e-06, 1e+12]"),
         (HEADER + "2,,10.5,392,2,0.4\n", "`asperity_radius_nm` must be a number in"),
         (HEADER + "2,0.2,nan,392,2,0.4\n", "`rms_height_nm` must be a number in"),
         (HEADER + "2,0.2,10.5,392,1e999990,0.4\n", "`power_loss_1e-4_nW` must be a number in"),
@@ -259,7 +257,7 @@ def test_a_missing_value_is_none(tmp_path: Path):
     file = tmp_path / "tables.csv"
     file.write_text(HEADER + "2,0.2,10.5,392,,0.4504\n")
     (entry,) = read_tables(str(file))
-    assert entry.values == {"log_decrement": 0.4504, "stiction_time": 392e-6, "power_loss": None}
+    assert entry.values == {"log_decrement": 0.4504, "time_to_rest": 392e-6, "power_loss": None}
 
 
 def run(*arguments):
@@ -290,14 +288,14 @@ def test_refit_without_a_value_says_which_and_keeps_the_rest(tmp_path: Path, mon
     Path("t.csv").write_text(HEADER + TABLES.replace("2,0.20,10.5,392,", "2,0.20,10.5,,"))
     ran = run("--refit", "--tables", "t.csv", "--json", "-o", "out")
     assert ran.exit_code == 3
-    assert "the tables are missing stiction_time at beta = 0.2 nm, sigma = 10.5 nm" in ran.stderr
+    assert "the tables are missing time_to_rest at beta = 0.2 nm, sigma = 10.5 nm" in ran.stderr
     kept = json.loads(Path("out/reproduction.json").read_text())
     assert kept == json.loads(ran.stdout.splitlines()[0])
     found = kept["found"]
     assert found["refitted"]
     assert found["rms"] < 0.01
     assert 2.5 < found["conjunction_ends"] < 3.2
-    assert 0.0 < found["uncertainty"]["release_gap"] < 1e-9
+    assert 0.0 < found["uncertainty"]["release_separation"] < 1e-9
     # The end of the conjunction and the factor can hardly be told apart.
     assert found["correlation"][0][2] < -0.9
     assert len(found["profile"]) >= 5
@@ -324,7 +322,7 @@ def test_a_refit_may_find_a_release_for_a_surface_that_the_built_in_one_does_not
     ran = run("--refit", "--tables", "t.csv", "--json")
     assert ran.exit_code in (0, 3)
     found = json.loads(ran.stdout)["found"]
-    assert found["release_gap"] > 14e-9 * found["conjunction_ends"]
+    assert found["release_separation"] > 14e-9 * found["conjunction_ends"]
 
 
 @pytest.mark.parametrize(
@@ -378,11 +376,11 @@ def test_a_refit_of_smoother_surfaces_keeps_its_inputs(tmp_path: Path, monkeypat
     assert ran.exit_code == 3
     assert "have the built-in inputs" in ran.stderr
     kept = json.loads(Path("out/reproduction.json").read_text())
-    assert kept["found"]["release_gap"] < 30e-9
+    assert kept["found"]["release_separation"] < 30e-9
     assert Path("out/figure-8.png").is_file()
 
 
-def test_a_power_loss_needs_an_impact_time(tmp_path: Path):
+def test_a_power_loss_needs_a_rebound_period(tmp_path: Path):
     """Where all spheres stick at the first impact there is neither."""
     file = tmp_path / "t.csv"
     file.write_text(HEADER + "2,50,10.5,3,2,5\n")
@@ -399,7 +397,7 @@ def test_a_number_that_is_met_exactly_is_met():
         "quantity": "log_decrement", "asperity_radius": 1e-9, "rms_height": 1e-9,
         "published": 0.5, "computed": 0.5, "relative_difference": 0.0,
     }  # fmt: skip
-    entry = Entry(2, 1e-9, 1e-9, {"log_decrement": 0.5, "stiction_time": 1e-4, "power_loss": None})
+    entry = Entry(2, 1e-9, 1e-9, {"log_decrement": 0.5, "time_to_rest": 1e-4, "power_loss": None})
     fitted = Refit(Inputs(3.0, 4e-8, 4.0), 0.0, Inputs(0.0, 0.0, 0.0), np.eye(3), [])
     assert problems_of(fitted, [entry], [row]) == []
     (problem,) = problems_of(fitted, [entry], [{**row, "relative_difference": 0.031}])

@@ -67,10 +67,10 @@ def test_what_no_model_describes_is_refused_before_it_is_computed(key, value, wo
 def test_the_speed_of_a_fall_counts_as_well():
     fall = {"impact__speed": None, "body__youngs_modulus": "1 kPa"}
     height = 1e3 / 2500.0 / (2.0 * 9.81)
-    changed(SMOOTH, **fall, impact__release_gap=f"{0.999 * height} m")
+    changed(SMOOTH, **fall, impact__release_separation=f"{0.999 * height} m")
     with pytest.raises(InputError, match="quasi-static") as refused:
-        changed(SMOOTH, **fall, impact__release_gap=f"{1.001 * height} m")
-    assert refused.value.key == "impact.release_gap"
+        changed(SMOOTH, **fall, impact__release_separation=f"{1.001 * height} m")
+    assert refused.value.key == "impact.release_separation"
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_a_body_torn_in_by_adhesion_faster_than_waves_is_warned_of():
     """1 nm of radius and 200 J/m^2: released slowly, it comes in faster than any wave."""
     case = changed(
         SMOOTH, body__radius="1 nm", impact__speed="1 mm/s", impact__gravity="0 m/s^2",
-        adhesion={"model": "dmt", "work": "200 J/m^2", "range": "0.3 nm"},
+        adhesion={"model": "dmt", "work": "200 J/m^2", "equilibrium_spacing": "0.3 nm"},
     )  # fmt: skip
     (line,) = warned(case, "waves in a bar")
     assert "not quasi-static" in line

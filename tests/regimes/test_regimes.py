@@ -217,7 +217,7 @@ def test_load_says_whether_adhesion_counts_beside_contact():
     unknown = verdicts(situation(regime=Regime(None, None, 0.5, 300.0, "jkr")))["load_parameter"]
     assert "negligible" in heavy
     assert "counts" in light.verdict
-    assert "`adhesion.range` decides" in unknown.verdict
+    assert "`adhesion.equilibrium_spacing` decides" in unknown.verdict
 
 
 def test_a_chosen_law_comes_with_its_reason():

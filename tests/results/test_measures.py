@@ -78,16 +78,16 @@ def test_energies_are_compared_where_contact_ends(flown):
     assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
 
 
-def test_impact_time_is_from_maximum_to_maximum(flown):
+def test_rebound_period_is_from_maximum_to_maximum(flown):
     motion, found = flown
     times = np.concatenate([[0.0], motion.impacts.apex_time])
-    np.testing.assert_allclose(found.impact_time, np.diff(times), rtol=1e-12)
+    np.testing.assert_allclose(found.rebound_period, np.diff(times), rtol=1e-12)
 
 
 def test_power_loss_is_the_energy_missing_at_the_next_maximum(flown):
     motion, found = flown
     energy = np.concatenate([[float(motion.release)], motion.impacts.mechanical])
-    power = -np.diff(energy) / np.asarray(found.impact_time)
+    power = -np.diff(energy) / np.asarray(found.rebound_period)
     np.testing.assert_allclose(found.power_loss, power, rtol=1e-5)
 
 
@@ -119,15 +119,15 @@ def test_published_power_loss_is_the_work_of_attraction_on_the_way_out():
 def test_what_does_not_apply_is_not_a_number(flown):
     _, found = flown
     assert not bool(found.captured)
-    assert np.isnan(float(found.stiction_time))
+    assert np.isnan(float(found.time_to_rest))
     assert np.isnan(float(found.capture_time))
 
 
-def test_a_body_that_rests_has_a_stiction_time():
+def test_a_body_that_rests_has_a_time_to_rest():
     run = eqx.filter_jit(lambda c, b, t: simulate(c, b, tolerance=t))
     motion = run(CONTACT, BODY, Tolerance(max_impacts=3, rest=2.0))
     found = measure(motion, BODY)
-    assert float(found.stiction_time) == float(motion.impacts.apex_time[0])
+    assert float(found.time_to_rest) == float(motion.impacts.apex_time[0])
 
 
 def test_tabor_number_of_the_publication():
@@ -145,5 +145,5 @@ def test_load_parameter_of_one_rigid_asperity_pulled_off_is_two():
 
 def test_measures_are_arrays_of_one_row_an_impact(flown):
     _, found = flown
-    for name in ("rebound_height", "restitution", "log_decrement", "impact_time", "power_loss"):
+    for name in ("rebound_height", "restitution", "log_decrement", "rebound_period", "power_loss"):
         assert jnp.shape(getattr(found, name)) == (4,)

@@ -80,7 +80,7 @@ def test_the_same_result_gives_the_same_bytes_in_another_process(result: Result,
     here = records.encode(result)
     program = (
         "import sys; sys.path.insert(0, sys.argv[1]); from fake_result import bounce; "
-        "from asperity import records; sys.stdout.buffer.write(records.encode(bounce(impacts=4)))"
+        "from asperity.results import records; sys.stdout.buffer.write(records.encode(bounce(impacts=4)))"
     )
     command = [sys.executable, "-c", program, str(Path(__file__).parents[1])]
     there = subprocess.run(command, capture_output=True, check=True).stdout
@@ -214,7 +214,7 @@ def test_json_of_a_result_has_the_documented_keys(result: Result, curve: Curve):
     assert found["outcome"] == "rest"
     assert found["regime"]["load_parameter"] is None
     assert list(records.json_object(curve)) == [
-        *("rigid_separation", "central_separation", "force_approach", "force_parting"),
+        *("rigid_separation", "central_separation", "force_loading", "force_unloading"),
         *("deepest", "pull_off", "pull_off_separation", "work_of_separation", "preload"),
         *("loss", "warnings"),
     ]

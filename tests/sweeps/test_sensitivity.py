@@ -206,7 +206,7 @@ def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     rows = "\n".join(f'"{key}" = {text}' for key, text in AXES.items())
     file = tmp_path / "sum.toml"
     file.write_text(
-        'schema = 1\nbase = "published"\nkeep = ["captured", "stiction_time"]\nmotions = true\n'
+        'schema = 1\nbase = "published"\nkeep = ["captured", "time_to_rest"]\nmotions = true\n'
         f'[axes]\n{rows}\n[sample]\nmethod = "latin"\nsize = 256\nseed = 1\n'
     )
     return file

@@ -69,7 +69,7 @@ def test_a_store_describes_itself(path: Path):
     assert group.attrs["study"] == STUDY.canonical
     assert group.attrs["fingerprint"] == STUDY.fingerprint
     assert group["restitution"].metadata.dimension_names == ("case", "impact")
-    assert group["stiction_time"].attrs["unit"] == "s"
+    assert group["time_to_rest"].attrs["unit"] == "s"
     codes = group["outcome"].attrs["codes"]
     assert [codes[outcome.value] for outcome in OUTCOMES] == list(range(len(OUTCOMES)))
 
@@ -237,12 +237,14 @@ def test_the_manifest_of_another_store_is_refused(path: Path, tmp_path: Path):
 def test_metadata_that_cannot_be_read_are_named_and_written_again(
     path: Path, undisturbed: dict[str, bytes], content: bytes | None
 ):
-    file = path / "closure" / "zarr.json"
+    file = path / "energy_balance_error" / "zarr.json"
     if content is None:
         file.unlink()
     else:
         file.write_bytes(content)
-    with pytest.raises(InputError, match=r"closure.zarr\.json: cannot be read: .*--repair"):
+    with pytest.raises(
+        InputError, match=r"energy_balance_error.zarr\.json: cannot be read: .*--repair"
+    ):
         Store.open(path)
     assert mend(path, STUDY) == [str(file)]
     assert contents(path) == undisturbed
@@ -316,9 +318,9 @@ def test_columns_that_do_not_fit_are_refused(tmp_path: Path):
     columns = compute(STUDY, 0)[0]
     wrong: Iterator[dict[str, np.ndarray]] = iter(
         (
-            {name: values for name, values in columns.items() if name != "closure"},
-            columns | {"closure": columns["closure"].astype(np.float32)},
-            columns | {"closure": columns["closure"][:-1]},
+            {name: values for name, values in columns.items() if name != "energy_balance_error"},
+            columns | {"energy_balance_error": columns["energy_balance_error"].astype(np.float32)},
+            columns | {"energy_balance_error": columns["energy_balance_error"][:-1]},
             columns | {"restitution": columns["restitution"][:, :1]},
         )
     )
@@ -401,9 +403,11 @@ def test_stores_that_disagree_are_refused(tmp_path: Path):
     one, other = filled(tmp_path / "1.zarr"), tmp_path / "2.zarr"
     store = Store.create(other, STUDY)
     columns = compute(STUDY, 3)[0]
-    store.write(3, columns | {"closure": columns["closure"] + 1e-9})
+    store.write(3, columns | {"energy_balance_error": columns["energy_balance_error"] + 1e-9})
     store.finish()
-    with pytest.raises(InputError, match=r"2\.zarr.closure.c\.3: must be the same as .*1\.zarr"):
+    with pytest.raises(
+        InputError, match=r"2\.zarr.energy_balance_error.c\.3: must be the same as .*1\.zarr"
+    ):
         join(tmp_path / "whole.zarr", [one, other])
     assert not (tmp_path / "whole.zarr").exists()
 

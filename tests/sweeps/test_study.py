@@ -43,7 +43,7 @@ def test_case_of_a_grid_is_the_base_case_with_the_values_as_in_a_file():
         RMS: "12 nm",
         HUMIDITY: 0.3,
         "adhesion.model": "none",
-        "publication.pull_while_parting_only": False,
+        "publication.attraction_during_retraction_only": False,
     }
     assert found.case(59) == builtin("published").replace(changes)
 
@@ -85,10 +85,10 @@ def test_study_does_not_depend_on_the_units_of_its_text(other):
 @pytest.mark.parametrize("text", ["50 um", "8 nm", "0.1 mm", "1e-7 m", "3.3 um", "10.5 nm"])
 def test_value_of_an_axis_is_the_float_of_a_case_file(text):
     base = builtin("published")
-    found = study(f'"impact.release_gap" = {{values = ["{text}"]}}')
-    expected = base.replace({"impact.release_gap": text}).impact.release_gap
-    assert found.values(0, 1)["impact.release_gap"][0] == expected
-    assert found.case(0).impact.release_gap == expected
+    found = study(f'"impact.release_separation" = {{values = ["{text}"]}}')
+    expected = base.replace({"impact.release_separation": text}).impact.release_separation
+    assert found.values(0, 1)["impact.release_separation"][0] == expected
+    assert found.case(0).impact.release_separation == expected
 
 
 def test_a_listed_whole_number_stays_whole_beside_an_equal_float():
@@ -168,11 +168,17 @@ def test_study_none_of_whose_cases_can_be_computed_says_so_beforehand():
 def test_table_that_the_base_lacks_is_made_of_the_axes():
     found = study(
         '"gas.name" = {values = ["air"]}\n"gas.temperature" = {values = ["20 degC"]}\n'
-        '"gas.pressure" = {values = ["1 kPa", "100 kPa"]}\n"gas.closest_gap" = {values = ["1 nm"]}',
+        '"gas.pressure" = {values = ["1 kPa", "100 kPa"]}\n'
+        '"gas.cutoff_separation" = {values = ["1 nm"]}',
         'base = "published-exact"',
     )
     assert found.case(1).gas.pressure == 1e5
-    gas = {"name": "air", "pressure": "100 kPa", "temperature": "20 degC", "closest_gap": "1 nm"}
+    gas = {
+        "name": "air",
+        "pressure": "100 kPa",
+        "temperature": "20 degC",
+        "cutoff_separation": "1 nm",
+    }
     assert found.case(1) == builtin("published-exact").replace({"gas": gas})
 
 
@@ -264,7 +270,7 @@ def test_columns_and_widths_are_what_the_study_keeps():
     head = 'base = "published"\nkeep = ["restitution"]\nkeep_impacts = 3\nmotions = true'
     found = study('"numerics.max_impacts" = {values = [7, 30, 20]}', head)
     names = [column.name for column in found.columns]
-    assert names == ["outcome", "impacts", "closure", "reason", "restitution",
+    assert names == ["outcome", "impacts", "energy_balance_error", "reason", "restitution",
                      "turning_separation", "turning_time"]  # fmt: skip
     assert [found.width(along) for along in ("impact", "turn", "byte")] == [3, 60, REASON_SIZE]
     assert study(GRID).width("turn") == 2 * builtin("published").numerics.max_impacts
@@ -275,10 +281,10 @@ def test_corners_have_each_axis_at_both_ends_with_the_others_low_and_high():
     axes = {
         "impact.speed": '["0.1 m/s", "1 m/s", "2 m/s"]',
         "adhesion.work": '["20 mJ/m^2", "30 mJ/m^2"]',
-        "adhesion.range": '["0.2 nm"]',
+        "adhesion.equilibrium_spacing": '["0.2 nm"]',
         "body.radius": '["40 um", "50 um"]',
         "numerics.max_impacts": "[3, 4]",
-        "numerics.rest": "[1e-3, 1e-4]",
+        "numerics.rest_height_ratio": "[1e-3, 1e-4]",
     }
     found = study("\n".join(f'"{key}" = {{values = {values}}}' for key, values in axes.items()))
     places = np.array(np.unravel_index(found.corners, found.shape)).T

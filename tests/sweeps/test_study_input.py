@@ -79,7 +79,8 @@ AXES = [
      "`model`, which is no number"),
     ('"adhesion.model" = {values = ["dmt", "jrk"]}', "got 'jrk' - did you mean 'jkr'?"),
     ('"adhesion.model" = {values = [3]}', "`model` must be one of 'none', 'auto'"),
-    ('"publication.pull_while_parting_only" = {values = ["true"]}', "must be true or false"),
+    ('"publication.attraction_during_retraction_only" = {values = ["true"]}',
+     "must be true or false"),
     ('"roughness.channel" = {values = [1.5]}', "`channel` must be text or a whole number; got 1.5"),
     ('"numerics.rings" = {values = [16.5]}', "`rings` must be a whole number in [16, 400]"),
     ('"numerics.rings" = {from = 16, to = 20, steps = 6}', "to be a whole number of its own (from "

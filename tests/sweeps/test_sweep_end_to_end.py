@@ -23,11 +23,11 @@ from store_files import contents
 TEXT = """
 schema = 1
 base = "published"
-keep = ["captured", "restitution", "stiction_time", "energy_lost"]
+keep = ["captured", "restitution", "time_to_rest", "energy_lost"]
 keep_impacts = 2
 
 [axes]
-"impact.release_gap" = {from = "10 nm", to = "1 um", steps = 100}
+"impact.release_separation" = {from = "10 nm", to = "1 um", steps = 100}
 "roughness.rms_height" = {from = "8 nm", to = "12 nm", steps = 41, scale = "log"}
 """
 """Several tasks, in which cases that begin within the contact fail."""
@@ -63,7 +63,7 @@ def test_cases_that_fail_are_kept_with_their_reason(study: Study, store: Store):
     assert failure is not None
     number, reason = failure
     assert number == 0
-    assert "release_gap" in reason
+    assert "release_separation" in reason
     assert 0 < outcomes(store)[Outcome.FAILED.value] < study.size / 2
 
 

@@ -97,7 +97,7 @@ def test_waves_that_are_quick_carry_nothing(flown):
 def test_what_waves_take_is_missing_from_the_energy(flown):
     coefficients = float(STEEL.coefficient) * np.array([0.01, 1.0, 10.0, 30.0, 100.0])
     rows, restitution = flown(coefficients, np.full(5, 1.0))
-    assert np.max(np.asarray(rows.closure[:, 0] / rows.fastest[:, 0])) < 1e-12
+    assert np.max(np.asarray(rows.energy_balance_error[:, 0] / rows.fastest[:, 0])) < 1e-12
     assert np.all(np.diff(np.asarray(restitution)) < 0.0)
 
 

@@ -27,7 +27,7 @@ def unloaded(model, speed):
         [adhesion]
         model = "{model}"
         work = "100 mJ/m^2"
-        range = "0.2 nm"
+        equilibrium_spacing = "0.2 nm"
         [impact]
         speed = "{speed}"
         gravity = "0 m/s^2"

@@ -109,7 +109,7 @@ def test_gas_comes_with_air_and_with_the_gap_from_which_its_film_counts():
     case["impact"] = {"speed": "10 mm/s"}
     found = completed({**case, "gas": {"name": "air"}}, case)
     assert found["gas"] == {"name": "air", "pressure": "101.325 kPa", "temperature": "20 degC"}
-    assert found["impact"] == {"speed": "10 mm/s", "release_gap": "1 um"}
+    assert found["impact"] == {"speed": "10 mm/s", "release_separation": "1 um"}
     assert not refused(found)
 
 
@@ -149,7 +149,13 @@ def test_a_case_tells_all_that_is_wrong_with_it_at_once(client: TestClient):
     case["bodi"] = {}
     answer = client.post("/api/explore", json={"case": case})
     error = answer.json()["error"]
-    wanted = {"bodi", "body.radius", "capillary.humidity", "adhesion.work", "adhesion.range"}
+    wanted = {
+        "bodi",
+        "body.radius",
+        "capillary.humidity",
+        "adhesion.work",
+        "adhesion.equilibrium_spacing",
+    }
     assert {one["key"] for one in error["problems"]} == wanted
     assert error["problems"][0] == {key: error[key] for key in ("key", "message")}
     assert error["key"] == "bodi"
@@ -161,11 +167,11 @@ def test_rules_between_tables_are_all_told(client: TestClient):
     case = given("published-exact")
     case["publication"] = {}
     case["adhesion"]["model"] = "jkr"
-    case["capillary"]["film_thickness"] = "1 nm"
+    case["capillary"]["adsorbed_film_thickness"] = "1 nm"
     case["numerics"] = {"rings": 400, "max_impacts": 10**4}
     error = client.post("/api/explore", json={"case": case}).json()["error"]
     assert {one["key"] for one in error["problems"]} == {
-        "counterface.deformation", "adhesion.model", "capillary.film_thickness",
+        "counterface.deformation", "adhesion.model", "capillary.adsorbed_film_thickness",
     }  # fmt: skip
     del case["publication"]
     error = client.post("/api/explore", json={"case": case}).json()["error"]

@@ -263,9 +263,9 @@ def test_a_motion_and_a_curve_unpack_to_their_numbers(client: TestClient, tables
         between = np.interp(result.time, result.time[seen], whole[seen])
         assert np.max(np.abs(between - whole)) <= 0.01 * np.ptp(whole), name
     assert len(seen) < 0.6 * len(result.time)
-    approach = unpacked(found["curve"]["approach"])
+    approach = unpacked(found["curve"]["loading"])
     assert approach.shape == unpacked(found["curve"]["separation"]).shape
-    assert np.allclose(approach, curve.force_approach, rtol=1e-6)
+    assert np.allclose(approach, curve.force_loading, rtol=1e-6)
     assert found["curve"]["pull_off"] == curve.pull_off
     begin, end = motion["first_contact"]
     assert begin < result.events["deepest_time"][0] < end < result.events["apex_time"][0] * 1.2
@@ -434,8 +434,8 @@ def test_a_case_that_run_would_refuse_is_not_copied(
 def test_what_only_the_solver_finds_is_told_beside_its_field(
     client: TestClient, tables: dict[str, Any]
 ):
-    error = explored(client, changed(tables, "impact", release_gap="30 nm"))["error"]
-    assert (error["kind"], error["key"]) == ("input", "impact.release_gap")
+    error = explored(client, changed(tables, "impact", release_separation="30 nm"))["error"]
+    assert (error["kind"], error["key"]) == ("input", "impact.release_separation")
     assert "got 30 nm" in error["message"]
 
 
@@ -504,7 +504,7 @@ def test_tables_have_a_column_a_quantity_named_with_its_unit(
     assert np.array_equal(found[:, 0], result.time)
     assert np.array_equal(found[:, 1], result.separation)
     head, *rows = csv.reader(io.StringIO(downloaded(client, tables, "curve.csv").decode()))
-    assert {"rigid_separation [m]", "force_parting [N]"} <= set(head)
+    assert {"rigid_separation [m]", "force_unloading [N]"} <= set(head)
     assert len(rows) == 200
 
 
@@ -597,7 +597,7 @@ def test_a_verdict_says_who_takes_the_energy():
 
 def test_nothing_is_lost_without_adhesion_and_liquid(client: TestClient, tables: dict[str, Any]):
     """Elastic asperities alone give back all that they take."""
-    tables = changed(tables, "impact", release_gap="300 nm")  # else not one asperity touches
+    tables = changed(tables, "impact", release_separation="300 nm")  # else not one asperity touches
     dry = {**tables, "adhesion": {"model": "none"}, "capillary": {"model": "none"}}
     found = explored(client, dry)["answer"]
     assert found["measures"]["captured"] is False

@@ -411,7 +411,7 @@ def test_a_case_that_takes_too_long_is_given_up(
 @pytest.mark.parametrize(
     ("behaviour", "kind", "key", "words"),
     [
-        ("refuse", "input", "impact.release_gap", "must be above 45.9 nm"),
+        ("refuse", "input", "impact.release_separation", "must be above 45.9 nm"),
         ("fail", "numerics", None, "no equilibrium at 44 nm"),
         ("bug", "program", None, "its log says more"),
     ],
@@ -678,7 +678,7 @@ def test_a_slider_never_compiles(client: TestClient, kind: str, real: None):
         if found:
             compiled += [f"{'.'.join(path)} = {value} compiles {each}" for each in found]
     assert len(moved) >= 10, moved
-    assert {"body.radius", "roughness.rms_height", "impact.release_gap"} <= moved
+    assert {"body.radius", "roughness.rms_height", "impact.release_separation"} <= moved
     assert ("capillary.humidity" in moved) == ("capillary" not in changes)
     assert ("materials.glass.hardness" in moved) == ("materials.glass" in changes)
     assert ("capillary.formation_time" in moved) == ("capillary.formation_time" in changes)

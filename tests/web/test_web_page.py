@@ -124,7 +124,7 @@ def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(page, 
     expect(page.locator("#bars")).to_contain_text("lost to capillary")
     expect(page.locator("#bars")).to_contain_text("(100 % of the energy lost)")
     legend = page.locator("#curve .legend").inner_text().split("\n")
-    assert legend == ["approach", "parting"]
+    assert legend == ["loading", "unloading"]
     expect(page.locator("#measures")).to_contain_text("487.9 µm/s")
     here = page.url.split("#")[0]
     assert all(one.startswith((here, "blob:", "data:")) for one in asked)
@@ -246,8 +246,10 @@ def test_a_bad_value_is_said_beside_its_field_and_the_last_picture_stays(page):
 
 
 def test_a_release_within_contact_is_said_at_its_own_field(page):
-    write(page, "impact.release_gap", "30 nm")
-    expect(page.locator("#field-impact-release_gap-wrong")).to_contain_text("outside contact")
+    write(page, "impact.release_separation", "30 nm")
+    expect(page.locator("#field-impact-release_separation-wrong")).to_contain_text(
+        "outside contact"
+    )
 
 
 def test_a_body_that_leaves_after_one_impact_is_drawn(page):
@@ -285,7 +287,7 @@ def test_two_designs_stand_side_by_side(page):
     assert page.locator("#verdicts .said").count() == 2
     heads = page.locator("#measures thead th").all_text_contents()
     assert heads == ["A: drop", "B: drop"]
-    assert "B parting" in page.locator("#curve .legend").inner_text()
+    assert "B unloading" in page.locator("#curve .legend").inner_text()
     first, second = state(page)
     assert first["tables"]["capillary"]["humidity"] == 0.6
     assert second["tables"]["capillary"]["humidity"] == 0.3
@@ -379,7 +381,7 @@ def test_a_surface_dropped_in_becomes_the_roughness(page, tmp_path):
     )
     expect(page.locator("#notice")).to_have_text("wafer.csv is the surface now.")
     assert page.locator("#field-roughness-files").input_value() == "wafer.csv"
-    write(page, "impact.release_gap", "200 nm")
+    write(page, "impact.release_separation", "200 nm")
     settled(page)
     assert page.locator("#verdicts .wrong").all_text_contents() == []
     surface = page.evaluate("() => asperity.designs()[0].answer.surface")
@@ -612,7 +614,7 @@ def test_the_critical_velocity_is_waited_for_without_dimming(page):
 def test_every_bad_field_is_marked_with_its_own_message(page):
     write(page, "body.radius", "-5 um")
     write(page, "capillary.humidity", "1.5")
-    write(page, "adhesion.range", "")
+    write(page, "adhesion.equilibrium_spacing", "")
     for key, words in (
         ("body-radius", "must be positive"),
         ("capillary-humidity", "must lie in [0, 1]"),
@@ -627,7 +629,7 @@ def test_every_bad_field_is_marked_with_its_own_message(page):
     focused = page.evaluate("() => document.activeElement.id")
     assert focused in ("field-capillary-humidity", "field-adhesion-range", "field-body-radius")
     write(page, "capillary.humidity", "0.6")
-    write(page, "adhesion.range", "0.2 nm")
+    write(page, "adhesion.equilibrium_spacing", "0.2 nm")
     settled(page)
     expect(page.locator("#field-body-radius-wrong")).to_be_visible()
     expect(page.locator("#field-capillary-humidity-wrong")).to_be_hidden()
@@ -701,12 +703,12 @@ def test_what_a_choice_fills_in_is_said_and_goes_with_it(page):
     page.locator("#case").select_option("drop")
     drop = "() => asperity.designs()[0].tables.capillary.model === 'equilibrium'"
     page.wait_for_function(drop)
-    write(page, "impact.release_gap", "")
+    write(page, "impact.release_separation", "")
     reveal(page, "#field-impact-speed")
     write(page, "impact.speed", "10 mm/s")
     before = state(page)[0]["tables"]
     tick(page, "gas")  # which needs a gap from which the film counts
-    assert state(page)[0]["tables"]["impact"]["release_gap"]
+    assert state(page)[0]["tables"]["impact"]["release_separation"]
     expect(page.locator("#notice")).to_contain_text("gap at release")
     tick(page, "gas")
     assert state(page)[0]["tables"] == before

@@ -27,8 +27,8 @@ KEPT = (
     "maximum_speed",
     "captured",
     "capture_time",
-    "stiction_time",
-    "end_time",
+    "time_to_rest",
+    "last_apex_time",
     "deepest",
     "contact_time",
     "maximum_force",
@@ -46,7 +46,7 @@ KEPT = (
     "rebound_height",
     "restitution",
     "log_decrement",
-    "impact_time",
+    "rebound_period",
     "power_loss",
 )
 """Measures that a study keeps."""
@@ -74,7 +74,7 @@ def run(case: asperity.Case, *, critical: bool) -> Answer:
         return failed(error)
     out = empty()
     ledger = {**result.ledger}
-    out["bounds"]["ledger.closure"] = number(ledger.pop("closure"))
+    out["bounds"]["ledger.energy_balance_error"] = number(ledger.pop("energy_balance_error"))
     _sort(out, "measures", result.measures)
     _sort(out, "regime", result.regime)
     _sort(out, "ledger", ledger)
@@ -106,8 +106,8 @@ def _curve(out: Answer, case: asperity.Case) -> None:
     near, far = separation[order[0]], separation[order[-1]]
     places = near + np.asarray(PLACES) * (far - near)
     for name, drawn in (
-        ("force_approach", curve.force_approach),
-        ("force_parting", curve.force_parting),
+        ("force_loading", curve.force_loading),
+        ("force_unloading", curve.force_unloading),
         ("central_separation", curve.central_separation),
     ):
         known = np.asarray(drawn)[order]
@@ -148,8 +148,8 @@ def sweep(
                 answer["exact"]["outcome"] = ends[int(value)]
             elif name == "reason":
                 answer["sentences"]["reason"] = sentence(str(value))
-            elif name == "closure":
-                answer["bounds"]["closure"] = number(value)
+            elif name == "energy_balance_error":
+                answer["bounds"]["energy_balance_error"] = number(value)
             elif np.issubdtype(column.dtype, np.integer):
                 answer["exact"][name] = int(value)
             elif np.any(np.isfinite(value)):

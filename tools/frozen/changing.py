@@ -83,14 +83,14 @@ class Change:
 
     def table(self, rows: list[dict[str, Any]]) -> str:
         """Path of published tables made of a reproduction's rows, each surface with its change."""
-        unit = {"log_decrement": 1.0, "stiction_time": 1e-6, "power_loss": 1e-13}
-        names = ("stiction_time", "power_loss", "log_decrement")
+        unit = {"log_decrement": 1.0, "time_to_rest": 1e-6, "power_loss": 1e-13}
+        names = ("time_to_rest", "power_loss", "log_decrement")
         found: dict[tuple[Any, ...], dict[str, float]] = {}
         for row in rows:
             key = row["table"], row["asperity_radius"] * 1e9, row["rms_height"] * 1e9
             found.setdefault(key, {})[row["quantity"]] = row["published"] / unit[row["quantity"]]
         surfaces: dict[float, float] = {}
-        text = ["table,asperity_radius_nm,rms_height_nm,stiction_time_us,power_loss_1e-4_nW"]
+        text = ["table,asperity_radius_nm,rms_height_nm,time_to_rest_us,power_loss_1e-4_nW"]
         text[0] += ",log_decrement"
         for (table, *surface), values in found.items():
             for value in surface:

@@ -104,8 +104,8 @@ def liquids() -> list[Structure]:
                     {"impact.speed": (0.05, 0.5), **AIR, **WORK},
                 )
             )
-    thin = water("equilibrium", humidity=1.0, film_thickness=5e-10, tension=0.06)
-    drawn = {"capillary.film_thickness": (3e-10, 9e-10), **DROP}
+    thin = water("equilibrium", humidity=1.0, adsorbed_film_thickness=5e-10, tension=0.06)
+    drawn = {"capillary.adsorbed_film_thickness": (3e-10, 9e-10), **DROP}
     out.append(Structure("rough-rigid-film-jkr", "glass-bead", {**adhesion("jkr"), **thin}, drawn))
     return out
 
@@ -113,7 +113,7 @@ def liquids() -> list[Structure]:
 def yielding() -> list[Structure]:
     """Each law of yielding: rough, dry and wet, and smooth, with what may pull beside it."""
     sharp = {"roughness.asperity_density": 3.75e14, "roughness.rms_height": 2e-9, **FEW}
-    start = {"impact.release_gap": 1e-7, "impact.speed": 0.01}
+    start = {"impact.release_separation": 1e-7, "impact.speed": 0.01}
     drawn = {
         "impact.speed": (5e-3, 2e-2),
         "roughness.asperity_radius": (5e-8, 9e-8),

@@ -48,17 +48,17 @@ class Structure:
 
 DRY: Changes = {"capillary": None}
 NO_WEIGHT: Changes = {"impact.gravity": 0.0}
-FAST: Changes = {"impact.release_gap": None, **NO_WEIGHT}
+FAST: Changes = {"impact.release_separation": None, **NO_WEIGHT}
 FEW: Changes = {"numerics.max_impacts": 4}
 BULK: Changes = {
     "counterface.deformation": "half-space",
     "numerics.rings": 32,
     "numerics.max_impacts": 2,
 }
-SMOOTH: Changes = {"impact.gravity": 9.81, "impact.release_gap": 2e-6, **FEW}
+SMOOTH: Changes = {"impact.gravity": 9.81, "impact.release_separation": 2e-6, **FEW}
 
 DROP: Ranges = {
-    "impact.release_gap": (3e-7, 3e-6),
+    "impact.release_separation": (3e-7, 3e-6),
     "roughness.rms_height": (1.2e-9, 2.5e-9),
     "body.radius": (2e-5, 8e-5),
     "roughness.asperity_radius": (2e-7, 6e-7),
@@ -73,7 +73,7 @@ def adhesion(model: str) -> Changes:
     """A law of dry adhesion in place of the base's."""
     if model == "none":
         return {"adhesion": None}
-    return {"adhesion": {"model": model, "work": 0.03, "range": 2e-10}}
+    return {"adhesion": {"model": model, "work": 0.03, "equilibrium_spacing": 2e-10}}
 
 
 def drawn_work(model: str) -> Ranges:

@@ -49,8 +49,8 @@ STUDIED = frozenset(
 def _rates() -> list[Structure]:
     """Gas, waves, bulks that relax and menisci that take time."""
     air = {"gas": {"name": "air", "pressure": 101325.0, "temperature": 293.15}}
-    thick = {"gas": {"viscosity": 1.8e-5, "slip_length": 7e-8, "closest_gap": 2e-9}}
-    close = {"impact.release_gap": 2e-7, "impact.speed": 6e-3}
+    thick = {"gas": {"viscosity": 1.8e-5, "slip_length": 7e-8, "cutoff_separation": 2e-9}}
+    close = {"impact.release_separation": 2e-7, "impact.speed": 6e-3}
     gust = {"impact.speed": (4e-3, 1.5e-2), "gas.pressure": (3e4, 1.5e5), **TIP}
     waves = {"waves": {"model": "hunter"}}
     creep = {
@@ -75,7 +75,7 @@ def _rates() -> list[Structure]:
         (
             "smooth-gas",
             SPHERE,
-            {**thick, **FEW, "impact.release_gap": 2e-7},
+            {**thick, **FEW, "impact.release_separation": 2e-7},
             {"impact.speed": (0.1, 0.5), "gas.slip_length": (3e-8, 1e-7)},
         ),
         ("rough-rigid-waves", "glass-bead", {**waves}, {**SPEED, **AIR, **TIP}),
@@ -119,7 +119,7 @@ def _rates() -> list[Structure]:
 
 def _measured() -> list[Structure]:
     """Both uses of measured surfaces."""
-    drawn = {"impact.release_gap": (5e-7, 3e-6), **AIR, "body.radius": (2e-5, 8e-5)}
+    drawn = {"impact.release_separation": (5e-7, 3e-6), **AIR, "body.radius": (2e-5, 8e-5)}
     made = [
         ("summits-dmt", {**FEW}, drawn),
         ("summits-jkr", {**adhesion("jkr"), **FEW}, drawn),

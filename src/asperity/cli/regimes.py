@@ -144,12 +144,12 @@ def _need_a_place(given: Source) -> None:
             file=given.file,
             key="adhesion.model",
         )
-    if adhesion.range is None:
+    if adhesion.equilibrium_spacing is None:
         raise InputError(
-            "`range` must be given for a place on the map, whose elasticity parameter rests on it; "
-            "got nothing",
+            "`equilibrium_spacing` must be given for a place on the map, whose elasticity "
+            "parameter rests on it; got nothing",
             file=given.file,
-            key="adhesion.range",
+            key="adhesion.equilibrium_spacing",
         )
 
 

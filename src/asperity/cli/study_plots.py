@@ -64,7 +64,7 @@ def plot_store(
     at : sequence of str
         Axes held fixed, as ``KEY=VALUE``.
     pareto : tuple of str or None
-        Two goals such as ``min:stiction_time``, in place of a picture over axes.
+        Two goals such as ``min:time_to_rest``, in place of a picture over axes.
     **manner : bool
         As `Voice` takes them.
     """

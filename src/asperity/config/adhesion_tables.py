@@ -46,9 +46,9 @@ class Adhesion(Table):
     work: fields.SurfaceEnergy | None = entry(
         "J/m^2", "Work of adhesion.", "60 mJ/m^2", default=None, shown=True
     )
-    range: fields.Length | None = entry(
+    equilibrium_spacing: fields.Length | None = entry(
         "m",
-        "Interatomic spacing, the range of the adhesion ('jkr' needs none).",
+        "Equilibrium spacing of the atoms, the range of the adhesion ('jkr' needs none).",
         "0.2 nm",
         default=None,
         shown=True,
@@ -56,7 +56,7 @@ class Adhesion(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        needed = {"none": (), "jkr": ("work",)}.get(self.model, ("work", "range"))
+        needed = {"none": (), "jkr": ("work",)}.get(self.model, ("work", "equilibrium_spacing"))
         return need(self, needed)
 
 
@@ -85,7 +85,7 @@ class Capillary(Table):
     )
     humidity: fields.Humidity | None = entry(
         "1",
-        "Vapour pressure over saturated vapour pressure; 1 needs `film_thickness`.",
+        "Vapour pressure over saturated vapour pressure; 1 needs `adsorbed_film_thickness`.",
         0.6,
         default=None,
         shown=True,
@@ -102,7 +102,7 @@ class Capillary(Table):
     molar_volume: fields.MolarVolume | None = entry(
         "m^3/mol", "Molar volume, in place of the catalogue's.", "18.05 cm^3/mol", default=None
     )
-    film_thickness: fields.Length | None = entry(
+    adsorbed_film_thickness: fields.Length | None = entry(
         "m",
         "Adsorbed film on each surface, from which menisci draw: they span no gap wider than both.",
         "0.5 nm",

@@ -41,7 +41,7 @@ class Gas(Table):
     slip_length: fields.SlipLength | None = entry(
         "m", "Slip length on both surfaces; 0 for none.", "75 nm", default=None
     )
-    closest_gap: fields.Length | None = entry(
+    cutoff_separation: fields.Length | None = entry(
         "m",
         "Separation below which the film does not thin; the rms height of rough surfaces.",
         "1 nm",
@@ -98,24 +98,25 @@ class Gas(Table):
         InputError
             With the key that must be given.
         """
-        closest, release = self.closest_gap, impact.release_gap
+        closest, release = self.cutoff_separation, impact.release_separation
         if roughness is None and closest is None:
             raise InputError(
-                "`closest_gap` must be given for a smooth body: a film between smooth surfaces "
-                "that touch would hold them apart for ever; got nothing",
-                key="gas.closest_gap",
+                "`cutoff_separation` must be given for a smooth body: a film between smooth "
+                "surfaces that touch would hold them apart for ever; got nothing",
+                key="gas.cutoff_separation",
             )
         if release is None:
             raise InputError(
-                "`release_gap` must be given with a [gas] table: the film takes energy at every "
-                "separation, and none beyond it is counted; got nothing",
-                key="impact.release_gap",
+                "`release_separation` must be given with a [gas] table: the film takes energy at "
+                "every separation, and none beyond it is counted; got nothing",
+                key="impact.release_separation",
             )
         if closest is not None and closest >= release:
             raise InputError(
-                f"`closest_gap` must be smaller than `release_gap` ({release * 1e9:.6g} nm), or "
-                f"the film would never thin; got {closest * 1e9:.6g} nm",
-                key="gas.closest_gap",
+                "`cutoff_separation` must be smaller than `release_separation` "
+                f"({release * 1e9:.6g} nm), or the film would never thin; "
+                f"got {closest * 1e9:.6g} nm",
+                key="gas.cutoff_separation",
             )
 
     @property

@@ -57,12 +57,12 @@ def _refuse_waves(case: CaseTables) -> None:
     impact, (slowest, solid) = case.impact, wave_speed(case)
     if impact is None:
         return
-    fall = 2.0 * impact.gravity * (impact.release_gap or 0.0)
+    fall = 2.0 * impact.gravity * (impact.release_separation or 0.0)
     speed = ((impact.speed or 0.0) ** 2 + fall) ** 0.5
     if speed < slowest:
         return
     raise InputError(
         f"`speed` at impact must be smaller than that of waves in a bar of {named(solid)}, "
         f"{slowest:.4g} m/s, since contact is taken to be quasi-static; got {speed:.4g} m/s",
-        key="impact.speed" if impact.speed else "impact.release_gap",
+        key="impact.speed" if impact.speed else "impact.release_separation",
     )

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from asperity.config.old_words import new_name
 from asperity.errors import InputError
 from asperity.units import shown
 
@@ -22,7 +23,14 @@ _PARTS = re.compile(_PART)
 
 
 def did_you_mean(word: str, options: Iterable[str]) -> str:
-    """`` - did you mean 'rms_height'?``, or nothing where no option is close to the word."""
+    """`` - did you mean 'rms_height'?``, or nothing where no option is close to the word.
+
+    Of a word that was renamed it says what it is called now.
+    """
+    options = list(options)
+    renamed = new_name(word)
+    if renamed != word and renamed in options:
+        return f" - it is called '{renamed}' now"
     near = nearest(word, options)
     return "" if near is None else f" - did you mean '{near}'?"
 

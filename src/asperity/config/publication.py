@@ -11,7 +11,7 @@ from asperity.config.fields import Number, entry
 class Publication(Table):
     """Assumptions of the publication that are not physics; its case alone has this table."""
 
-    pull_while_parting_only: bool = entry(
+    attraction_during_retraction_only: bool = entry(
         "", "Whether adhesion and menisci pull only while the bodies part.", True, default=True
     )
     conjunction_ends: Annotated[float, Number("[0.1, 8]")] = entry(

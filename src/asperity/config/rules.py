@@ -57,7 +57,7 @@ def _publication_beside(case: CaseTables) -> None:
         ("capillary.model", case.capillary.model, ("equilibrium", "none")),
         ("capillary.formation", case.capillary.formation, ("contact",)),
         ("capillary.formation_time", case.capillary.formation_time, (None,)),
-        ("capillary.film_thickness", case.capillary.film_thickness, (None,)),
+        ("capillary.adsorbed_film_thickness", case.capillary.adsorbed_film_thickness, (None,)),
     )
     refuse_all(
         InputError(
@@ -195,11 +195,11 @@ def _bounded_liquid(case: CaseTables) -> None:
     air = case.capillary
     if air.model == "none" or case.publication is not None:
         return
-    if air.humidity == 1.0 and air.film_thickness is None:
+    if air.humidity == 1.0 and air.adsorbed_film_thickness is None:
         raise InputError(
-            "`humidity` must lie in [0, 1) without a `film_thickness` (at 1 the Kelvin radius "
-            "is infinite: menisci would reach to any gap, and only the adsorbed film that they "
-            "draw from bounds them); got 1",
+            "`humidity` must lie in [0, 1) without an `adsorbed_film_thickness` (at 1 the Kelvin "
+            "radius is infinite: menisci would reach to any gap, and only the adsorbed film that "
+            "they draw from bounds them); got 1",
             key="capillary.humidity",
         )
     if air.model == "kelvin-filling":

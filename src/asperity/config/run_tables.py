@@ -18,7 +18,7 @@ _NUMERICS = Tolerance()
 class Impact(Table):
     """How the body is let go."""
 
-    release_gap: fields.Length | None = entry(
+    release_separation: fields.Length | None = entry(
         "m",
         "Rigid separation at the release; the solver chooses it where only `speed` is given.",
         "1 um",
@@ -36,9 +36,10 @@ class Impact(Table):
 
     @model_validator(mode="after")
     def _moves(self) -> Self:
-        if self.release_gap is None and self.speed is None:
+        if self.release_separation is None and self.speed is None:
             raise InputError(
-                "`release_gap` or `speed` must be given; got neither", key="release_gap"
+                "`release_separation` or `speed` must be given; got neither",
+                key="release_separation",
             )
         if self.speed is None and self.gravity == 0.0:
             raise InputError(
@@ -55,7 +56,7 @@ class Numerics(Table):
     tolerance: Annotated[float, Number("[1e-12, 1e-3]")] = entry(
         "1", "Relative error allowed to the force curves.", 1e-8, default=_NUMERICS.relative
     )
-    rest: Annotated[float, Number("(0, 1)")] = entry(
+    rest_height_ratio: Annotated[float, Number("(0, 1)")] = entry(
         "1", "At rest below this fraction of the first rebound.", 1e-3, default=_NUMERICS.rest
     )
     time_limit: fields.Time | None = entry(

@@ -99,8 +99,8 @@ class CaseTables(Table):
         """
         if self.impact is None:
             raise InputError(
-                "an [impact] table must be given, with a `speed` or a `release_gap`, for a motion "
-                "(`asperity curve` takes --load or --depth without one); got none",
+                "an [impact] table must be given, with a `speed` or a `release_separation`, for a "
+                "motion (`asperity curve` takes --load or --depth without one); got none",
                 key="impact",
             )
         return self.impact
@@ -164,7 +164,7 @@ class CaseTables(Table):
     @property
     def liquid_radius(self) -> float:
         """Radius of curvature of the liquid [m]: Kelvin's, or less where its film bounds it."""
-        film, angle = self.capillary.film_thickness, self.capillary.contact_angle
+        film, angle = self.capillary.adsorbed_film_thickness, self.capillary.contact_angle
         kelvin = self.kelvin_radius
         if film is None or angle is None:
             return kelvin
@@ -181,7 +181,7 @@ class CaseTables(Table):
         """The numerics as the solver takes them."""
         n = self.numerics
         limit = math.inf if n.time_limit is None else n.time_limit
-        return Tolerance(n.tolerance, n.rest, limit, n.max_impacts, n.rings)
+        return Tolerance(n.tolerance, n.rest_height_ratio, limit, n.max_impacts, n.rings)
 
     @functools.cached_property
     def name(self) -> str:

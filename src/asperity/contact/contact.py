@@ -78,14 +78,14 @@ class Held(NamedTuple):
     ----------
     outer
         Whether on an outermost branch, else still on the way to it.
-    parting
+    unloading
         Whether the phase led outwards.
     size, field
         As in :class:`State`.
     """
 
     outer: jax.Array
-    parting: jax.Array
+    unloading: jax.Array
     size: jax.Array
     field: jax.Array
 
@@ -172,13 +172,13 @@ class Contact(eqx.Module):
         ends = ((False,) * laws, (True,) * laws) if laws else ((),)
         return tuple(self.extreme(bonded) for bonded in ends)
 
-    def branch_of(self, memory: Memory, parting: jax.Array) -> jax.Array:
+    def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
         """Index of the outermost branch that a body with ``memory`` reaches."""
         laws = len(self.mechanisms)
         if self.discrete:
             weights = 2 ** np.arange(laws)
             return jnp.sum(jnp.where(self.bonded(memory), weights, 0))
-        return jnp.where(parting, min(laws, 1), 0)
+        return jnp.where(unloading, min(laws, 1), 0)
 
     @abc.abstractmethod
     def state(self, separation: jax.Array, memory: Memory) -> State:
@@ -201,7 +201,7 @@ class Contact(eqx.Module):
         return jax.tree_util.tree_map(lambda leaf: leaf[None], states)
 
     def way(
-        self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+        self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
         """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m].
 

@@ -88,7 +88,7 @@ def _marks(
     contact: Deforming,
     memory: Bound,
     start: jax.Array,
-    parting: jax.Array,
+    unloading: jax.Array,
     rates: jax.Array,
 ) -> jax.Array:
     """Ends of the pieces of the way back, for each law.
@@ -102,7 +102,7 @@ def _marks(
     even = np.arange(1.0, pieces) / max(pieces - 1, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
     shares = jnp.append(even / fastest, more / slowest)
-    ahead = jnp.where(parting, 1.0, -1.0) * (memory.size > 0.0)
+    ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
         start + ahead * (law.breaking_gap - law.forming_gap) * shares
         for law in contact.interface.hysteretic
@@ -179,7 +179,7 @@ def retrace(
     memory: Bound,
     start: jax.Array,
     size: jax.Array,
-    parting: jax.Array,
+    unloading: jax.Array,
     within: tuple[Any, Any],
 ) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
     """Pieces of the way back, places on them and the rings there; first of all at the start."""
@@ -188,9 +188,9 @@ def retrace(
     sigma = contact.interface.heights.rms
     held = memory.thresholds, size
     pace = rates(contact, start, *held, memory.lift, contact.rings)
-    marks = _marks(contact, memory, start, parting, pace)
-    enter, leave = pieces_to(marks, start, parting, within)
-    back = jnp.where(parting, sigma, -sigma) * 1e-2
+    marks = _marks(contact, memory, start, unloading, pace)
+    enter, leave = pieces_to(marks, start, unloading, within)
+    back = jnp.where(unloading, sigma, -sigma) * 1e-2
     trail = Trail.straight(start, memory.lift, pace - 1.0, back)
 
     def step(trail: Trail, place: jax.Array) -> Any:

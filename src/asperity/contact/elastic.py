@@ -188,7 +188,7 @@ class ElasticContact(Contact):
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
 
     def way(
-        self, memory: RingMemory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+        self, memory: RingMemory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
         """On the mesh of the reversal, from its displacement, step by step.
 
@@ -205,7 +205,7 @@ class ElasticContact(Contact):
         @jax.jit  # traced once, for its shapes and for itself
         def back() -> Way:
             frozen = jax.lax.stop_gradient((self, memory, start))
-            enter, leave, places, rests = retrace(*frozen, size, parting, within)
+            enter, leave, places, rests = retrace(*frozen, size, unloading, within)
             return Way(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)
@@ -257,7 +257,7 @@ class ElasticContact(Contact):
         before = RingMemory(old, size, rest.lift, held.outer)
         memory = self.turned(before, start, held._replace(field=rest.lift))
         memory = memory._replace(size=jnp.where(wanted, size, 0.0))
-        way = self.way(memory, start, ~held.parting, within)
+        way = self.way(memory, start, ~held.unloading, within)
         assert way is not None
         return way
 
@@ -266,7 +266,7 @@ class ElasticContact(Contact):
 
     def _swept(self, held: Held) -> Thresholds:
         """Thresholds on the branch on which a body comes."""
-        whole = jnp.where(held.parting, -jnp.inf, jnp.full(self.rings + 1, jnp.inf))
+        whole = jnp.where(held.unloading, -jnp.inf, jnp.full(self.rings + 1, jnp.inf))
         return (whole,) * len(self.mechanisms)
 
     def _alone(self, separation: jax.Array, memory: RingMemory) -> tuple[jax.Array, Rest]:

@@ -49,7 +49,7 @@ class PublishedContact(Contact):
         The mean pressures.
     shape
         The body.
-    parting_only
+    retraction_only
         1 where adhesion and menisci pull only while the bodies part: what the published
         decrements say, and no law that a bond could follow. 0 where they always pull.
     count
@@ -57,7 +57,7 @@ class PublishedContact(Contact):
 
     Notes
     -----
-    With ``parting_only`` the way out takes from the body what the pull does over it. It is
+    With ``retraction_only`` the way out takes from the body what the pull does over it. It is
     booked like bonds that break: :attr:`State.bonds` holds the work [J] that each pull would
     still do from here to the edge, a joule of it is lost for each joule that goes, and
     nothing when it comes back on the way in. The memory is whether the bodies part.
@@ -65,7 +65,7 @@ class PublishedContact(Contact):
 
     pressure: PublishedPressure
     shape: Sphere
-    parting_only: Real = quantity(1.0)
+    retraction_only: Real = quantity(1.0)
     count: int = eqx.field(static=True, default=_PANELS)
 
     @property
@@ -98,7 +98,7 @@ class PublishedContact(Contact):
         self, separation: jax.Array, memory: jax.Array, force: jax.Array, energy: jax.Array
     ) -> State:
         """From the integrals of each pressure, asperities that touch last."""
-        lost = self.parting_only
+        lost = self.retraction_only
         pull = force[1:3]
         parts = jnp.concatenate([force[:1], -(1.0 - lost * (1.0 - memory)) * pull])
         return State(
@@ -160,7 +160,7 @@ class PublishedContact(Contact):
         return memory
 
     def turned(self, memory: jax.Array, separation: jax.Array, held: Held) -> jax.Array:
-        return jnp.where(held.parting, 0.0, 1.0)
+        return jnp.where(held.unloading, 0.0, 1.0)
 
     def bonded(self, memory: jax.Array) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
@@ -176,7 +176,7 @@ class PublishedContact(Contact):
         places = ladder[:, None] + 0.5 * width * (_FEW + 1.0)
         weights = pi * self.shape.radius * width * _FEW_WEIGHTS
         # More than all menisci pull in full; less than the energy is stored, then.
-        pull = (1.0 - self.parting_only) * (1.0 + _DOUBT) * p.strongest_pull(places)
+        pull = (1.0 - self.retraction_only) * (1.0 + _DOUBT) * p.strongest_pull(places)
         pressure = p.contact(places) - pull
         steps = jnp.sum(weights * pressure, axis=1)
         force = jnp.cumsum(steps) - steps

@@ -119,10 +119,10 @@ class RigidContact(Contact):
         ways = (False, True) if self.interface.hysteretic else (False,)
         return tuple(self.interface.swept(self.left[0], way) for way in ways)
 
-    def branch_of(self, memory: Thresholds, parting: jax.Array) -> jax.Array:
+    def branch_of(self, memory: Thresholds, unloading: jax.Array) -> jax.Array:
         if not self.yields:
-            return super().branch_of(memory, parting)
-        apart = jnp.where(parting, min(len(self.interface.hysteretic), 1), 0)
+            return super().branch_of(memory, unloading)
+        apart = jnp.where(unloading, min(len(self.interface.hysteretic), 1), 0)
         return jnp.where(self.interface.touched(memory), 1 + apart, 0)
 
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
@@ -171,14 +171,14 @@ class RigidContact(Contact):
         return jnp.zeros(len(self.mechanisms), bool)
 
     def way(
-        self, memory: Thresholds, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+        self, memory: Thresholds, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
         if not self.interface.hysteretic or (self.yields and self.left is None):
             return None  # a first approach comes from no reversal
-        ends = self.interface.merging(memory, parting)
+        ends = self.interface.merging(memory, unloading)
         marks = [self._marks(start, end) for end in ends]
-        enter, leave = pieces_to(jnp.concatenate(marks), start, parting, within)
+        enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
         near = Near(level=False, nodes=self.resolved.nodes * self.resolved.pieces)
         return Way(enter, leave, self._states(near, places, memory))

@@ -20,10 +20,10 @@ def way_points(nodes: int) -> np.ndarray:
 
 
 def pieces_to(
-    marks: jax.Array, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+    marks: jax.Array, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
 ) -> tuple[jax.Array, jax.Array]:
     """Ends of the pieces from a reversal to the last of the ``marks``, ``within`` bounds [m]."""
-    ahead = jnp.where(parting, 1.0, -1.0)
+    ahead = jnp.where(unloading, 1.0, -1.0)
     marks = jnp.clip(marks, *within)
     marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
     return jnp.concatenate([start[None], marks])[:-1], marks

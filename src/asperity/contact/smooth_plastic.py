@@ -127,7 +127,7 @@ class SmoothPlasticContact(Contact):
         combinations = product((False, True), repeat=len(self.mechanisms) - 1)
         return tuple(self.extreme((True, *reversed(bits))) for bits in combinations)
 
-    def branch_of(self, memory: Pressed, parting: jax.Array) -> jax.Array:
+    def branch_of(self, memory: Pressed, unloading: jax.Array) -> jax.Array:
         lowest, flags = memory
         weights = 2 ** np.arange(len(self.mechanisms) - 1)
         bonds = jnp.sum(jnp.where(flags > 0.5, weights, 0))

@@ -112,8 +112,8 @@ class CreptContact(Contact):
     def branches(self) -> tuple[Memory, ...]:
         return self.told.branches()
 
-    def branch_of(self, memory: Memory, parting: jax.Array) -> jax.Array:
-        return self.told.branch_of(memory, parting)
+    def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
+        return self.told.branch_of(memory, unloading)
 
     def state(self, separation: jax.Array, memory: Memory) -> State:
         return _with_viscous(self.told.state(separation, memory))
@@ -122,9 +122,9 @@ class CreptContact(Contact):
         return _with_viscous(self.told.branch(ends, places, memory))
 
     def way(
-        self, memory: Memory, start: jax.Array, parting: jax.Array, within: tuple[Any, Any]
+        self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> Way | None:
-        way = self.told.way(memory, start, parting, within)
+        way = self.told.way(memory, start, unloading, within)
         return None if way is None else way._replace(states=_with_viscous(way.states))
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:

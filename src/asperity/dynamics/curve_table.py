@@ -257,7 +257,7 @@ def _to_coefficients(nodes: int) -> np.ndarray:
 
 
 def join(
-    table: Table, branch: jax.Array, inner: Pieces, start: jax.Array, parting: jax.Array
+    table: Table, branch: jax.Array, inner: Pieces, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
     """All polynomials ahead of a body that leaves ``start``: the inner pieces, then a branch."""
     begin = inner.leave[-1] if inner.leave.shape[0] else start
@@ -265,7 +265,7 @@ def join(
     outer = table.values[branch][..., : inner.values.shape[-1]]
     up = (low, high, jnp.maximum(low, begin), jnp.maximum(high, begin), outer)
     down = (low, high, jnp.minimum(high, begin), jnp.minimum(low, begin), outer)
-    rest = [jnp.where(parting, a, b[::-1]) for a, b in zip(up, down, strict=True)]
+    rest = [jnp.where(unloading, a, b[::-1]) for a, b in zip(up, down, strict=True)]
     return Pieces(*(jnp.concatenate(pair) for pair in zip(inner, rest, strict=True)))
 
 

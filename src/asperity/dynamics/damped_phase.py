@@ -275,28 +275,28 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
     return places, summed(times), speeds, summed(heats), drags
 
 
-def cut(pieces: Pieces, parting: jax.Array, place: jax.Array) -> Pieces:
+def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
     """The pieces until a place [m]; those beyond it are empty."""
 
     def until(end: jax.Array) -> jax.Array:
-        return jnp.where(parting, jnp.minimum(end, place), jnp.maximum(end, place))
+        return jnp.where(unloading, jnp.minimum(end, place), jnp.maximum(end, place))
 
     return pieces._replace(enter=until(pieces.enter), leave=until(pieces.leave))
 
 
 def kinetic_at(
-    body: Body, pieces: Pieces, kinetic: jax.Array, parting: jax.Array, place: jax.Array
+    body: Body, pieces: Pieces, kinetic: jax.Array, unloading: jax.Array, place: jax.Array
 ) -> jax.Array:
     """Kinetic energy [J] with which a body passes a place [m] of a phase."""
     pieces, _ = resolved(body, pieces)
-    return pass_through(body, cut(pieces, parting, place), kinetic).turn.kinetic
+    return pass_through(body, cut(pieces, unloading, place), kinetic).turn.kinetic
 
 
 def time_to(
-    body: Body, pieces: Pieces, kinetic: jax.Array, parting: bool, place: jax.Array
+    body: Body, pieces: Pieces, kinetic: jax.Array, unloading: bool, place: jax.Array
 ) -> jax.Array:
     """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
-    passed = cut(pieces, jnp.asarray(parting), place)
+    passed = cut(pieces, jnp.asarray(unloading), place)
     if body.damped:
         return pass_through(body, passed, kinetic).duration
     work = work_along(passed, kinetic, body.weight)

@@ -211,7 +211,7 @@ def _row(stage: _Stage, impact: _Impact, fastest: float) -> Impacts:
         "touching": deepest[TOUCHING],
         "bonds": deepest[stage.layout.bonds],
         "lost": rise.place.lost,
-        "closure": np.max(np.abs(energy - stage.origin)),
+        "energy_balance_error": np.max(np.abs(energy - stage.origin)),
         "pull_work": np.asarray(-rise.pull_work),
         "fastest": np.asarray(fastest),
         "fall": _phase(stage, impact.start, impact.begin, fall),

@@ -175,23 +175,25 @@ def _leg(
     table: Table,
     rest: tuple[jax.Array, jax.Array],
     progress: Progress,
-    parting: jax.Array,
+    unloading: jax.Array,
 ) -> tuple[Progress, _Leg]:
     """One phase down or up, and the bonds that it makes or breaks.
 
     ``rest`` is the equilibrium, and the separation that counts as there [m].
     """
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
-    inner = inner_pieces(contact, table, progress.memory, progress.place, parting)
-    branch = contact.branch_of(progress.memory, parting)
-    ahead = look_ahead(table, branch, inner, progress.kinetic, body.weight, progress.place, parting)
+    inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
+    branch = contact.branch_of(progress.memory, unloading)
+    ahead = look_ahead(
+        table, branch, inner, progress.kinetic, body.weight, progress.place, unloading
+    )
     if not body.damped:
-        wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(parting))
+        wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(unloading))
         turn, heat = find_turn(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
-        way, part = resolved(body, join(table, branch, inner, progress.place, parting))
-        goal = jnp.where(parting, jnp.inf, rest[1])
+        way, part = resolved(body, join(table, branch, inner, progress.place, unloading))
+        goal = jnp.where(unloading, jnp.inf, rest[1])
         passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
         turn = passage.turn._replace(piece=part[passage.turn.piece])
         turn, heat = in_order(ahead, turn), passage.lost
@@ -209,7 +211,7 @@ def _leg(
         progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
         progress.lost, progress.bonds,
     )  # fmt: skip
-    held = Held(turn.piece >= ahead.pieces, parting, row[SIZE], row[layout.field])
+    held = Held(turn.piece >= ahead.pieces, unloading, row[SIZE], row[layout.field])
     after = progress._replace(
         memory=contact.turned(progress.memory, turn.place, held), place=turn.place,
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
@@ -246,8 +248,8 @@ def _impact(
     resting = datum.equilibrium
     rest = resting, resting + limits.rest * (body.release - resting)
 
-    def leg(progress: Progress, parting: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
-        after, way = _leg(contact, body, table, rest, progress, parting)
+    def leg(progress: Progress, unloading: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
+        after, way = _leg(contact, body, table, rest, progress, unloading)
         return after, (after, way)
 
     # One body of code for both directions: half to compile.
@@ -257,7 +259,7 @@ def _impact(
     fall, (end, rise) = down[1], up
     legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
     mechanical = legs.turn.kinetic + body.weight * legs.turn.place + legs.row[:, STORED]
-    closure = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
+    energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
     height = end.place - datum.equilibrium
     first = jnp.where(progress.made == 0, height, progress.first)
     energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
@@ -281,8 +283,8 @@ def _impact(
     after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
     row = Impacts(
         jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
-        rise.leaving, fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost, closure,
-        rise.pull_work, energy, fall.phase, rise.phase,
+        rise.leaving, fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost,
+        energy_balance_error, rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row
 

@@ -62,7 +62,7 @@ class Ahead(NamedTuple):
         Work from the top of the table to there, of the force and of its attractive part [J].
     panel
         Panel of the branch in which it begins.
-    parting
+    unloading
         Whether the body moves outwards.
     """
 
@@ -72,12 +72,12 @@ class Ahead(NamedTuple):
     begin: jax.Array
     before: jax.Array
     panel: jax.Array
-    parting: jax.Array
+    unloading: jax.Array
 
     @property
     def sign(self) -> jax.Array:
         """1 outwards, -1 inwards."""
-        return jnp.where(self.parting, 1.0, -1.0)
+        return jnp.where(self.unloading, 1.0, -1.0)
 
     @property
     def pieces(self) -> int:
@@ -111,7 +111,7 @@ def in_order(ahead: Ahead, turn: Turn) -> Turn:
     """A turn whose piece counts along the joined way, with panels counted as the table does."""
     panels = ahead.table.ends.shape[0] - 1
     step = turn.piece - ahead.pieces
-    panel = jnp.where(ahead.parting, step, panels - 1 - step)
+    panel = jnp.where(ahead.unloading, step, panels - 1 - step)
     return turn._replace(piece=jnp.where(step < 0, turn.piece, ahead.pieces + panel))
 
 
@@ -145,15 +145,15 @@ def look_ahead(
     kinetic: jax.Array,
     weight: jax.Array,
     start: jax.Array,
-    parting: jax.Array,
+    unloading: jax.Array,
 ) -> Ahead:
     """What lies ahead of a body that leaves ``start`` with a kinetic energy [J]."""
     work = work_along(inner, kinetic, weight)
     begin = inner.leave[-1] if inner.leave.shape[0] else start
     meets = jnp.sum(table.ends[1:-1] <= begin)
-    panel = jnp.where(parting, meets, table.panel_at(begin))
+    panel = jnp.where(unloading, meets, table.panel_at(begin))
     before = _work_at(table, branch, panel, begin)
-    return Ahead(table, branch, work, begin, before, panel, parting)
+    return Ahead(table, branch, work, begin, before, panel, unloading)
 
 
 def _work_at(table: Table, branch: jax.Array, panel: jax.Array, place: jax.Array) -> jax.Array:
@@ -170,7 +170,7 @@ def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
 
 def _until(ahead: Ahead, turn: Turn, place: jax.Array) -> jax.Array:
     near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
-    return jnp.where(ahead.parting, near, far)
+    return jnp.where(ahead.unloading, near, far)
 
 
 def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
@@ -196,7 +196,10 @@ def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     table, panel = ahead.table, turn.piece - ahead.pieces
     panels = jnp.stack([ahead.panel, panel])
     low, high = table.ends[panels], table.ends[panels + 1]
-    near, far = jnp.where(ahead.parting, high[0], low[0]), jnp.where(ahead.parting, low[1], high[1])
+    near, far = (
+        jnp.where(ahead.unloading, high[0], low[0]),
+        jnp.where(ahead.unloading, low[1], high[1]),
+    )
     first = jnp.stack([ahead.begin, far])
     last = jnp.stack([_until(ahead, turn, near), turn.place])
     span = last - first
@@ -265,7 +268,7 @@ def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:
 
     def until(place: jax.Array) -> jax.Array:
         near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
-        inside = jnp.where(ahead.parting, near, far)
+        inside = jnp.where(ahead.unloading, near, far)
         return chebyshev_sum(pull, local(p.low, p.high, inside))
 
     return total + jnp.sum(until(p.leave) - until(p.enter))

@@ -46,23 +46,23 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, A
     top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
     inward, outward = _branch(table, 0), _way_out(table, impacts)
     places = _places([*inward, *outward], deepest, top)
-    approach, parting = _read(inward, places), _read(outward, places)
-    out = parting[:, FORCE]
+    approach, unloading = _read(inward, places), _read(outward, places)
+    out = unloading[:, FORCE]
     layout = quantities(contact)
     names = contact.components
     found = {
         "rigid_separation": places,
         "central_separation": approach[:, CENTRAL],
-        "force_approach": approach[:, FORCE],
-        "force_parting": out,
-        "components_approach": dict(zip(names, approach[:, layout.components].T, strict=True)),
-        "components_parting": dict(zip(names, parting[:, layout.components].T, strict=True)),
+        "force_loading": approach[:, FORCE],
+        "force_unloading": out,
+        "components_loading": dict(zip(names, approach[:, layout.components].T, strict=True)),
+        "components_unloading": dict(zip(names, unloading[:, layout.components].T, strict=True)),
         "deepest": deepest,
         "preload": float(impacts.force[0]) if pulled.depends else None,
         "pull_off": float(pulled.pull_off),
         "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
         "work_of_separation": float(pulled.work),
-        "loss": _loss(contact, approach[:, layout.bonds], parting[:, layout.bonds]),
+        "loss": _loss(contact, approach[:, layout.bonds], unloading[:, layout.bonds]),
     }
     return found, float(pulled.held)
 
@@ -132,7 +132,9 @@ losses = Program(_losses, AT_ONCE)
 """What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
 
 
-def _loss(contact: Contact, approach: np.ndarray, parting: np.ndarray) -> float:
+def _loss(contact: Contact, approach: np.ndarray, unloading: np.ndarray) -> float:
     """Energy lost in and out: bonds made on the way in, and broken on the way out."""
     formation, rupture = (np.asarray(x) for x in losses(contact))
-    return float((approach[0] - approach[-1]) @ formation + (parting[0] - parting[-1]) @ rupture)
+    return float(
+        (approach[0] - approach[-1]) @ formation + (unloading[0] - unloading[-1]) @ rupture
+    )

@@ -150,7 +150,7 @@ class Impacts(NamedTuple):
         Expected asperities in contact, and bonds by law, at the deepest point.
     lost
         Energy lost until the apex, since the release [J]: by law, then by drag.
-    closure
+    energy_balance_error
         Largest change of the sum of all energies since the release [J].
     pull_work
         Work of the attractive parts on the way out [J], as in the publication's eq. 23.
@@ -171,7 +171,7 @@ class Impacts(NamedTuple):
     touching: jax.Array
     bonds: jax.Array
     lost: jax.Array
-    closure: jax.Array
+    energy_balance_error: jax.Array
     pull_work: jax.Array
     fastest: jax.Array
     fall: Phase

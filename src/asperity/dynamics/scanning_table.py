@@ -75,26 +75,26 @@ class Reversals(NamedTuple):
     rows: jax.Array
     error: jax.Array
 
-    def _range(self, start: jax.Array, parting: jax.Array) -> jax.Array:
+    def _range(self, start: jax.Array, unloading: jax.Array) -> jax.Array:
         """Index of the range of a reversal at ``start`` [m]."""
-        return jnp.where(parting, 0, 1 + jnp.sum(self.high[1:-1] < start))
+        return jnp.where(unloading, 0, 1 + jnp.sum(self.high[1:-1] < start))
 
-    def cover(self, start: jax.Array, parting: jax.Array) -> jax.Array:
+    def cover(self, start: jax.Array, unloading: jax.Array) -> jax.Array:
         """Whether they hold for a reversal at ``start`` [m]."""
-        k = self._range(start, parting)
+        k = self._range(start, unloading)
         inside = jnp.logical_and(self.low[k] <= start, start <= self.high[k])
         return jnp.logical_and(inside, self.error[k] <= CLOSE)
 
-    def pieces(self, start: jax.Array, parting: jax.Array) -> Pieces:
+    def pieces(self, start: jax.Array, unloading: jax.Array) -> Pieces:
         """The way back from ``start`` [m]."""
-        k = self._range(start, parting)
+        k = self._range(start, unloading)
         x = local(self.low[k], self.high[k], start)
-        leave = start + jnp.where(parting, 1.0, -1.0) * chebyshev_sum(self.length[k], x[None])
+        leave = start + jnp.where(unloading, 1.0, -1.0) * chebyshev_sum(self.length[k], x[None])
         enter = jnp.concatenate([start[None], leave[:-1]])
         touching = jnp.exp(chebyshev_sum(self.touching[k], x[None, None]))
         rows = chebyshev_sum(self.rows[k], x[None, None, None])
         rows = rows * _scales(touching, rows.shape[-1])
-        return _along(enter, leave, fit(rows), parting)
+        return _along(enter, leave, fit(rows), unloading)
 
 
 def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) -> Table:
@@ -118,7 +118,7 @@ def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) ->
     rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
     held = Held(
         outer=jnp.ones((RANGES, ways), bool),
-        parting=jnp.broadcast_to(parted[:, None], (RANGES, ways)),
+        unloading=jnp.broadcast_to(parted[:, None], (RANGES, ways)),
         size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
         field=rows[..., quantities(contact).field],
     )
@@ -193,32 +193,32 @@ def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array
 
 
 def inner_pieces(
-    contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
+    contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
     """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
     if not table.reversals:
-        return _solved(contact, table, memory, start, parting)
-    known = contact.on_branch(memory) & table.reversals.cover(start, parting)
+        return _solved(contact, table, memory, start, unloading)
+    known = contact.on_branch(memory) & table.reversals.cover(start, unloading)
     return jax.lax.cond(
         known,
-        lambda: table.reversals.pieces(start, parting),
-        lambda: _solved(contact, table, memory, start, parting),
+        lambda: table.reversals.pieces(start, unloading),
+        lambda: _solved(contact, table, memory, start, unloading),
     )
 
 
 def _solved(
-    contact: Contact, table: Table, memory: Memory, start: jax.Array, parting: jax.Array
+    contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
     now = contact.after(table.left) if table.left else contact
-    way = now.way(memory, start, parting, (table.ends[0], table.ends[-1]))
+    way = now.way(memory, start, unloading, (table.ends[0], table.ends[-1]))
     if way is None:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
-    return _along(way.enter, way.leave, fit(all_rows(way.states)), parting)
+    return _along(way.enter, way.leave, fit(all_rows(way.states)), unloading)
 
 
-def _along(enter: jax.Array, leave: jax.Array, values: jax.Array, parting: jax.Array) -> Pieces:
+def _along(enter: jax.Array, leave: jax.Array, values: jax.Array, unloading: jax.Array) -> Pieces:
     """Pieces of polynomials in the direction of motion."""
     odd = (-1.0) ** np.arange(NODES)[:, None]
-    values = values * jnp.where(parting, 1.0, odd)  # places descend on the way in
+    values = values * jnp.where(unloading, 1.0, odd)  # places descend on the way in
     return Pieces(jnp.minimum(enter, leave), jnp.maximum(enter, leave), enter, leave, values)

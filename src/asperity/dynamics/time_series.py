@@ -55,8 +55,8 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         chosen = np.minimum(np.arange(first, first + _BATCH), made - 1)
         rows = jax.tree_util.tree_map(partial(_rows, chosen), impacts)
         drawn = [
-            _draw(body, table, phase, ended, jax.device_put(np.asarray(parting)), places)
-            for phase, ended, parting in (
+            _draw(body, table, phase, ended, jax.device_put(np.asarray(unloading)), places)
+            for phase, ended, unloading in (
                 (rows.fall, rows.deepest_time, False),
                 (rows.rise, rows.apex_time, True),
             )
@@ -120,10 +120,10 @@ def until(series: Series, limit: float) -> Series:
 
 
 def _draw_all(
-    body: Body, table: Table, phases: Phase, ended: jax.Array, parting: jax.Array, places: int
+    body: Body, table: Table, phases: Phase, ended: jax.Array, unloading: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
     def one(phase: Phase, end: jax.Array) -> tuple[jax.Array, ...]:
-        return _draw_one(body, table, phase, end, parting, places)
+        return _draw_one(body, table, phase, end, unloading, places)
 
     return jax.vmap(one)(phases, ended)
 
@@ -132,14 +132,14 @@ _draw = Program(_draw_all)
 
 
 def _draw_one(
-    body: Body, table: Table, phase: Phase, ended: jax.Array, parting: jax.Array, places: int
+    body: Body, table: Table, phase: Phase, ended: jax.Array, unloading: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
     """Time, separation, speed, rows, heat, drag and whether to keep, in the order of time."""
-    pieces = join(table, phase.branch, phase.inner, phase.start, parting)
+    pieces = join(table, phase.branch, phase.inner, phase.start, unloading)
     if body.damped:
-        return _draw_damped(body, resolved(body, pieces)[0], phase, parting)
+        return _draw_damped(body, resolved(body, pieces)[0], phase, unloading)
     work = work_along(pieces, phase.kinetic, body.weight)
-    ahead = jnp.where(parting, 1.0, -1.0)
+    ahead = jnp.where(unloading, 1.0, -1.0)
     path = _path(pieces, phase, places)
     along = jnp.sort(ahead * path)
     ends = ahead * along
@@ -194,10 +194,10 @@ def ascending(lost: np.ndarray, least: float) -> np.ndarray:
 
 
 def _draw_damped(
-    body: Body, pieces: Pieces, phase: Phase, parting: jax.Array
+    body: Body, pieces: Pieces, phase: Phase, unloading: jax.Array
 ) -> tuple[jax.Array, ...]:
     """The same with drag."""
-    passed = cut(pieces, parting, phase.stop)
+    passed = cut(pieces, unloading, phase.stop)
     places, times, speeds, heats, drags = follow(body, passed, phase.kinetic)
     x = local(passed.low[:, None], passed.high[:, None], places)
     rows = chebyshev_sum(jnp.moveaxis(passed.values, 1, 0)[:, :, None], x[..., None])
@@ -205,7 +205,7 @@ def _draw_damped(
     return (
         phase.begun + times.ravel(),
         places.ravel(),
-        jnp.where(parting, 1.0, -1.0) * speeds.ravel(),
+        jnp.where(unloading, 1.0, -1.0) * speeds.ravel(),
         rows.reshape(places.size, -1),
         heats.reshape(places.size, -1),
         drags.reshape(places.size, -1),

@@ -102,9 +102,9 @@ def _look_on_branch(ahead: Ahead) -> _Looks:
     beyond = ahead.sign * (places - ahead.begin) > 0.0
     spent = jnp.logical_and(beyond, energies < 0.0)
     count = places.shape[0]
-    order = jnp.where(ahead.parting, np.arange(count, 0, -1), np.arange(1, count + 1))
+    order = jnp.where(ahead.unloading, np.arange(count, 0, -1), np.arange(1, count + 1))
     first = jnp.argmax(jnp.where(spent, order, 0))
-    before = jnp.clip(first - jnp.where(ahead.parting, 1, -1), 0, count - 1)
+    before = jnp.clip(first - jnp.where(ahead.unloading, 1, -1), 0, count - 1)
     inner = jnp.where(beyond[before], places[before], ahead.begin)
     left = jnp.where(beyond[before], energies[before], ahead.inner.kinetic[-1])
     piece = ahead.pieces + first // LOOKS
@@ -145,8 +145,8 @@ def find_turn(ahead: Ahead, wanted: jax.Array) -> Turn:
         places = jnp.concatenate([near.places, places])
         energies = jnp.concatenate([near.energies, energies])
         passed = jnp.concatenate([near.passed, passed])
-    end = jnp.where(ahead.parting, table.ends[-1], table.ends[0])
-    last = jnp.where(ahead.parting, table.panel_at(table.ends[-1]), 0)
+    end = jnp.where(ahead.unloading, table.ends[-1], table.ends[0])
+    last = jnp.where(ahead.unloading, table.panel_at(table.ends[-1]), 0)
     piece = jnp.where(found, piece, ahead.pieces + last)
     here = _piece(ahead, piece)
     place = jnp.where(found, _polish(here, bracket), end)

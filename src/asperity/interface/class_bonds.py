@@ -40,9 +40,9 @@ class ClassBonds(NamedTuple):
     def along(self, threshold: jax.Array, places: jax.Array, nodes: int) -> jax.Array:
         """At places [m] of any shape on the way from one reversal, by polynomials of few nodes.
 
-        One up to where these bonds reach the branch of parting, and one beyond, however many
+        One up to where these bonds reach the unloading branch, and one beyond, however many
         pieces other classes make of the way. Nothing is added below where they reach the branch
-        of approach. The first is one of the root of the distance to the branch of parting: bonds
+        of approach. The first is one of the root of the distance to the unloading branch: bonds
         let go at a fold.
         """
         low, high = jnp.min(places), jnp.max(places)

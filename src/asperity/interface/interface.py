@@ -107,7 +107,7 @@ class Interface(eqx.Module):
         return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.hysteretic)
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return tuple(jnp.full(jnp.shape(place), -jnp.inf) for _ in self.hysteretic)
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
@@ -128,14 +128,14 @@ class Interface(eqx.Module):
         """Whether anything was pressed so that it stays changed."""
         return jnp.asarray(False)
 
-    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on an outermost branch: no bond is left of what it was, or all hold."""
-        return tuple(jnp.where(parting, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
+        return tuple(jnp.where(unloading, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
 
-    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the outermost branch."""
         return [
-            b + jnp.where(parting, law.breaking_gap, law.forming_gap)
+            b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
             for law, b in zip(self.hysteretic, memory, strict=True)
         ]
 

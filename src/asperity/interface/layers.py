@@ -93,7 +93,7 @@ class Layers(eqx.Module):
         return tuple(b for part in self.parts for b in part.fresh(place))
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return tuple(b for part in self.parts for b in part.torn(place))
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
@@ -118,13 +118,13 @@ class Layers(eqx.Module):
         each = [part.touched(own) for part, own in self._shares(memory)]
         return jnp.any(jnp.stack(each))
 
-    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on an outermost branch; see :meth:`Interface.swept`."""
-        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, parting))
+        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, unloading))
 
-    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the outermost branch."""
-        return [d for part, own in self._shares(memory) for d in part.merging(own, parting)]
+        return [d for part, own in self._shares(memory) for d in part.merging(own, unloading)]
 
     def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""

@@ -35,7 +35,7 @@ class BranchTable(eqx.Module):
     ----------
     cells
         Coefficients of powers, shape (lifts, branches, cells, rows, 6): lift 0 and 1, the branch
-        of approach and that of parting, the mechanisms of the force and then the energy.
+        of loading and that of unloading, the mechanisms of the force and then the energy.
     origin
         Separation [m] at which the even cells begin.
     step
@@ -50,7 +50,7 @@ class BranchTable(eqx.Module):
     names: tuple[str, ...] = eqx.field(static=True)
 
     def __call__(
-        self, separation: jax.Array, lift: int, parting: jax.Array | bool = False
+        self, separation: jax.Array, lift: int, unloading: jax.Array | bool = False
     ) -> jax.Array:
         """The forces and the energy at separations [m] of any shape, one row each."""
         count = self.cells.shape[2]
@@ -60,7 +60,7 @@ class BranchTable(eqx.Module):
         place = jnp.where(deep, _OCTAVE * jnp.log2(1.0 - jnp.where(deep, x, 0.0) / _depth(even)), x)
         cell = jnp.clip(jnp.floor(place), 0, jnp.where(deep, _DEEP, even) - 1)
         t = (place - cell)[..., None]
-        index = jnp.asarray(parting) * count + jnp.where(deep, even, 0) + cell
+        index = jnp.asarray(unloading) * count + jnp.where(deep, even, 0) + cell
         table = self.cells[lift].reshape(-1, *self.cells.shape[3:])
         found = table.at[index.astype(int)].get(mode="promise_in_bounds")
         value = found[..., -1]

@@ -150,16 +150,16 @@ class PlasticInterface(eqx.Module):
         """Whether anything was pressed so that it stays changed."""
         return jnp.any(memory[0] < jnp.inf)
 
-    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on an outermost branch: of bonds alone, the asperities stay as they are."""
         deepest, *thresholds = memory
-        end = jnp.where(parting, -jnp.inf, jnp.inf)
+        end = jnp.where(unloading, -jnp.inf, jnp.inf)
         return (deepest, *(jnp.full_like(b, end) for b in thresholds))
 
-    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the outermost branch."""
         return [
-            b + jnp.where(parting, law.breaking_gap, law.forming_gap)
+            b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
             for law, b in zip(self.hysteretic, memory[1:], strict=True)
         ]
 

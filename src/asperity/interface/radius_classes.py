@@ -118,7 +118,7 @@ class RadiusClasses(eqx.Module):
         return self.stacked.fresh(place) * self.count
 
     def torn(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory on the outermost parting branch: all bonds that can hold do."""
+        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return self.stacked.torn(place) * self.count
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
@@ -135,14 +135,14 @@ class RadiusClasses(eqx.Module):
         """Whether anything was pressed so that it stays changed."""
         return self.stacked.touched(memory)
 
-    def swept(self, memory: Memory, parting: jax.Array | bool) -> Memory:
+    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on an outermost branch; see :meth:`Interface.swept`."""
-        return self.stacked.swept(memory, parting)
+        return self.stacked.swept(memory, unloading)
 
-    def merging(self, memory: Memory, parting: jax.Array) -> list[jax.Array]:
+    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the outermost branch."""
         shares = zip(self.parts, self._shares(memory), strict=True)
-        return [d for part, own in shares for d in part.merging(own, parting)]
+        return [d for part, own in shares for d in part.merging(own, unloading)]
 
     def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""

@@ -133,7 +133,7 @@ Radii = tuple[jax.Array, jax.Array]
 
 
 class End(NamedTuple):
-    """Where the contact ends on parting: at its fold, or where its radius a is 0.
+    """Where the contact ends on unloading: at its fold, or where its radius a is 0.
 
     Attributes
     ----------

@@ -100,7 +100,7 @@ class Law(eqx.Module):
 
     @property
     def breaking_gap(self) -> jax.Array | float:
-        """Gap [m] at which a bond breaks on parting, not below ``forming_gap``."""
+        """Gap [m] at which a bond breaks on unloading, not below ``forming_gap``."""
         return self.forming_gap
 
     @property

@@ -69,16 +69,16 @@ class Maugis(Law):
     @property
     def breaking_gap(self) -> jax.Array:
         outside = self.forming_gap + self._depth * 0.5 * falling_apart(self.elasticity) ** 2
-        return jnp.where(self.elasticity < SOFT, outside, self.parting_gap)
+        return jnp.where(self.elasticity < SOFT, outside, self.rupture_gap)
 
     @property
-    def parting_gap(self) -> jax.Array:
-        """Gap [m] at which the contact proper ends on parting."""
+    def rupture_gap(self) -> jax.Array:
+        """Gap [m] at which the contact proper ends on unloading."""
         return -self._depth * contact_end(self.elasticity).overlap
 
     @property
     def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (self.parting_gap, self.breaking_gap)
+        return (self.rupture_gap, self.breaking_gap)
 
     @property
     def length(self) -> jax.Array | float:

@@ -28,7 +28,7 @@ REGIONS = {
 
 _ACROSS, _UP = 80, 60
 _COLUMNS = ("elasticity parameter [1]", "load parameter [1]")
-_TINTS = ("motion", "parting", "capillary", "apex", "central", "quiet")
+_TINTS = ("motion", "unloading", "capillary", "apex", "central", "quiet")
 _MARKS = "osDhpP"
 
 

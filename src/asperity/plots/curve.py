@@ -19,7 +19,7 @@ def panels(curve: Curve) -> Row:
     Without a pull-off the difference of the branches stands there: the loss.
     """
     row = [Panel(1.0, lambda axes: _branches(axes, curve, zoomed=False))]
-    push = np.nanmax(curve.force_approach, initial=0.0)
+    push = np.nanmax(curve.force_loading, initial=0.0)
     if 0.0 < _DWARFED * curve.pull_off < push:
         row.append(Panel(1.0, lambda axes: _branches(axes, curve, zoomed=True)))
     elif curve.pull_off <= 0.0 < curve.loss:
@@ -29,14 +29,14 @@ def panels(curve: Curve) -> Row:
 
 def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
     metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
-    size = np.array([curve.pull_off]) if zoomed else curve.force_approach
+    size = np.array([curve.pull_off]) if zoomed else curve.force_loading
     newtons, unit = style.scale_of(size, unit="N")
     gap = curve.rigid_separation / metres
-    inward, outward = curve.force_approach / newtons, curve.force_parting / newtons
+    inward, outward = curve.force_loading / newtons, curve.force_unloading / newtons
     axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
     axes.fill_between(gap, inward, outward, color=colour("lost"), lw=0.0, label="energy lost")
-    axes.plot(gap, inward, color=colour("approach"), label="approach")
-    axes.plot(gap, outward, color=colour("parting"), ls=(0, (5, 1.5)), label="parting")
+    axes.plot(gap, inward, color=colour("loading"), label="loading")
+    axes.plot(gap, outward, color=colour("unloading"), ls=(0, (5, 1.5)), label="unloading")
     axes.set_xlabel(style.label("rigid separation", length_unit))
     axes.set_ylabel(style.label("force", unit))
     axes.margins(x=0.02)
@@ -49,14 +49,14 @@ def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
 
 def _difference(axes: Axes, curve: Curve) -> None:
     metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
-    difference = curve.force_parting - curve.force_approach
+    difference = curve.force_unloading - curve.force_loading
     newtons, unit = style.scale_of(difference, unit="N")
     gap = curve.rigid_separation / metres
     axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
     axes.fill_between(gap, 0.0, difference / newtons, color=colour("lost"), lw=0.0)
-    axes.plot(gap, difference / newtons, color=colour("parting"))
+    axes.plot(gap, difference / newtons, color=colour("unloading"))
     axes.set_xlabel(style.label("rigid separation", length_unit))
-    axes.set_ylabel(style.label("parting less approach", unit))
+    axes.set_ylabel(style.label("unloading less loading", unit))
     axes.margins(x=0.02)
     axes.set_title("energy lost")
 
@@ -64,8 +64,8 @@ def _difference(axes: Axes, curve: Curve) -> None:
 def _frame(axes: Axes, curve: Curve, metres: float, newtons: float) -> None:
     """The part of the curve where forces are of the size of the pull-off."""
     pull = curve.pull_off
-    near = np.minimum(np.abs(curve.force_approach), np.abs(curve.force_parting)) < 1.5 * pull
-    felt = np.maximum(np.abs(curve.force_approach), np.abs(curve.force_parting)) > 0.01 * pull
+    near = np.minimum(np.abs(curve.force_loading), np.abs(curve.force_unloading)) < 1.5 * pull
+    felt = np.maximum(np.abs(curve.force_loading), np.abs(curve.force_unloading)) > 0.01 * pull
     span = curve.rigid_separation[near & felt]
     if span.size > 1:
         margin = 0.08 * np.ptp(span)

@@ -14,7 +14,7 @@ from asperity.plots import style
 from asperity.plots.style import Panel
 from asperity.results.colours import colour
 
-_TINTS = ("motion", "parting", "apex", "gas")
+_TINTS = ("motion", "unloading", "apex", "gas")
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _BEYOND = "#eeeeee"
 

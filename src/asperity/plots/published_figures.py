@@ -18,7 +18,7 @@ from asperity.regimes import Frame
 from asperity.results.colours import colour
 
 _SHORT = 12
-_ORDER = ("approach", "parting", "capillary", "apex", "central")
+_ORDER = ("loading", "unloading", "capillary", "apex", "central")
 
 
 def figures(drawings: dict[str, Drawing]) -> dict[str, Figure]:
@@ -131,7 +131,7 @@ def _distribution(axes: Axes, drawing: Drawing) -> None:
     axes.set_ylabel(style.label("probability density", f"1/{unit}"))
     axes.yaxis.set_major_locator(MaxNLocator(5))
     names = [name for name in drawing.series if name != "Gaussian"]
-    for name, mark, tint in zip(names, "o^", ("approach", "parting"), strict=False):
+    for name, mark, tint in zip(names, "o^", ("loading", "unloading"), strict=False):
         x, y = drawing.series[name]
         axes.plot(x / wide, y * wide, mark, ms=2.5, mew=0.0, color=colour(tint),
                   label=legible(name, 30))  # fmt: skip
@@ -147,7 +147,7 @@ def _map(axes: Axes, drawing: Drawing) -> None:
     frame = Frame.around([])
     adhesion_map.draw_lines(axes, lines, frame)
     adhesion_map.name_regions(axes, frame, [])
-    marks = (("closest approach", "o", "motion"), ("at rest, exact model", "^", "parting"))
+    marks = (("closest approach", "o", "motion"), ("at rest, exact model", "^", "unloading"))
     for name, mark, tint in marks:
         x, y = drawing.series[name]
         axes.plot(x, y, mark, ms=4.0, mew=0.0, color=colour(tint), label=name)
@@ -187,7 +187,7 @@ def _bands(axes: Axes, drawing: Drawing) -> None:
     low = -0.9 * flat / wide
     axes.fill_between(x / wide, np.maximum(profile / wide, low), low, color="#DDDDDD", lw=0.0)
     axes.plot(x / wide, profile / wide, color=colour("contact"), lw=0.8)
-    axes.plot(tops / wide, heights / wide, "o", ms=2.5, mew=0.0, color=colour("parting"),
+    axes.plot(tops / wide, heights / wide, "o", ms=2.5, mew=0.0, color=colour("unloading"),
               label="summits")  # fmt: skip
     reduced = flat / drawing.about["rms height [m]"]
     axes.axhline(flat / wide, color=colour("quiet"), lw=2.0, label=f"flat, λ' = {reduced:.3g}")
@@ -206,7 +206,7 @@ def _gap(axes: Axes, drawing: Drawing) -> None:
     wide, tall = _scaled(axes, drawing.columns[:2], [r[near]], [h[near]])
     axes.plot(r[near] / wide, h[near] / tall, color=colour("motion"), label="d + S(r)")
     name = f"edge, λ' = {edge / rms:.3g}"
-    axes.axhline(edge / tall, color=colour("parting"), lw=0.8, ls="--", label=name)
+    axes.axhline(edge / tall, color=colour("unloading"), lw=0.8, ls="--", label=name)
     axes.fill_between(r[near] / wide, h[near] / tall, edge / tall, where=h[near] < edge,
                       color=colour("lost"), lw=0.0, label="conjunction")  # fmt: skip
     axes.set_xlim(0.0, r[near].max() / wide)

@@ -66,7 +66,7 @@ def draw_spectrum(axes: Axes, description: Description) -> None:
     shown = []
     for name, one, tint in (
         ("along x", description.along_x, "motion"),
-        ("along y", description.along_y, "parting"),
+        ("along y", description.along_y, "unloading"),
     ):
         if one is not None and (points := _binned(one))[0].size:
             axes.plot(*points, color=colour(tint), label=name,
@@ -94,7 +94,7 @@ def draw_quantiles(axes: Axes, description: Description, both: Composite | None 
     heading(axes, "Quantiles; straight: Gaussian")
     shown = [
         ("heights", description.heights, "motion", "o"),
-        ("summits", description.summit_heights, "parting", "^"),
+        ("summits", description.summit_heights, "unloading", "^"),
         ("convolution", both and both.height_gaussianity, "capillary", "s"),
     ]
     ends = [shape.quantiles for _, shape, _, _ in shown if shape]
@@ -197,7 +197,7 @@ def _convolved(
     """The convolution of two distributions about a mean height [m], a point in each bin."""
     middle = 0.5 * (edges[1:] + edges[:-1])
     density = in_bins(distribution, edges - mean)
-    axes.plot(middle / factor, density * factor, "o", ms=2.0, mew=0.0, color=colour("parting"),
+    axes.plot(middle / factor, density * factor, "o", ms=2.0, mew=0.0, color=colour("unloading"),
               label="convolution")  # fmt: skip
 
 

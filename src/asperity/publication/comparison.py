@@ -23,9 +23,11 @@ def table_1(case: Case) -> list[dict[str, Any]]:
     assert rough is not None
     assert liquid is not None
     assert adhesion.work is not None
-    assert adhesion.range is not None
+    assert adhesion.equilibrium_spacing is not None
     modulus = contact_modulus(body, flat)
-    tabor = tabor_number(rough.asperity_radius, adhesion.work, modulus, adhesion.range)
+    tabor = tabor_number(
+        rough.asperity_radius, adhesion.work, modulus, adhesion.equilibrium_spacing
+    )
     lines = (
         ("Young's modulus of silica", "Pa", 80e9, body.youngs_modulus),
         ("Young's modulus of silicon carbide", "Pa", 161e9, flat.youngs_modulus),
@@ -67,7 +69,7 @@ def computed(result: Result) -> dict[str, float | None]:
     decrements = result.measures["log_decrement"]
     return {
         "log_decrement": decrements[0] if decrements else None,
-        "stiction_time": result.measures["stiction_time"],
+        "time_to_rest": result.measures["time_to_rest"],
         "power_loss": mean_power_loss(result),
     }
 
@@ -97,7 +99,7 @@ def power_of(entry: Entry, result: Result) -> dict[str, float | None]:
     """Published power loss over the two energy balances, and over the mean of eq. 23."""
     published, measures = entry.values["power_loss"], result.measures
     first, mean = measures["power_loss"][0], mean_power_loss(result)
-    rest, release = measures["stiction_time"], result.ledger["initial"]
+    rest, release = measures["time_to_rest"], result.ledger["initial"]
     whole = release / rest if rest else None
 
     def ratio(balance: float | None) -> float | None:

@@ -164,11 +164,11 @@ class Evidence:
         """
         motion, gravity = self.wet, self.case.launch.gravity
         rise = first(motion.measures["rebound_height"])
-        fall = self.wet_inputs.release_gap - float(self.contact.pressure.end)
+        fall = self.wet_inputs.release_separation - float(self.contact.pressure.end)
         if not rise > 0.0:
             return float(np.nan)
         flight = sqrt(2.0 * fall / gravity) + sqrt(2.0 * rise / gravity)
-        return first(motion.measures["impact_time"]) - flight
+        return first(motion.measures["rebound_period"]) - flight
 
     @cached_property
     def conjunction(self) -> tuple[np.ndarray, ...]:
@@ -205,9 +205,9 @@ class Evidence:
         """Contact of bodies that never touched, by the exact model."""
         return _first_touch(self.exact_contact, jnp.asarray(separation))
 
-    def parting_forces(self, separations: np.ndarray) -> np.ndarray:
+    def retraction_forces(self, separations: np.ndarray) -> np.ndarray:
         """Elastic force, adhesion and menisci [N] of bodies that begin to part at separations."""
-        return np.asarray(_parting(self.contact, jnp.asarray(separations)))
+        return np.asarray(_retraction(self.contact, jnp.asarray(separations)))
 
     def kelvin_radius(self, humidity: float) -> float:
         """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
@@ -234,7 +234,7 @@ def _variants(case: Case) -> dict[str, Case]:
         "printed": case.replace({"publication.polynomials": "printed"}),
         "wet": case,
         "dry": case.replace({"capillary.model": "none", **few}),
-        "both_ways": case.replace({"publication.pull_while_parting_only": False}),
+        "both_ways": case.replace({"publication.attraction_during_retraction_only": False}),
         "exact_damp": exact.replace({"capillary.humidity": damp}),
     }
 
@@ -247,7 +247,7 @@ def _printed_off(stop: threading.Event) -> dict[str, float]:
         motion = solve(entry.within(case), name=entry.name, stop=stop, critical=False)
         found = {
             "log_decrement": first(motion.measures["log_decrement"]),
-            "stiction_time": motion.measures["stiction_time"] or np.nan,
+            "time_to_rest": motion.measures["time_to_rest"] or np.nan,
         }
         for name, value in found.items():
             published = entry.values[name]
@@ -264,12 +264,12 @@ def _fresh_state(contact: Contact, separation: jax.Array) -> FirstTouch:
 _first_touch = Program(_fresh_state)
 
 
-def _parting_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:
+def _retraction_parts(contact: PublishedContact, separations: jax.Array) -> jax.Array:
     memory = jnp.ones(())
     return jax.vmap(lambda separation: contact.state(separation, memory).parts)(separations)
 
 
-_parting = Program(_parting_parts)
+_retraction = Program(_retraction_parts)
 
 
 def first(values: list[float | None]) -> float:

@@ -220,7 +220,7 @@ def _wet_and_dry(evidence: Evidence) -> Drawing:
 def _forces(evidence: Evidence) -> Drawing:
     """With two values where the pulls set in, at each closest approach."""
     wet, turns = evidence.wet, evidence.wet.events["deepest_time"]
-    begun = evidence.parting_forces(wet.events["deepest_separation"]).T
+    begun = evidence.retraction_forces(wet.events["deepest_separation"]).T
     forces: dict[str, np.ndarray] = dict(
         zip(evidence.contact.components, begun, strict=True),
         weight=np.full(turns.size, -evidence.weight),

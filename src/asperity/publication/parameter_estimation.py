@@ -20,10 +20,10 @@ from ..numerics.compilation import Program
 from ..results.measures import measure
 from .published_tables import Entry
 
-WITHIN = {"log_decrement": 0.03, "stiction_time": 0.05}
+WITHIN = {"log_decrement": 0.03, "time_to_rest": 0.05}
 """Relative difference up to which a published number counts as met."""
 
-UNKNOWN = ("conjunction_ends", "release_gap", "capillary_factor")
+UNKNOWN = ("conjunction_ends", "release_separation", "capillary_factor")
 
 _IMPACTS = 96
 """A motion of more impacts counts as one that does not rest."""
@@ -45,20 +45,20 @@ class Inputs(NamedTuple):
     ----------
     conjunction_ends
         Stribeck parameter at which the conjunction ends.
-    release_gap
+    release_separation
         Separation at the release [m].
     capillary_factor
         Factor on the menisci.
     """
 
     conjunction_ends: float
-    release_gap: float
+    release_separation: float
     capillary_factor: float
 
     @classmethod
     def of(cls, case: Case) -> Inputs:
         """Those of a case."""
-        assumed, gap = case.publication, case.launch.release_gap
+        assumed, gap = case.publication, case.launch.release_separation
         assert assumed is not None
         assert gap is not None
         return cls(assumed.conjunction_ends, gap, assumed.capillary_factor)
@@ -68,7 +68,7 @@ class Inputs(NamedTuple):
         return case.replace(
             {
                 "publication.conjunction_ends": float(self.conjunction_ends),
-                "impact.release_gap": f"{float(self.release_gap)!r} m",
+                "impact.release_separation": f"{float(self.release_separation)!r} m",
                 "publication.capillary_factor": float(self.capillary_factor),
             }
         )
@@ -198,7 +198,7 @@ class _Problem:
         problem = build(plain)
         assert isinstance(problem.contact, PublishedContact)
         self._contact, self._body = problem.contact, problem.body
-        self._rest = plain.numerics.rest
+        self._rest = plain.numerics.rest_height_ratio
         surfaces = sorted({entry.surface for entry in entries})
         self._surfaces = jnp.asarray(surfaces)
         self._highest = max(height for _, height in surfaces)
@@ -231,7 +231,7 @@ class _Problem:
     def start(self, given: Inputs) -> np.ndarray:
         """The best of the inputs given and of a coarse net at their end of the conjunction."""
         edge = given.conjunction_ends
-        clearance = max(given.release_gap - edge * self._highest, 1e-10)
+        clearance = max(given.release_separation - edge * self._highest, 1e-10)
         net = [np.array([edge, np.log(c), np.log(f)]) for c in _CLEARANCES for f in _FACTORS]
         here = np.array([edge, np.log(clearance), np.log(given.capillary_factor)])
         return min([here, *net], key=self.rms)
@@ -281,7 +281,7 @@ def _fly(
         tolerance = Tolerance(rest=rest, max_impacts=_IMPACTS)  # type: ignore[arg-type]
         motion = simulate(replace(contact, pressure=pressure), released, tolerance=tolerance)
         found = measure(motion, released)
-        return jnp.stack([found.log_decrement[0], found.stiction_time])
+        return jnp.stack([found.log_decrement[0], found.time_to_rest])
 
     return jax.vmap(one)(surfaces)
 

@@ -12,7 +12,7 @@ from ..config import Case
 from ..errors import InputError
 from ..units import shown
 
-QUANTITIES = ("log_decrement", "stiction_time", "power_loss")
+QUANTITIES = ("log_decrement", "time_to_rest", "power_loss")
 """What the tables hold of each case."""
 
 SIZE_LIMIT = 1 << 20
@@ -21,7 +21,7 @@ SIZE_LIMIT = 1 << 20
 _COLUMNS = {
     "asperity_radius_nm": -9,
     "rms_height_nm": -9,
-    "stiction_time_us": -6,
+    "time_to_rest_us": -6,
     "power_loss_1e-4_nW": -13,
     "log_decrement": 0,
 }
@@ -30,7 +30,7 @@ _COLUMNS = {
 _RANGE = {
     "asperity_radius_nm": (1e-3, 1e6),
     "rms_height_nm": (1e-3, 1e6),
-    "stiction_time_us": (1e-6, 1e12),
+    "time_to_rest_us": (1e-6, 1e12),
     "power_loss_1e-4_nW": (1e-12, 1e12),
     "log_decrement": (1e-9, 1e3),
 }
@@ -87,7 +87,7 @@ def read_tables(file: str | None = None) -> list[Entry]:
     ----------
     file
         Path of a file with the columns ``table, asperity_radius_nm, rms_height_nm,
-        stiction_time_us, power_loss_1e-4_nW, log_decrement``. A value that is not known is
+        time_to_rest_us, power_loss_1e-4_nW, log_decrement``. A value that is not known is
         left empty; lines that begin with ``#`` are comments.
 
     Raises
@@ -156,7 +156,7 @@ def _entry(row: dict[str, str], place: str, file: str) -> Entry:
     assert height is not None
     values = {
         "log_decrement": found["log_decrement"],
-        "stiction_time": found["stiction_time_us"],
+        "time_to_rest": found["time_to_rest_us"],
         "power_loss": found["power_loss_1e-4_nW"],
     }
     return Entry(int(table), radius, height, values)

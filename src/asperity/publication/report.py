@@ -13,10 +13,10 @@ from typing import Any
 from ..results.summary import WIDTH, amount
 from .reproduce import Reproduction
 
-_UNITS = {"log_decrement": "", "stiction_time": "s", "power_loss": "W"}
+_UNITS = {"log_decrement": "", "time_to_rest": "s", "power_loss": "W"}
 _NAMES = {
     "log_decrement": "decrement",
-    "stiction_time": "stiction time",
+    "time_to_rest": "stiction time",
     "power_loss": "power loss",
 }
 _ROWS = (
@@ -116,7 +116,11 @@ def _inputs(done: Reproduction) -> list[str]:
     how = "found again from the tables" if found["refitted"] else "of the built-in case"
     spread = found.get("uncertainty") or {}
     lines = [f"Inputs that the text does not name, {how}"]
-    for name, unit in (("conjunction_ends", ""), ("release_gap", "m"), ("capillary_factor", "")):
+    for name, unit in (
+        ("conjunction_ends", ""),
+        ("release_separation", "m"),
+        ("capillary_factor", ""),
+    ):
         within = f" +- {amount(spread[name], unit)}" if spread.get(name) else ""
         lines.append(f"  {name.replace('_', ' '):<20}{amount(found[name], unit)}{within}")
     rms = found["rms"]
@@ -127,7 +131,7 @@ def _inputs(done: Reproduction) -> list[str]:
         lines.append("  other ends of the conjunction, with the best gap and factor:")
         for held in found["profile"]:
             lines.append(
-                f"    {held['conjunction_ends']:<6g}{amount(held['release_gap'], 'm'):<12}"
+                f"    {held['conjunction_ends']:<6g}{amount(held['release_separation'], 'm'):<12}"
                 f"{amount(held['capillary_factor']):<10}rms {100.0 * held['rms']:.2f} %"
             )
     return lines

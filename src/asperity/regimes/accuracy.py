@@ -27,7 +27,7 @@ def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
         The motion.
     """
     kinetic, weight = float(problem.body.kinetic), float(problem.body.weight)
-    if case.impact is None or case.impact.release_gap is not None or not weight > 0.0:
+    if case.impact is None or case.impact.release_separation is not None or not weight > 0.0:
         return []
     fall = max(float(motion.release) - kinetic, weight * float(problem.body.release))
     if fall <= HASTENED * kinetic:
@@ -35,7 +35,8 @@ def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     added = 100.0 * ((1.0 + fall / kinetic) ** 0.5 - 1.0)
     return [
         f"forces reach so far that the body is released at {fall / weight * 1e6:.3g} um, and "
-        f"falling from there adds {added:.2g} % to its speed: give `release_gap`, or no gravity"
+        f"falling from there adds {added:.2g} % to its speed: give `release_separation`, or no "
+        "gravity"
     ]
 
 

@@ -134,15 +134,15 @@ def gas_warnings(case: Case, central: float, motion: Motion) -> list[str]:
 
 def _film_stops(case: Case, gas: Gas) -> float:
     """Separation below which the film does not thin [m]."""
-    if gas.closest_gap is not None:
-        return gas.closest_gap
+    if gas.cutoff_separation is not None:
+        return gas.cutoff_separation
     assert case.asperities is not None
     return case.asperities.rms_height
 
 
 def _far(case: Case) -> list[str]:
     """A film so thick that the sphere is not close to the wall."""
-    release, radius = case.launch.release_gap, case.body.radius
+    release, radius = case.launch.release_separation, case.body.radius
     if release is None or release <= _CLOSE * radius:
         return []
     return [

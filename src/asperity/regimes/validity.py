@@ -111,11 +111,13 @@ def _one_law(case: Case, problem: Problem) -> list[str]:
     rough, given, table = case.asperities, case.adhesion, case.roughness
     if given.model != "auto" or rough is None or rough.summits is None or table is None:
         return []
-    if table.source != "summits" or given.work is None or given.range is None:
+    if table.source != "summits" or given.work is None or given.equilibrium_spacing is None:
         return []
     ends = np.quantile(rough.summits.radii, (0.05, 0.95))
     laws = [
-        choose_adhesion(tabor_number(tip, given.work, problem.modulus, given.range)).law
+        choose_adhesion(
+            tabor_number(tip, given.work, problem.modulus, given.equilibrium_spacing)
+        ).law
         for tip in ends
     ]
     if laws == [problem.adhesion.law] * 2:
@@ -227,7 +229,7 @@ def _publication(case: Case) -> list[str]:
     if assumed is None:
         return []
     pulls = "adhesion and menisci pull only while the bodies part, " * (
-        assumed.pull_while_parting_only
+        assumed.attraction_during_retraction_only
     )
     factor = assumed.capillary_factor
     menisci = f", and menisci pull {factor:g} times as much as their equation says" * (
@@ -298,7 +300,7 @@ def _ledger(problem: Problem, motion: Motion) -> list[str]:
     if isinstance(problem.contact, ElasticContact) and problem.creep is None:
         what += f" or the deformation on {problem.contact.rings} rings"
     rows = motion.impacts
-    off = float(np.max(np.where(rows.made, rows.closure, 0.0)) / rows.fastest[0])
+    off = float(np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.fastest[0])
     if off <= CLOSED:
         return []
     return [

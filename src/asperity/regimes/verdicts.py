@@ -115,7 +115,7 @@ def _missing(regime: Regime) -> str:
     """Why there is no Tabor number."""
     if regime.adhesion_law == "none":
         return "the case has no adhesion"
-    return "`adhesion.range` is not given"
+    return "`adhesion.equilibrium_spacing` is not given"
 
 
 def _tabor(regime: Regime) -> Verdict:
@@ -156,7 +156,7 @@ def _load(situation: Situation) -> Verdict:
         said = f"below {low:.3g}: adhesion counts beside contact at closest approach"
     else:
         said = f"adhesion is negligible above a limit between {low:.3g} and {high:.3g}, which "
-        said += "`adhesion.range` decides"
+        said += "`adhesion.equilibrium_spacing` decides"
     return Verdict(value, "1", said)
 
 

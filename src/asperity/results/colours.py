@@ -25,8 +25,8 @@ COLOURS = {
     "lost_waves": "#8C6D31",
     "lost_plastic": "#E69F00",
     "lost_viscous": "#7F3C8D",
-    "approach": "#0072B2",
-    "parting": "#D55E00",
+    "loading": "#0072B2",
+    "unloading": "#D55E00",
     "lost": "#F5D0B5",
 }
 """Okabe and Ito's, which the colour-blind can tell apart."""

@@ -254,7 +254,7 @@ def assessment_of(
 def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     """The dimensionless numbers of a case, by its contact at closest approach."""
     adhesion, rough = case.adhesion, case.asperities
-    work, spacing = adhesion.work, adhesion.range
+    work, spacing = adhesion.work, adhesion.equilibrium_spacing
     tabor = plasticity = load = None
     if work and spacing:
         tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
@@ -336,8 +336,8 @@ def _losses_along(
 def _known(motion: Motion) -> float:
     """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
     impacts = motion.impacts
-    closure = np.max(np.where(impacts.made, impacts.closure, 0.0))
-    return float(max(2.0 * closure, CLOSED * impacts.fastest[0]))
+    energy_balance_error = np.max(np.where(impacts.made, impacts.energy_balance_error, 0.0))
+    return float(max(2.0 * energy_balance_error, CLOSED * impacts.fastest[0]))
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
@@ -362,9 +362,9 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
     for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
     impact_energy = float(motion.impacts.fastest[0])
-    closure = float(np.max(motion.impacts.closure[:made])) / impact_energy
+    energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
     initial = float(motion.release) - weight * _zero_height(motion.datum)
-    return {"initial": initial, "lost": lost, "closure": closure}
+    return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
 
 
 def _plain(measures: Measures, made: int) -> dict[str, Any]:

@@ -42,7 +42,7 @@ class Measures(NamedTuple):
         released within the end of contact the static equilibrium alone is asked.
     capture_time
         Time of the first impact, of all, that captures so [s].
-    stiction_time
+    time_to_rest
         Time from release to rest [s].
     rebound_height
         Apex above the static equilibrium [m], per impact.
@@ -50,7 +50,7 @@ class Measures(NamedTuple):
         Square root of the ratio of energies after and before, per impact.
     log_decrement
         Logarithm of the ratio of successive rebound heights, the first against the release.
-    impact_time
+    rebound_period
         Time from maximum to maximum [s].
     power_loss
         Energy lost from maximum to maximum over that time [W].
@@ -83,11 +83,11 @@ class Measures(NamedTuple):
     maximum_speed: jax.Array
     captured: jax.Array
     capture_time: jax.Array
-    stiction_time: jax.Array
+    time_to_rest: jax.Array
     rebound_height: jax.Array
     restitution: jax.Array
     log_decrement: jax.Array
-    impact_time: jax.Array
+    rebound_period: jax.Array
     power_loss: jax.Array
     power_loss_published: jax.Array
     contact_time: jax.Array
@@ -183,11 +183,11 @@ def measure(
         maximum_speed=_speed(rows.fastest[0], body.mass),
         captured=captures[0],
         capture_time=jnp.where(jnp.any(captures), capture_time, jnp.nan),
-        stiction_time=jnp.where(rests, end.time, jnp.nan),
+        time_to_rest=jnp.where(rests, end.time, jnp.nan),
         rebound_height=height,
         restitution=_restitution(motion, body, reference, outside, gone, captures, energies),
         log_decrement=jnp.where(fits, decrement, jnp.nan),
-        impact_time=period,
+        rebound_period=period,
         power_loss=(total - _shift(total, 0.0)) / safe * blank,
         power_loss_published=rows.pull_work / safe * blank,
         contact_time=jnp.where(outside, first.time, jnp.nan),
@@ -210,8 +210,8 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
     pulled = unloading(table, rise)
     peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
     end = end_of_contact(table, jnp.maximum(peak, pulled.pull_off))
-    inwards = time_to(body, _ahead(table, fall, parting=False), fall.kinetic, False, end)
-    outwards = time_to(body, _ahead(table, rise, parting=True), rise.kinetic, True, end)
+    inwards = time_to(body, _ahead(table, fall, unloading=False), fall.kinetic, False, end)
+    outwards = time_to(body, _ahead(table, rise, unloading=True), rise.kinetic, True, end)
     time = rows.deepest_time[0] - fall.begun - inwards + outwards
     return FirstContact(
         end=end,
@@ -231,16 +231,16 @@ def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
     return jnp.maximum(jnp.maximum(carried, pull_off), _LEAST * peak)
 
 
-def _ahead(table: Table, phase: Phase, *, parting: bool) -> Pieces:
-    return join(table, phase.branch, phase.inner, phase.start, jnp.asarray(parting))
+def _ahead(table: Table, phase: Phase, *, unloading: bool) -> Pieces:
+    return join(table, phase.branch, phase.inner, phase.start, jnp.asarray(unloading))
 
 
 def passing_at(body: Body, table: Table, rows: Impacts, place: jax.Array) -> Passing:
     """Kinetic energies [J] with which each impact passes a place [m] outside contact."""
 
-    def passing(phase: Phase, parting: bool) -> jax.Array:
-        pieces = _ahead(table, phase, parting=parting)
-        return kinetic_at(body, pieces, phase.kinetic, jnp.asarray(parting), place)
+    def passing(phase: Phase, unloading: bool) -> jax.Array:
+        pieces = _ahead(table, phase, unloading=unloading)
+        return kinetic_at(body, pieces, phase.kinetic, jnp.asarray(unloading), place)
 
     return (
         jax.vmap(lambda phase: passing(phase, False))(rows.fall),

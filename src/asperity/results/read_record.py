@@ -108,12 +108,12 @@ def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[s
     numbers: dict[str, Any] = {key: float(arrays[key]) for key in _NUMBERS}
     for key in _MAYBE:
         numbers[key] = None if np.isnan(arrays[key]) else float(arrays[key])
-    along = ("rigid_separation", "central_separation", "force_approach", "force_parting")
+    along = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
     return Curve(
         **shared,
         **{key: arrays[key] for key in along},
-        components_approach=_below(arrays, "force_approach_"),
-        components_parting=_below(arrays, "force_parting_"),
+        components_loading=_below(arrays, "force_loading_"),
+        components_unloading=_below(arrays, "force_unloading_"),
         **numbers,
         warnings=json.loads(said["warnings"]),
     )

@@ -51,11 +51,11 @@ _MEASURES = {
     "maximum_force": ("N", "largest contact force of the first impact"),
     **_PULL,
     "capture_time": ("s", "time from release to capture"),
-    "stiction_time": ("s", "time from release to rest"),
+    "time_to_rest": ("s", "time from release to rest"),
     "rebound_height": ("m", "height of rebound above static equilibrium"),
     "restitution": ("1", "coefficient of restitution"),
     "log_decrement": ("1", "logarithmic decrement of the height"),
-    "impact_time": ("s", "time from one turning point to the next"),
+    "rebound_period": ("s", "time from one turning point to the next"),
     "power_loss": ("W", "energy lost over the impact time"),
     "power_loss_published": ("W", "one-way work over the impact time, as the publication counts"),
 }
@@ -119,7 +119,7 @@ def versions() -> dict[str, str]:
 def json_object(result: ResultData | CurveData) -> dict[str, Any]:
     """What ``--json`` prints: plain Python values in SI, None where a value does not apply."""
     if isinstance(result, CurveData):
-        arrays = ("rigid_separation", "central_separation", "force_approach", "force_parting")
+        arrays = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
         return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE, "warnings")}
     parts = ("regime", "measures", "ledger", "warnings")
     found = {name: plain(getattr(result, name)) for name in parts}
@@ -194,9 +194,9 @@ def _ledger(ledger: Mapping[str, Any]) -> list[Variable]:
     for name, value in (ledger.get("lost") or {}).items():
         meaning = f"energy lost to {name} over the whole motion"
         found.append(Variable(f"total_lost_{name}", (), _numbers(value), "J", meaning))
-    closure = _numbers(ledger.get("closure"))
+    energy_balance_error = _numbers(ledger.get("energy_balance_error"))
     meaning = "largest departure of the energy balance over the impact energy"
-    found.append(Variable("ledger_closure", (), closure, "1", meaning))
+    found.append(Variable("energy_balance_error", (), energy_balance_error, "1", meaning))
     return found
 
 
@@ -213,8 +213,8 @@ def _curve_variables(curve: CurveData) -> list[Variable]:
         ),
     ]
     for way, total, components in (
-        ("approach", curve.force_approach, curve.components_approach),
-        ("parting", curve.force_parting, curve.components_parting),
+        ("loading", curve.force_loading, curve.components_loading),
+        ("unloading", curve.force_unloading, curve.components_unloading),
     ):
         meaning = f"contact force, {way}, positive apart"
         found.append(Variable(f"force_{way}", along, total, "N", meaning))

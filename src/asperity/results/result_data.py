@@ -85,9 +85,9 @@ class CurveData:
         What the case is called.
     rigid_separation, central_separation : numpy.ndarray
         Rigid separation, and with the bodies' deformation on the way in [m].
-    force_approach, force_parting : numpy.ndarray
+    force_loading, force_unloading : numpy.ndarray
         Contact force [N], positive apart; as long as ``rigid_separation``.
-    components_approach, components_parting : dict of str to numpy.ndarray
+    components_loading, components_unloading : dict of str to numpy.ndarray
         The forces taken apart by mechanism [N].
     deepest : float
         Closest rigid separation [m].
@@ -114,10 +114,10 @@ class CurveData:
     name: str
     rigid_separation: np.ndarray
     central_separation: np.ndarray
-    force_approach: np.ndarray
-    force_parting: np.ndarray
-    components_approach: Arrays
-    components_parting: Arrays
+    force_loading: np.ndarray
+    force_unloading: np.ndarray
+    components_loading: Arrays
+    components_unloading: Arrays
     deepest: float
     pull_off: float
     pull_off_separation: float | None

@@ -26,7 +26,7 @@ _FEW_MORE = 3  # are shown too
 _COLUMNS = (
     ("height", "rebound_height", "m"),
     ("restitution", "restitution", ""),
-    ("period", "impact_time", "s"),
+    ("period", "rebound_period", "s"),
 )
 _PUBLISHED = (
     ("decrement", "log_decrement", ""),
@@ -139,7 +139,7 @@ def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
         *_pull(measures),
         ("impacts", str(len(restitution))),
         ("time to capture", amount(measures.get("capture_time"), "s")),
-        ("time to rest", amount(measures.get("stiction_time"), "s")),
+        ("time to rest", amount(measures.get("time_to_rest"), "s")),
     ]
 
 
@@ -170,8 +170,8 @@ def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
     for (mechanism, energy), share in zip(lost.items(), share_texts(lost.values()), strict=True):
         about = f"  ({share} of the energy lost)" if energy > 0.0 else ""
         rows.append((f"lost to {mechanism}", amount(energy, "J") + about))
-    closure = ledger.get("closure")
-    closed = "-" if closure is None else f"{closure:.1e} of the impact energy"
+    error = ledger.get("energy_balance_error")
+    closed = "-" if error is None else f"{error:.1e} of the impact energy"
     return [*rows, ("balance closes to", closed)]
 
 

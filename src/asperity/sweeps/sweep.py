@@ -55,8 +55,8 @@ def sweep(
         different. Any key of a case but those of ``[output]`` and keys that take a list.
     keep
         Measures that are kept, those that a study can keep: ``"restitution"``, ``"captured"``,
-        ``"pull_off"``, ``"critical_velocity"`` and so on. ``outcome``, ``impacts``, ``closure`` and
-        ``reason`` are there in any case.
+        ``"pull_off"``, ``"critical_velocity"`` and so on. ``outcome``, ``impacts``,
+        ``energy_balance_error`` and ``reason`` are there in any case.
     impacts
         Of measures with a value for each impact: how many are kept, along a dimension ``impact``.
         Without it the first alone, without that dimension.

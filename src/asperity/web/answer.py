@@ -57,8 +57,8 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
         },
         "curve": {
             "separation": packed(curve.rigid_separation),
-            "approach": packed(curve.force_approach),
-            "parting": packed(curve.force_parting),
+            "loading": packed(curve.force_loading),
+            "unloading": packed(curve.force_unloading),
             **{
                 name: plain(getattr(curve, name))
                 for name in ("deepest", "pull_off", "work_of_separation", "preload", "loss")

@@ -173,8 +173,10 @@ class _Examination:
             self._row("", f"{seconds(one.first)} the first time: {kept.asked - kept.read} pieces "
                           f"of code compiled, {kept.read} from the cache")  # fmt: skip
             limit = 1e-6
-            words = f"closes to {one.closure:.1e}, {limit:.0e} allowed"
-            self._check(f"energy of `{name}`", one.closure <= limit, words, "its conservation")
+            words = f"closes to {one.energy_balance_error:.1e}, {limit:.0e} allowed"
+            self._check(
+                f"energy of `{name}`", one.energy_balance_error <= limit, words, "its conservation"
+            )
             found.append({"case": name, "impacts": one.impacts, "warm": one.warm,
                           "first": one.first, "compiling": kept.compiling,
                           "compiled": kept.asked - kept.read, "cached": kept.read})  # fmt: skip

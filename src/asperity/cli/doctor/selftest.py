@@ -134,7 +134,7 @@ def _heights(case: Case) -> tuple[float, float]:
 
 def _ledger() -> float:
     impacts = _motion(builtin("published")).impacts
-    return float(impacts.closure[0] / impacts.fastest[0])
+    return float(impacts.energy_balance_error[0] / impacts.fastest[0])
 
 
 def _motion(case: Case) -> Motion:

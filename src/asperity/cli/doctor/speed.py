@@ -25,7 +25,7 @@ class Speed(NamedTuple):
         What was compiled, or read from the cache, the first time.
     impacts
         Impacts of the motion.
-    closure
+    energy_balance_error
         Of its energy ledger, over the impact energy [-].
     """
 
@@ -34,7 +34,7 @@ class Speed(NamedTuple):
     warm: float
     compiled: Compilation
     impacts: int
-    closure: float
+    energy_balance_error: float
 
 
 NAMES = tuple(sorted(BUILTINS, key=len))
@@ -58,4 +58,6 @@ def speed(name: str) -> Speed:
         solve(case, name=name, critical=False)
         times.append(time.perf_counter() - begun)
     impacts = len(result.measures["restitution"])
-    return Speed(name, first, min(times), compiled, impacts, float(result.ledger["closure"]))
+    return Speed(
+        name, first, min(times), compiled, impacts, float(result.ledger["energy_balance_error"])
+    )

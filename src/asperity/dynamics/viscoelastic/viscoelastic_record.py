@@ -146,7 +146,7 @@ class Ledger(NamedTuple):
             "touching": middle.rows[0, TOUCHING],
             "bonds": middle.rows[0, quantities(self.contact).bonds],
             "lost": end.lost[0],
-            "closure": np.max(np.abs(energy - origin)),
+            "energy_balance_error": np.max(np.abs(energy - origin)),
             "pull_work": np.asarray(_pull_work(Samples.joined([middle, one.rise.samples]))),
             "fastest": np.asarray(fastest),
             "fall": self._phase(one.begin, middle),

@@ -108,7 +108,7 @@ class AdhesiveThorntonNing(eqx.Module):
         return self._tip(deepest).bonded_energy(gap + self.residual(deepest))
 
     def breaking_gap(self, deepest: jax.Array) -> jax.Array:
-        """Gap [m] at which the bond breaks on parting."""
+        """Gap [m] at which the bond breaks on unloading."""
         return self._tip(deepest).breaking_gap - self.residual(deepest)
 
     def forming_gap(self, deepest: jax.Array) -> jax.Array:

@@ -46,8 +46,10 @@ def claims(evidence: Evidence) -> list[Claim]:
 def _models(evidence: Evidence) -> list[Claim]:
     case, rough = evidence.case, evidence.rough
     modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    assert case.adhesion.range is not None
-    tabor = regimes.tabor_number(rough.asperity_radius, evidence.work, modulus, case.adhesion.range)
+    assert case.adhesion.equilibrium_spacing is not None
+    tabor = regimes.tabor_number(
+        rough.asperity_radius, evidence.work, modulus, case.adhesion.equilibrium_spacing
+    )
     elasticity = regimes.ELASTICITY_PER_TABOR * tabor
     psi = float(evidence.wet.regime["plasticity_index"])
     load = evidence.load_at_rest
@@ -85,7 +87,7 @@ def _polynomials(evidence: Evidence) -> list[Claim]:
         other = (
             f". With an end at {PRINTED.conjunction_ends:.4g} and other inputs the printed "
             f"polynomials give the decrements within {100.0 * worst['log_decrement']:.1f} % and "
-            f"the stiction times within {100.0 * worst['stiction_time']:.1f} %: the tables do not "
+            f"the stiction times within {100.0 * worst['time_to_rest']:.1f} %: the tables do not "
             "tell which were used"
         )
     return [

@@ -40,7 +40,7 @@ def _damping(evidence: Evidence) -> list[Claim]:
               f"only while the bodies part, which no equation says, they give {wet:.4f}",
               either(restitution < 0.999, AGREES, UNEXPLAINED)),
         Claim("Release gap, density, number of bands, grid", "-",
-              f"{amount(inputs.release_gap, 'm')} from rest, found from the tables; "
+              f"{amount(inputs.release_separation, 'm')} from rest, found from the tables; "
               f"{case.body_density:g} kg/m^3, assumed",
               MISSING),
         Claim("The force of the menisci (eq. 15)", "1",
@@ -53,7 +53,7 @@ def _damping(evidence: Evidence) -> list[Claim]:
 
 def _tables(evidence: Evidence) -> list[Claim]:
     out = []
-    for quantity, name in (("log_decrement", "decrements"), ("stiction_time", "stiction times")):
+    for quantity, name in (("log_decrement", "decrements"), ("time_to_rest", "stiction times")):
         rows = [row for row in evidence.rows if row["quantity"] == quantity]
         known = {
             (row["asperity_radius"], row["rms_height"]): row["relative_difference"]
@@ -94,7 +94,7 @@ def _gas(evidence: Evidence) -> Claim:
     slip = air.slip_length(ATMOSPHERE, ROOM_TEMPERATURE)
     path = air.free_path(ATMOSPHERE, ROOM_TEMPERATURE)
     gas, _ = gas_decrement(
-        release=inputs.release_gap,
+        release=inputs.release_separation,
         rebound=edge,
         mass=case.body_density * 4.0 / 3.0 * pi * case.body.radius**3,
         gravity=case.launch.gravity,
@@ -146,7 +146,7 @@ def _exact(evidence: Evidence) -> list[Claim]:
     edge, release, _ = evidence.wet_inputs
     push = float(evidence.exact_state(release).force) / evidence.weight
     capillary = evidence.exact.case.capillary
-    gap = evidence.exact.case.launch.release_gap
+    gap = evidence.exact.case.launch.release_separation
     assert capillary.humidity is not None
     assert gap is not None
     found, damp = (

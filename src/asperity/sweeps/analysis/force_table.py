@@ -59,8 +59,8 @@ def branches_of(curve: Curve) -> tuple[Branch, Branch]:
         Where the curve has too few points, or one at no positive distance.
     """
     return (
-        _branch("APPROACH", curve, curve.force_approach),
-        _branch("PARTING", curve, curve.force_parting),
+        _branch("LOADING", curve, curve.force_loading),
+        _branch("UNLOADING", curve, curve.force_unloading),
     )
 
 
@@ -85,7 +85,7 @@ def _branch(name: str, curve: Curve, force: np.ndarray) -> Branch:
 def write_force_table(curve: Curve, file: str | os.PathLike[str], *, force: bool = False) -> Path:
     """Write force and energy against distance for LAMMPS, ``fix wall/table`` in units ``si``.
 
-    Sections ``APPROACH`` and ``PARTING``: a potential has one value at each distance, so that
+    Sections ``LOADING`` and ``UNLOADING``: a potential has one value at each distance, so that
     each section alone loses no energy; the header says how much the cycle of both loses.
 
     Parameters

@@ -59,7 +59,7 @@ class Front:
 
 
 def goal_of(text: str) -> Goal:
-    """A goal such as ``min:stiction_time``.
+    """A goal such as ``min:time_to_rest``.
 
     Raises
     ------

@@ -27,7 +27,7 @@ MOST_PANELS = 9
 PREFIXED = ("m", "s", "N", "J", "W", "Pa", "m/s", "m/s^2", "J/m^2", "N/m", "Pa s")
 """Units that take a prefix in front."""
 
-_BESIDE = ("closure", "turning_separation", "turning_time")
+_BESIDE = ("energy_balance_error", "turning_separation", "turning_time")
 
 
 @dataclass(frozen=True)

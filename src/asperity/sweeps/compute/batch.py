@@ -179,9 +179,15 @@ def _write(study: Study, out: Columns, group: Group, flight: Flight) -> None:
     flown = np.flatnonzero(made > 0)
     if flown.size:
         at = rows[flown]
-        closure = np.full(made.size, np.nan)
-        closure[flown] = past["closure"][flown].max(axis=1) / past["fastest"][flown, 0]
-        found = {**flight.measures, **_totals(group, flight), "closure": closure}
+        energy_balance_error = np.full(made.size, np.nan)
+        energy_balance_error[flown] = (
+            past["energy_balance_error"][flown].max(axis=1) / past["fastest"][flown, 0]
+        )
+        found = {
+            **flight.measures,
+            **_totals(group, flight),
+            "energy_balance_error": energy_balance_error,
+        }
         for column in study.columns:
             if column.along == "turn":
                 out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[flown]
@@ -205,7 +211,7 @@ def _totals(group: Group, flight: Flight) -> Columns:
     """What is read off the impacts themselves."""
     past, contact, body = flight.history, group.flown.contact, group.flown.body
     out = {
-        "end_time": flight.end_time,
+        "last_apex_time": flight.last_apex_time,
         "deepest": past["deepest"][:, 0],
         "energy_lost": flight.lost.sum(axis=1),
     }
@@ -260,10 +266,10 @@ def _read(result: Result) -> dict[str, Any]:
     return {
         **result.measures,
         "impacts": len(result.measures["restitution"]),
-        "closure": ledger["closure"],
+        "energy_balance_error": ledger["energy_balance_error"],
         "energy_lost": sum(ledger["lost"].values()),
         **{f"lost_{name}": value for name, value in ledger["lost"].items()},
-        "end_time": times[-1],
+        "last_apex_time": times[-1],
         "deepest": places[0],
         "turning_separation": places,
         "turning_time": times,

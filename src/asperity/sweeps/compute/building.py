@@ -174,7 +174,7 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     alone = [_flown(each, build(each, _UNRESOLVED)) for each in both]
     flown = _spread(ends, alone, rows.size)
     tolerance = np.broadcast_to(np.asarray(case.tolerance.relative, float), rows.shape)
-    launched = case.launch.release_gap is None
+    launched = case.launch.release_separation is None
     group = Group(rows, flown, tolerance, launched=launched)
     return group, problem.late is not None or problem.creep is not None
 
@@ -220,7 +220,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
             continue
         flown = jax.tree_util.tree_map(_raised, _flown(case, problem), is_leaf=_is_array)
         tolerance = np.asarray([case.tolerance.relative])
-        launched = case.launch.release_gap is None
+        launched = case.launch.release_separation is None
         group = Group(np.asarray([row]), flown, tolerance, ((case, problem),), launched)
         out.groups.append(_coarser(group))
 

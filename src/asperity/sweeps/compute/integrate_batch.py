@@ -32,7 +32,7 @@ class Flight(NamedTuple):
         Codes of `asperity.dynamics.record.ENDS`.
     made
         Number of impacts.
-    end_time
+    last_apex_time
         Time of the last apex [s].
     lost
         Energy lost in all, by mechanism [J].
@@ -50,7 +50,7 @@ class Flight(NamedTuple):
 
     outcome: np.ndarray
     made: np.ndarray
-    end_time: np.ndarray
+    last_apex_time: np.ndarray
     lost: np.ndarray
     history: dict[str, np.ndarray]
     measures: dict[str, np.ndarray]
@@ -252,7 +252,7 @@ class _Flying:
         unsolved = ~(residual <= _RESIDUAL)
         for lane in np.flatnonzero((inside | unsolved) & (places >= 0)).tolist():
             self.reasons[int(places[lane])] = (
-                f"`release_gap` must lie outside contact: the force there must be below "
+                f"`release_separation` must lie outside contact: the force there must be below "
                 f"{limit[lane]:.3g} N, and is {force[lane]:.3g} N; "
                 f"got {release[lane] * 1e9:.6g} nm"
                 if inside[lane]
@@ -275,18 +275,18 @@ class _Flying:
         ends: Any = (None,) * 4
         count = self.made.size
         lost, release = np.zeros((count, 0)), np.full(count, np.nan)
-        outcome, end_time = self.outcome, np.full(count, np.nan)
+        outcome, last_apex_time = self.outcome, np.full(count, np.nan)
         if self._ends is not None:
             ends = jax.tree_util.tree_unflatten(self._shape, self._ends)
             release, progress = np.where(self.made > 0, ends[1], np.nan), ends[2]
             outcome = np.where(self.made > 0, progress.outcome, self.outcome)
-            end_time = np.where(self.made > 0, progress.time, np.nan)
+            last_apex_time = np.where(self.made > 0, progress.time, np.nan)
             lost = progress.lost
         failed = ENDS.index(Outcome.FAILED)
         for place in flown[outcome[flown] == failed].tolist():
             self.reasons[place] = "the motion left the tabulated separations"
         return Flight(
-            outcome, self.made, end_time, lost, self.history, measures, self.at_depth,
+            outcome, self.made, last_apex_time, lost, self.history, measures, self.at_depth,
             self.reasons, release,
         )  # fmt: skip
 

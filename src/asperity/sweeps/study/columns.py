@@ -58,7 +58,12 @@ class Column(NamedTuple):
 ALWAYS: tuple[Column, ...] = (
     Column("outcome", "int8", "", "how the motion ended"),
     Column("impacts", "int32", "1", "number of impacts"),
-    Column("closure", "float64", "1", "closure of the energy ledger over the impact energy"),
+    Column(
+        "energy_balance_error",
+        "float64",
+        "1",
+        "largest error of the energy balance over the impact energy",
+    ),
     Column("reason", "uint8", "", "why the case failed", "byte"),
 )
 """Columns of every study."""
@@ -72,8 +77,8 @@ MEASURES: tuple[Column, ...] = (
     Column("captured", "int8", "", "whether the first impact captures"),
     Column("critical_velocity", "float64", "m/s", "critical velocity"),
     Column("capture_time", "float64", "s", "time of the impact that captures"),
-    Column("stiction_time", "float64", "s", "time from release to rest"),
-    Column("end_time", "float64", "s", "time of the last apex"),
+    Column("time_to_rest", "float64", "s", "time from release to rest"),
+    Column("last_apex_time", "float64", "s", "time of the last apex"),
     Column("deepest", "float64", "m", "deepest rigid separation of the first impact"),
     Column("contact_time", "float64", "s", "time in contact at the first impact"),
     Column("maximum_force", "float64", "N", "largest contact force of the first impact"),
@@ -86,7 +91,7 @@ MEASURES: tuple[Column, ...] = (
     Column("rebound_height", "float64", "m", "rebound height", "impact"),
     Column("restitution", "float64", "1", "coefficient of restitution", "impact"),
     Column("log_decrement", "float64", "1", "logarithmic decrement", "impact"),
-    Column("impact_time", "float64", "s", "time from apex to apex", "impact"),
+    Column("rebound_period", "float64", "s", "time from apex to apex", "impact"),
     Column("power_loss", "float64", "W", "power lost from apex to apex", "impact"),
 )
 """What ``keep`` can name; those along "impact" have one value for each impact kept."""
@@ -97,7 +102,7 @@ MOTION: tuple[Column, ...] = (
 )
 """What ``motions = true`` keeps: deepest point and apex of each impact, in order of time."""
 
-DEFAULT_KEEP = ("captured", "impact_speed", "restitution", "stiction_time", "energy_lost")
+DEFAULT_KEEP = ("captured", "impact_speed", "restitution", "time_to_rest", "energy_lost")
 """Measures of a study that names none."""
 
 

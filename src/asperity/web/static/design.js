@@ -168,7 +168,7 @@ export class Design {
     const { motion, curve } = answer;
     for (const key of ["time", "separation", "central_separation", "speed"]) motion[key] = unpacked(motion[key]);
     for (const part of [motion.forces, motion.energies]) for (const key in part) part[key] = unpacked(part[key]);
-    for (const key of ["separation", "approach", "parting"]) curve[key] = unpacked(curve[key]);
+    for (const key of ["separation", "loading", "unloading"]) curve[key] = unpacked(curve[key]);
     this.answer = answer;
     this.refusal = null;
     this.shown = number;

@@ -14,10 +14,10 @@ const MEASURES = [
   ["work of separation", (a) => amount(a.measures.work_of_separation, "J") + preload(a)],
   ["impacts", (a) => amount(a.motion.impacts)],
   ["time to capture", (a) => amount(a.measures.capture_time, "s")],
-  ["time to rest", (a) => amount(a.measures.stiction_time, "s")],
+  ["time to rest", (a) => amount(a.measures.time_to_rest, "s")],
   ["loss in and out", (a) => amount(a.curve.loss, "J")],
   ["energy at release", (a) => amount(a.ledger.initial, "J")],
-  ["balance closes to", (a) => `${(a.ledger.closure ?? NaN).toExponential(1)} of the impact energy`],
+  ["balance closes to", (a) => `${(a.ledger.energy_balance_error ?? NaN).toExponential(1)} of the impact energy`],
   ["adhesion law", (a) => a.regime.adhesion_law ?? "–"],
   ["liquid", (a) => a.regime.wetting ?? "–"],
 ];
@@ -103,7 +103,7 @@ export class Panels {
     const told = answered.map(({ answer, letter }) => `${letter}: pull-off ${amount(answer.curve.pull_off, "N")}, loss ${amount(answer.curve.loss, "J")}`);
     this.charts.curve.show({
       groups: answered.map((d) => group(d, d.answer.curve.separation, [
-        ["approach", d.answer.curve.approach, "#0072B2"], ["parting", d.answer.curve.parting, "#D55E00"],
+        ["loading", d.answer.curve.loading, "#0072B2"], ["unloading", d.answer.curve.unloading, "#D55E00"],
       ])),
       axes: { x: ["rigid separation", "m"], y: ["force", "N"] }, spoken: told.join("; "),
     });
