@@ -80,7 +80,8 @@ def test_the_same_result_gives_the_same_bytes_in_another_process(result: Result,
     here = records.encode(result)
     program = (
         "import sys; sys.path.insert(0, sys.argv[1]); from fake_result import bounce; "
-        "from asperity.results import records; sys.stdout.buffer.write(records.encode(bounce(impacts=4)))"
+        "from asperity.results import records; "
+        "sys.stdout.buffer.write(records.encode(bounce(impacts=4)))"
     )
     command = [sys.executable, "-c", program, str(Path(__file__).parents[1])]
     there = subprocess.run(command, capture_output=True, check=True).stdout
