@@ -117,7 +117,8 @@ def test_zsh_and_fish_get_their_own_form():
 
 def test_completion_imports_nothing_heavy():
     program = (
-        "import sys; from typer.main import get_command; from asperity.cli import app, completing; "
+        "import sys; from typer.main import get_command; "
+        "from asperity.cli import app, shell_completion; "
         "get_command(app); shell_completion.case(''); shell_completion.material(''); "
         "heavy = ('jax', 'matplotlib', 'pint', 'xarray', 'numpy', 'netCDF4', 'pydantic'); "
         "print([name for name in heavy if name in sys.modules])"

@@ -341,7 +341,7 @@ def test_a_reader_is_bounded_in_memory_and_time(tmp_path: Path):
     import subprocess
 
     program = (
-        "import resource as r; from asperity.web import reading as m; m._bound(); "
+        "import resource as r; from asperity.web import upload_reader as m; m._bound(); "
         "print(r.getrlimit(r.RLIMIT_AS)[1], r.getrlimit(r.RLIMIT_CPU)[1]); bytes(m.MEMORY)"
     )
     command = [sys.executable, "-c", program]

@@ -131,7 +131,7 @@ def _earlier(folder: Path, what: str, named: Source) -> bool:
 
 def _task(request: _Request, stop: threading.Event, progress: Progress | None) -> Answer:
     """Load what computes, and compute; in a thread of its own."""
-    home = "restitution" if request.what == "restitution_curve" else "solver"
+    home = "sweeps.restitution_curve" if request.what == "restitution_curve" else "solver"
     function = getattr(importlib.import_module(f"asperity.{home}"), request.what)
     named, tell = request.source, progress
     if request.folder is not None:

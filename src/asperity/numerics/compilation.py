@@ -34,7 +34,7 @@ P = ParamSpec("P")
 Answer = TypeVar("Answer")
 Record = TypeVar("Record")
 
-_OURS = f"{__package__}."
+_OURS = f"{__package__.partition('.')[0]}."
 
 HELD = 16
 """Compiled forms of one program that are kept in memory, those used last.
@@ -212,7 +212,7 @@ def _all_ours(structure: Any) -> bool:
 def _ground() -> str:
     """What every program depends on: these sources, and the versions of JAX."""
     digest = hashlib.sha256()
-    root = Path(__file__).parent
+    root = Path(__file__).parents[1]  # the whole package
     for file in sorted(root.rglob("*.py")):
         digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes() + b"\0")
     versions = jax.__version__, jaxlib.version.__version__, eqx.__version__

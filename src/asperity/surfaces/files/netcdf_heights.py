@@ -94,7 +94,7 @@ def _opened(content: bytes, file: str) -> Any:
 
 def _as_classic(content: bytes, file: str) -> bytes:
     """A netCDF-4 file in the classic format, made by a program that may fail alone."""
-    program = [sys.executable, "-I", str(Path(__file__).with_name("classic.py"))]
+    program = [sys.executable, "-I", str(Path(__file__).with_name("classic_netcdf.py"))]
     try:
         done = subprocess.run(
             [*program, str(MOST_PIXELS)],
