@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from math import pi
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..laws.adhesion_choice import AdhesionChoice
 from .boundaries import SHARE
 from .dimensionless_numbers import ELASTICITY_PER_TABOR
+
+if TYPE_CHECKING:
+    from ..laws.adhesion_choice import AdhesionChoice
 
 DMT_BELOW = 0.1
 """Tabor number below which adhesion leaves the shape of a contact alone; the publication's rule."""
@@ -67,6 +69,8 @@ def choose_adhesion(tabor: float) -> AdhesionChoice:
     tabor
         Tabor number of one asperity, or of the smooth body; positive.
     """
+    from ..laws.adhesion_choice import AdhesionChoice  # here: the room of laws loads JAX
+
     elasticity = ELASTICITY_PER_TABOR * tabor
     near = tuple(border for border in _BORDERS if _is_near(elasticity, border))
     if elasticity < RIGID_BELOW:
