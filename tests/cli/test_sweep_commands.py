@@ -123,10 +123,8 @@ def test_repair_names_corrupt_chunks_and_computes_them_again(
     assert json.loads(ran.stdout)["computed"] == 16
     written, *corrupt = ran.stderr.splitlines()
     assert "impacts/zarr.json: written again" in written
-    assert ["energy_balance_error, task 3" in corrupt[0], "impacts, task 5" in corrupt[1]] == [
-        True,
-        True,
-    ]
+    told = " ".join(" ".join(corrupt).split())
+    assert told.index("energy_balance_error, task 3") < told.index("impacts, task 5")
     assert contents(path) == undisturbed
 
 
