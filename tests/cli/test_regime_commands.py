@@ -19,7 +19,7 @@ from asperity.cli import app
 from asperity.config import Case
 from asperity.plots import adhesion_map
 from asperity.regimes import Frame, Place
-from asperity.results import records
+from asperity.results.read_record import read
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BOUNCE = str(EXAMPLES / "jkr-bounce.toml")
@@ -216,7 +216,7 @@ def test_a_border_near_by_is_a_warning_only_where_the_program_chose(auto: Case):
 
 def test_a_record_says_that_the_law_was_chosen_and_repeats_the_choice(auto: Case, place: Path):
     assert call("run", written("auto.toml", auto), "-o", "first").exit_code == 0
-    record = records.read("first/record.nc")
+    record = read("first/record.nc")
     assert record.case == auto
     assert record.case.adhesion.model == "auto"
     assert record.regime["adhesion_law"] == "dmt"

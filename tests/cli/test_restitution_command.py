@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import asperity
 from asperity.cli import app
-from asperity.results.records import read
+from asperity.results.read_record import read
 from jkr_spheres import CRITICAL, SMOOTH, smooth
 
 FILES = [f"restitution.{kind}" for kind in ("csv", "json", "png", "svg", "txt")]

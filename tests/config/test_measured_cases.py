@@ -14,6 +14,7 @@ from asperity.errors import InputError, Outcome
 from asperity.model import build
 from asperity.regimes.validity import CLASSED, _one_law
 from asperity.results import records
+from asperity.results.read_record import read
 from asperity.surfaces import Topography
 from asperity.surfaces.description.sum_of_maps import added
 from asperity.surfaces.description.summits import find_summits
@@ -149,7 +150,7 @@ def test_the_ledger_closes_with_either_source_on_either_body(case, source, chang
 def test_record_and_json_hold_the_surface_and_come_back(solved, folder, tmp_path):
     path = tmp_path / "record.nc"
     path.write_bytes(records.encode(solved))
-    surface = records.read(path).surface
+    surface = read(path).surface
     assert surface == records.plain(solved.surface)
     assert surface["source"] == "summits"
     assert surface["summits"] == solved.case.asperities.summits.count

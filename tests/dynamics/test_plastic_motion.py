@@ -10,7 +10,7 @@ from asperity.config import builtin, load
 from asperity.errors import InputError, SimulationError
 from asperity.integration import _REFINEMENTS
 from asperity.model import build
-from asperity.results.records import read as read_record
+from asperity.results.read_record import read as read_record
 
 CASE = """
 [body]

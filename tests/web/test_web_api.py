@@ -30,7 +30,7 @@ from asperity.config.case_file import builtin_text
 from asperity.config.fields import Length, Number, entry
 from asperity.config.problems import tables_of
 from asperity.errors import Outcome
-from asperity.results import records
+from asperity.results.read_record import read
 from asperity.results.record_layout import json_object
 from asperity.results.result import Result
 from asperity.results.verdict import sentence, verdict
@@ -475,7 +475,7 @@ def test_a_record_is_that_of_run_and_runs_again(
 ):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "record.nc").write_bytes(downloaded(client, tables, "record.nc"))
-    found = records.read("record.nc")
+    found = read("record.nc")
     assert isinstance(found, Result)
     assert (found.name, len(found.measures["restitution"])) == ("drop", 12)
     result = asperity.solve(found.case, name="drop")
@@ -490,7 +490,7 @@ def test_a_record_is_that_of_run_and_runs_again(
     assert ran.exit_code == 0, ran.output
     assert strict(ran.stdout) == strict(json.dumps(json_object(found)))
     (tmp_path / "curve.nc").write_bytes(downloaded(client, tables, "curve.nc"))
-    assert records.read("curve.nc").case == found.case
+    assert read("curve.nc").case == found.case
 
 
 def test_tables_have_a_column_a_quantity_named_with_its_unit(

@@ -23,6 +23,7 @@ from asperity.config import load_file
 from asperity.config.case_file import builtin_text, tables
 from asperity.errors import InputError
 from asperity.results import records
+from asperity.results.read_record import read
 from asperity.results.record_layout import json_object
 from asperity.solver import explore
 from asperity.surfaces.generation.generate import self_affine
@@ -239,7 +240,7 @@ def test_what_is_downloaded_names_the_users_file_alone(
     assert token.encode() not in answer.content
     if name.endswith(".nc"):
         (tmp_path / name).write_bytes(answer.content)
-        found = records.read(str(tmp_path / name))
+        found = read(str(tmp_path / name))
         assert found.case.roughness is not None
         assert found.case.roughness.files == ["scan.csv"]
         told = json.dumps([found.case.toml(), json_object(found), records.attributes(found)])
