@@ -180,7 +180,7 @@ def test_a_film_bounds_what_menisci_span():
 @pytest.mark.parametrize(
     ("changes", "key", "message"),
     [
-        ({"capillary.humidity": 1.0}, "capillary.humidity", "without a `adsorbed_film_thickness`"),
+        ({"capillary.humidity": 1.0}, "capillary.humidity", "without an `adsorbed_film_thickness`"),
         ({"capillary.model": "kelvin-filling"}, "capillary.surface_rms_height", "must be given"),
         (
             {"capillary.surface_rms_height": "11 nm"},

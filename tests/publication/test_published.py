@@ -233,7 +233,7 @@ def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
     assert case.kelvin_radius == np.inf
     assert build(case).contact.pressure.reach is None
     with pytest.raises(
-        InputError, match=r"`humidity` must lie in \[0, 1\) without a `adsorbed_film_thickness`"
+        InputError, match=r"`humidity` must lie in \[0, 1\) without an `adsorbed_film_thickness`"
     ):
         case.replace({"publication": None})
 

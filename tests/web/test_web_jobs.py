@@ -12,7 +12,8 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -68,6 +69,12 @@ async def happens(what: Callable[[], bool]) -> None:
         await asyncio.sleep(0.005)
 
 
+def run_apart(main: Coroutine[Any, Any, Any]) -> Any:
+    """Runs it in a thread of its own: a browser's tests leave their event loop in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, main).result()
+
+
 def quick(answer: object) -> Task:
     return lambda tell, stop: answer
 
@@ -85,7 +92,7 @@ def test_of_one_asker_the_newest_is_answered_and_the_older_is_told():
         assert await last(newer) == Event("answer", "new")
         await happens(held.left.is_set)  # it hears of it at its next report
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_an_older_one_that_ends_late_does_not_speak():
@@ -109,7 +116,7 @@ def test_an_older_one_that_ends_late_does_not_speak():
         assert [event.kind async for event in older.events(LONG)] == ["replaced"]
         assert (await last(newer)).value == "new"
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_askers_do_not_replace_each_other():
@@ -120,7 +127,7 @@ def test_askers_do_not_replace_each_other():
         held.may_end.set()
         assert (await last(first)).value == "first"
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_one_that_waits_is_replaced_without_being_begun():
@@ -136,7 +143,7 @@ def test_one_that_waits_is_replaced_without_being_begun():
         assert (await last(waiting)).kind == "replaced"
         assert not never.begun.is_set()
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_who_leaves_stops_the_computation():
@@ -149,7 +156,7 @@ def test_who_leaves_stops_the_computation():
         assert held.stop.is_set()
         assert not held.may_end.is_set()
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_too_many_that_wait_are_refused_and_room_comes_back():
@@ -165,7 +172,7 @@ def test_too_many_that_wait_are_refused_and_room_comes_back():
         assert (await last(newer)).value == "newer"
         assert (await last(desk.ask("one more", quick("now")))).value == "now"
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_what_nobody_waits_for_is_done_one_at_a_time_until_a_question_comes():
@@ -185,7 +192,7 @@ def test_what_nobody_waits_for_is_done_one_at_a_time_until_a_question_comes():
         await happens(again.over.is_set)
         assert not again.stop.is_set()
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_what_nobody_waits_for_is_not_begun_after_a_question():
@@ -201,7 +208,7 @@ def test_what_nobody_waits_for_is_not_begun_after_a_question():
         assert [(await last(job)).kind for job in (running, waiting)] == ["answer", "answer"]
         assert not never.begun.is_set()
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 def test_patience_ends_a_computation():
@@ -212,7 +219,7 @@ def test_patience_ends_a_computation():
         assert "no answer within" in str(event.value)
         await happens(held.left.is_set)
 
-    asyncio.run(ask())
+    run_apart(ask())
 
 
 @pytest.mark.parametrize("error", [InputError("`radius` must be positive"), SimulationError("no")])
@@ -225,7 +232,7 @@ def test_what_is_wrong_with_a_case_is_told_and_is_no_failure(
     async def ask() -> Event:
         return await last(Desk(threads=1).ask("A", refuse))
 
-    assert asyncio.run(ask()) == Event("error", error)
+    assert run_apart(ask()) == Event("error", error)
     assert not caplog.records
 
 
@@ -237,7 +244,7 @@ def test_a_thread_survives_a_failure_which_is_told_and_logged(caplog: pytest.Log
         desk = Desk(threads=1)
         return [await last(desk.ask("A", task)) for task in (fail, quick("well"))]
 
-    failed, well = asyncio.run(ask())
+    failed, well = run_apart(ask())
     assert isinstance(failed.value, ZeroDivisionError)
     assert well.value == "well"
     assert [record.levelno for record in caplog.records] == [logging.ERROR]
@@ -313,7 +320,7 @@ def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch):
         job = Desk(threads=1).ask("A", task)
         return [event.value async for event in job.events(LONG) if event.kind == "progress"]
 
-    told = [text for _, text in asyncio.run(ask())]
+    told = [text for _, text in run_apart(ask())]
     impacts = [text for text in told if text.startswith("impact")]
     assert [*told[:3], told[-1]] == ["loading", "compilation", "impact 0", "measures"]
     assert 2 <= len(impacts) <= 50
@@ -476,7 +483,7 @@ def test_who_sends_too_slowly_is_not_waited_for(
         await asyncio.sleep(LONG)
 
     begin = time.monotonic()
-    assert asyncio.run(asked(client.app, path, b"{", never, whole=False)) == 408
+    assert run_apart(asked(client.app, path, b"{", never, whole=False)) == 408
     assert time.monotonic() - begin < 5.0
     assert client.post("/api/surfaces/a.csv", content=b"1").status_code == 200
 
@@ -499,7 +506,7 @@ def test_few_uploads_arrive_at_a_time(client: TestClient):
         end.set()
         await asyncio.gather(*arriving, return_exceptions=True)
 
-    asyncio.run(ask())
+    run_apart(ask())
     assert client.post("/api/surfaces/a.csv", content=b"1").status_code == 200
 
 
@@ -521,7 +528,7 @@ def test_who_closes_the_page_stops_its_computation(
 
     desk, begin = page_of(client).desk, time.monotonic()
     body = json.dumps({"case": tables, "asker": "leaver"}).encode()
-    asyncio.run(asked(client.app, path, body, when))
+    run_apart(asked(client.app, path, body, when))
     assert not begun.is_set() or ended.wait(LONG)
     assert time.monotonic() - begin < 5.0
     assert not [asker for asker in desk._newest if asker.startswith("leaver")]
