@@ -26,7 +26,7 @@ from asperity.publication.evidence import PRINTED
 from asperity.results.measures import measure
 
 from . import laws, published_method, surfaces, sweeps, web
-from .plain_scipy import Drop, fly
+from .plain_scipy import Drop, integrate
 
 PROGRAM = Path(sys.executable).with_name("asperity")
 BATCH = 1000  # a thread; two threads
@@ -113,7 +113,7 @@ def _drop(problem: Problem) -> Drop:
         rms=float(interface.heights.rms),
         work=float(dmt.work_of_adhesion),
         pull=float(meniscus.pull),
-        reach=float(meniscus.reach),
+        interaction_range=float(meniscus.interaction_range),
         mass=float(body.mass),
         gravity=float(body.gravity),
         release=float(body.release),
@@ -135,7 +135,7 @@ def _flight(impacts: int) -> Callable[..., Any]:
 def _accuracy(problem: Problem) -> None:
     apex, made, _ = _flight(IMPACTS)(problem.contact, problem.body)
     count = min(int(made), 5)
-    other = np.array(fly(_drop(problem), count, tolerance=1e-11))
+    other = np.array(integrate(_drop(problem), count, tolerance=1e-11))
     off = float(np.max(np.abs(np.asarray(apex)[:count] - other)) / problem.body.release)
     _line(f"largest relative difference of {count} apexes from the SciPy script", f"{off:.1e}")
 
@@ -144,7 +144,7 @@ def _one_motion(problem: Problem) -> None:
     go = _flight(IMPACTS)
     made = int(jax.block_until_ready(go(problem.contact, problem.body))[1])
     ours = _best(lambda: jax.block_until_ready(go(problem.contact, problem.body)), 20)
-    theirs = _best(lambda: fly(_drop(problem), made), 1)
+    theirs = _best(lambda: integrate(_drop(problem), made), 1)
     _line(f"one warm rigid motion of {2 * made} phases", f"{ours * 1e3:.2f} ms", "10 ms")
     _line("  the SciPy script on the same motion", f"{theirs * 1e3:.0f} ms")
     _line("  ratio", f"{theirs / ours:.0f}")
@@ -276,7 +276,7 @@ def _by_method(problem: Problem, impacts: int, **options: Any) -> tuple[float, f
     """First decrement by the publication's method, and how long its motion took [s]."""
     method = published_method.of_problem(problem, **options)
     begun = time.perf_counter()
-    apexes, _ = published_method.fly(method, impacts)
+    apexes, _ = published_method.integrate(method, impacts)
     took = time.perf_counter() - begun
     edge = method.edge * method.rms
     return float(np.log((method.release - edge) / (apexes[0] - edge))), took

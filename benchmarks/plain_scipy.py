@@ -26,14 +26,14 @@ class Drop:
     rms: float
     work: float
     pull: float
-    reach: float
+    interaction_range: float
     mass: float
     gravity: float
     release: float
 
     def force(self, d: float, threshold: float) -> float:
-        """Contact force: Hertz and DMT on touching asperities, menisci on bonded ones."""
-        edge = min(max(d - threshold, 0.0), self.reach)
+        """Contact force: Hertz and DMT on contacting asperities, menisci on bonded ones."""
+        edge = min(max(d - threshold, 0.0), self.interaction_range)
         bonded = d - edge
         top = max(d, 0.0) + 9.0 * self.rms
         total = 0.0
@@ -49,18 +49,18 @@ class Drop:
         if half > 0.0:
             z = bonded + half * (NODES + 1.0)
             tail = ndtr(-z / self.rms) * half * WEIGHTS
-            total -= float(tail @ (self.pull * (1.0 - (d - z) / self.reach)))
+            total -= float(tail @ (self.pull * (1.0 - (d - z) / self.interaction_range)))
         return 2.0 * np.pi * self.radius * self.density * total
 
 
-def fly(drop: Drop, impacts: int, tolerance: float = 1e-8) -> list[float]:
+def integrate(drop: Drop, impacts: int, tolerance: float = 1e-8) -> list[float]:
     """Apex separations of the first impacts [m]."""
     apexes, place, time, threshold = [], drop.release, 0.0, np.inf
     scale = 1e-9
     for _ in range(impacts):
         for sign in (-1.0, 1.0):
             place, time = _phase(drop, place, time, threshold, sign, tolerance, scale)
-            low, high = place - drop.reach, place
+            low, high = place - drop.interaction_range, place
             threshold = min(max(threshold, low), high)
         apexes.append(place)
     return apexes

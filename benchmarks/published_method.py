@@ -123,7 +123,7 @@ def _influence(points: int, cell: float) -> np.ndarray:
     return total / np.pi
 
 
-def fly(model: Conjunction, impacts: int) -> tuple[list[float], list[float]]:
+def integrate(model: Conjunction, impacts: int) -> tuple[list[float], list[float]]:
     """Apex separations [m] and their times [s], by Runge-Kutta until so many impacts are over."""
     state, time = np.array([model.release, 0.0]), 0.0
     lift = np.zeros_like(model.rise)

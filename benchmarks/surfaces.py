@@ -70,7 +70,7 @@ def _law() -> list[Row]:
 
     def made() -> jax.Array:
         surface = measured_surface(_wet, heights, radii, DENSITY, radius=RADIUS)
-        return pressure(surface, surface.fresh(places))
+        return pressure(surface, surface.initial_memory(places))
 
     first = _seconds(made)
     warm = min(_seconds(made) for _ in range(3))

@@ -20,7 +20,7 @@ GRAVITY = 9.81
 SURFACE = 45.9e-9
 RELEASE = 60e-9
 SPRING = 2.0e4
-PULL = 2e-9
+ATTRACTION = 2e-9
 
 
 def bounce(
@@ -78,8 +78,8 @@ def _result(arrays, heights, deepest, restitution, case, name, outcome) -> Resul
     time, gap, speed, stored, lost = arrays
     unloading = np.where(speed > 0, restitution, 1.0)
     elastic = SPRING * np.maximum(-gap, 0) * unloading**2
-    capillary = np.where((gap < 0.3e-9) & (speed > 0), -PULL, 0.0)
-    adhesion = np.where(gap < 0, -PULL / 10, 0.0)
+    capillary = np.where((gap < 0.3e-9) & (speed > 0), -ATTRACTION, 0.0)
+    adhesion = np.where(gap < 0, -ATTRACTION / 10, 0.0)
     contact = elastic + capillary + adhesion
     weight = np.full_like(time, -MASS * GRAVITY)
     central = SURFACE + np.where(gap < 0, 0.9 * gap, gap)
@@ -137,8 +137,8 @@ def _result(arrays, heights, deepest, restitution, case, name, outcome) -> Resul
             "About 0.07 asperities touch at closest approach: single impacts scatter widely."
         ],
         events={
-            "deepest_time": np.array([t for t, _ in deepest]),
-            "deepest_separation": np.array([d for _, d in deepest]),
+            "closest_approach_time": np.array([t for t, _ in deepest]),
+            "closest_approach_separation": np.array([d for _, d in deepest]),
             "apex_time": tops,
             "apex_separation": SURFACE + heights[1:],
         },
@@ -161,7 +161,7 @@ def loading(*, case: Case | None = None, name: str = "published-exact") -> Curve
         force_unloading=elastic + bridge,
         components_loading={"elastic": elastic, "adhesion": nothing, "capillary": nothing},
         components_unloading={"elastic": elastic, "adhesion": nothing, "capillary": bridge},
-        deepest=44e-9,
+        minimum_separation=44e-9,
         pull_off=float(-(elastic + bridge).min()),
         pull_off_separation=float(separation[np.argmin(elastic + bridge)]),
         work_of_separation=2.1e-16,

@@ -17,7 +17,7 @@ from asperity.sweeps.study.columns import REASON_SIZE, Column, columns
 
 class Effort(NamedTuple):
     cases: int
-    lanes: float
+    batch_use: float
     compiled: float
     wall: float
     looked: int = 0

@@ -100,18 +100,18 @@ class PullOff(NamedTuple):
     ----------
     work
         Force over 2 pi R [J/m^2]: the effective work of adhesion.
-    touching
+    contacting
         Expected number of summits in contact, over R [1/m].
     """
 
     work: float
-    touching: float
+    contacting: float
 
 
 @eqx.filter_jit
 def _lifted(layers, places):
-    means = [layer.measure(places, layer.fresh(), lift=1) for layer in layers]
-    return sum(jnp.sum(one.parts, axis=0) for one in means), 2.0 * pi * means[0].touching
+    means = [layer.measure(places, layer.initial_memory(), integrated=1) for layer in layers]
+    return sum(jnp.sum(one.parts, axis=0) for one in means), 2.0 * pi * means[0].contacting
 
 
 def filling(humidity: float, degrees: float, formation: Formation) -> KelvinFilling:
@@ -133,10 +133,10 @@ def pull_off(
     low, high = -3.0 * rms - 5.0 * spacing, 9.0 * rms + 10.0 * spacing
     for _ in range(3):
         places = np.linspace(low, high, 121)
-        force, touching = (np.asarray(a) for a in _lifted(layers, jnp.asarray(places)))
+        force, contacting = (np.asarray(a) for a in _lifted(layers, jnp.asarray(places)))
         k = int(np.argmin(force))
         low, high = places[max(k - 1, 0)], places[min(k + 1, 120)]
-    return PullOff(-float(force[k]), float(touching[k]))
+    return PullOff(-float(force[k]), float(contacting[k]))
 
 
 def falls(smooth: float, rough: float, inputs: list[tuple[float, ...]]) -> list[float]:
@@ -236,7 +236,7 @@ def humid_tips() -> list[Comparison]:
 def wet_work(humidity: float, rms: float, degrees: float, reduced: float = 3.0) -> float:
     """Work [mJ/m^2] that parts filled rough surfaces from a separation of some rms heights."""
     layer = Interface(filling(humidity, degrees, ByContact()), Gaussian(rms), 1.0)
-    return -1e3 * float(layer.energy(jnp.asarray(reduced * rms), layer.torn()))
+    return -1e3 * float(layer.energy(jnp.asarray(reduced * rms), layer.saturated_memory()))
 
 
 def cantilevers() -> list[Comparison]:

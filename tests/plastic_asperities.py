@@ -14,16 +14,18 @@ from asperity.laws.plastic import KogutEtsion
 from asperity.surfaces.heights import Gaussian
 
 BETA, E, NU, SIGMA, N = 2.5e-7, 5e9, 0.3, 4e-9, 1e14
-PULL = E * sqrt(SIGMA / BETA) * SIGMA  # of adhesion against elasticity, times the next [J/m^2]
-DMT, MENISCUS = Dmt(BETA, 0.02 * PULL), Meniscus(BETA, 0.0728, radians(40.0), 1.3e-9)
+ATTRACTION = (
+    E * sqrt(SIGMA / BETA) * SIGMA
+)  # of adhesion against elasticity, times the next [J/m^2]
+DMT, MENISCUS = Dmt(BETA, 0.02 * ATTRACTION), Meniscus(BETA, 0.0728, radians(40.0), 1.3e-9)
 BESIDE = {"alone": Sum(()), "dmt": Sum((DMT,)), "dmt + meniscus": DMT + MENISCUS}
-REACH = float(MENISCUS.reach)
+REACH = float(MENISCUS.interaction_range)
 YIELD = [0.003, 0.3, 30.0]  # rms
 BATCH = 16
 
 every_law = pytest.mark.parametrize("beside", BESIDE)
 every_sum = pytest.mark.parametrize(
-    ("beside", "lift"), [("alone", 0), *(("dmt + meniscus", n) for n in (0, 1))]
+    ("beside", "integrated"), [("alone", 0), *(("dmt + meniscus", n) for n in (0, 1))]
 )
 every_yield = pytest.mark.parametrize("overlap", YIELD)
 
@@ -40,11 +42,11 @@ def asperities(beside, overlap, rms=SIGMA):
 
 
 @eqx.filter_jit
-def _compiled(interface, separation, memory, lift):
-    return interface.measure(separation, memory, lift)
+def _compiled(interface, separation, memory, integrated):
+    return interface.measure(separation, memory, integrated)
 
 
-def measured(interface, separation, memory, lift=0, call=_compiled):
+def measured(interface, separation, memory, integrated=0, call=_compiled):
     """Means at many separations, in batches of one shape: compiled once for each law."""
     h = np.asarray(separation, float)
     rows = [np.broadcast_to(b, h.shape) for b in memory]
@@ -52,14 +54,14 @@ def measured(interface, separation, memory, lift=0, call=_compiled):
     for first in range(0, h.size, BATCH):
         pick = np.minimum(np.arange(first, first + BATCH), h.size - 1)
         batch = call(interface, jnp.asarray(h[pick]), tuple(jnp.asarray(b[pick]) for b in rows),
-                     lift)  # fmt: skip
+                     integrated)  # fmt: skip
         parts.append([np.asarray(x)[..., : h.size - first] for x in batch])
     return type(batch)(*(np.concatenate(x, axis=-1) for x in zip(*parts, strict=True)))
 
 
 def after(interface, *places):
     """The memory after these reversals."""
-    memory = interface.fresh()
+    memory = interface.initial_memory()
     for h in places:
         memory = interface.remember(memory, jnp.asarray(h))
     return memory

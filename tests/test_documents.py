@@ -1,6 +1,8 @@
 """The documentation: pages that run, what they must hold, and that a broken one is found."""
 
 import ast
+import functools
+import importlib
 import re
 import shutil
 import subprocess
@@ -10,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import asperity
+from asperity.config.key_labels import LABELS
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -100,3 +103,30 @@ def test_the_notebook_has_ten_cells_that_load_solve_sweep_and_plot():
     used = set(re.findall(r"asperity\.(\w+)\(", "".join(cells)))
     assert {"load", "solve", "curve", "sweep"} <= used
     assert ".plot(" in "".join(cells)
+
+
+def test_names_of_code_in_the_documents_exist():
+    """A dotted name that begins with a room is one of its objects, or a key of a case."""
+    rooms = {path.stem for path in SOURCE.iterdir()}
+    wrong = []
+    for page in DOCS.glob("*.md"):
+        for name in re.findall(r"`([a-z_]+(?:\.[A-Za-z_]\w*)+)`", page.read_text()):
+            if name.partition(".")[0] in rooms and name not in LABELS and not is_object(name):
+                wrong.append(f"{page.name}: {name}")
+    assert not wrong
+
+
+def is_object(name: str) -> bool:
+    """Whether a dotted name is a module of the package or stands in one."""
+    parts = name.split(".")
+    for count in range(len(parts), 0, -1):
+        try:
+            found = importlib.import_module(".".join(["asperity", *parts[:count]]))
+        except ModuleNotFoundError:
+            continue
+        try:
+            functools.reduce(getattr, parts[count:], found)
+        except AttributeError:
+            return False
+        return True
+    return False

@@ -62,7 +62,7 @@ def test_example_of_a_built_in_case_is_that_case(name):
 
 SUBJECTS = {
     "drop-in-air": ("Knudsen number of the gas film", "pressure in the gas film"),
-    "yielding-drop": ("beyond yield", "kept elastic"),
+    "yielding-drop": ("beyond yield", "without yielding"),
 }
 """What an example warns of because that is what it is about."""
 

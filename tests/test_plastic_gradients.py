@@ -36,7 +36,7 @@ def impact(logarithms):
     body = Body(MASS, 9.81, 40e-9, speed)
     motion = simulate(RigidContact(interface, Sphere(RADIUS)), body, tolerance=ONE)
     rows, measures = motion.impacts, measure(motion, body)
-    return jnp.stack([measures.restitution[0], rows.deepest[0], rows.apex[0],
+    return jnp.stack([measures.restitution[0], rows.closest_approach[0], rows.apex[0],
                       measures.reference, *rows.lost[0]])  # fmt: skip
 
 

@@ -87,9 +87,9 @@ def test_measures_are_plain_json(result):
 
 
 def test_events_lie_on_the_motion(result):
-    assert result.events["deepest_time"].shape == (5,)
-    at = np.interp(result.events["deepest_time"], result.time, result.separation)
-    np.testing.assert_allclose(at, result.events["deepest_separation"], rtol=1e-6)
+    assert result.events["closest_approach_time"].shape == (5,)
+    at = np.interp(result.events["closest_approach_time"], result.time, result.separation)
+    np.testing.assert_allclose(at, result.events["closest_approach_separation"], rtol=1e-6)
 
 
 def test_release_inside_contact_is_refused_with_the_separation_at_rest(case):
@@ -129,12 +129,12 @@ def test_progress_rises_to_one(case):
 
 def test_a_motion_that_fails_raises_with_what_was_computed_or_returns_it(case, monkeypatch):
     """The failure is put in: the flight itself has no case that fails."""
-    fly = integration._fly
+    integrate = integration._integrate_in_chunks
 
     def failing(*args):
-        return fly(*args)._replace(outcome=Outcome.FAILED)
+        return integrate(*args)._replace(outcome=Outcome.FAILED)
 
-    monkeypatch.setattr(integration, "_fly", failing)
+    monkeypatch.setattr(integration, "_integrate_in_chunks", failing)
     kept = solver.solve(case, throw=False)
     assert kept.outcome is Outcome.FAILED
     with pytest.raises(SimulationError) as raised:
@@ -144,7 +144,9 @@ def test_a_motion_that_fails_raises_with_what_was_computed_or_returns_it(case, m
 
 def test_curve_loses_what_the_first_impact_loses(case, result):
     drawn = solver.curve(case)
-    assert drawn.deepest == pytest.approx(result.events["deepest_separation"][0], rel=1e-9)
+    assert drawn.minimum_separation == pytest.approx(
+        result.events["closest_approach_separation"][0], rel=1e-9
+    )
     energy = result.measures["power_loss"][0] * result.measures["rebound_period"][0]
     assert drawn.loss == pytest.approx(energy, rel=1e-4)
     assert drawn.pull_off >= 0.0

@@ -12,8 +12,8 @@ from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
-from .integration import fly_prepared, prepared, silently
-from .results.conversion import Flight, contact_end, measured
+from .integration import integrate_prepared, prepared, silently
+from .results.conversion import Solution, contact_end, measured
 from .results.measures import least_peak
 from .results.summary import amount
 
@@ -57,12 +57,13 @@ class Launcher:
     ----------
     problem
         What was built from a case.
-    flight
+    solution
         A motion of it: its contact, its curves and its forces are taken.
     limits
         Ends of its motion.
     many
-        As for :func:`asperity.integration.flown`: it names the programs that are compiled already.
+        As for :func:`asperity.integration.integrate`: it names the programs that are compiled
+        already.
     finer
         Factors on the panels of the curves that are tried where these are not fine enough. Each
         is compiled anew.
@@ -73,16 +74,18 @@ class Launcher:
     def __init__(
         self,
         problem: Problem,
-        flight: Flight,
+        solution: Solution,
         limits: Limits,
         *,
         many: bool = False,
         finer: tuple[int, ...] = (),
         stop: threading.Event | None = None,
     ) -> None:
-        body = dataclasses.replace(problem.body, release=_launched_from(flight, problem, many=many))
+        body = dataclasses.replace(
+            problem.body, release=_launched_from(solution, problem, many=many)
+        )
         self._problem, self._many, self._stop = problem._replace(body=body), many, stop
-        self._contacts = [flight.contact, *(flight.contact.refined(n) for n in finer)]
+        self._contacts = [solution.contact, *(solution.contact.refined(n) for n in finer)]
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
 
     def __call__(self, speed: float) -> Rebound:
@@ -96,19 +99,21 @@ class Launcher:
         problem = self._problem._replace(body=body)
         for contact in self._contacts:
             curves = prepared(contact, body, many=self._many)
-            allowed = max(_ERROR, contact.blur)
+            allowed = max(_ERROR, contact.error_floor)
             if float(curves[0].error) <= allowed and float(curves[0].residual) <= _ERROR:
                 break
         else:
             return _UNKNOWN
         try:
-            flight = fly_prepared(problem, contact, curves, self._limits, silently, self._stop)
+            solution = integrate_prepared(
+                problem, contact, curves, self._limits, silently, self._stop
+            )
         except SimulationError:
             return _UNKNOWN
-        measures = measured(flight, body)
+        measures = measured(solution, body)
         if not np.isfinite(measures.reference):  # contact reaches beyond where it was launched
             return _UNKNOWN
-        leaving = float(np.asarray(flight.motion.impacts.leaving)[0])
+        leaving = float(np.asarray(solution.motion.impacts.leaving)[0])
         return Rebound(
             float(measures.impact_speed),
             float(np.asarray(measures.restitution)[0]),
@@ -126,7 +131,7 @@ class Launcher:
             float(self._problem.body.mass),
         )
 
-    def edges(self, flight: Flight) -> Edges | None:
+    def edges(self, solution: Solution) -> Edges | None:
         """The edges of capture about a motion; None where nothing can take energy.
 
         Raises
@@ -134,35 +139,40 @@ class Launcher:
         SimulationError
             If it was stopped.
         """
-        body, impacts = self._problem.body, flight.motion.impacts
-        if not flight.contact.mechanisms and not body.damped:
+        body, impacts = self._problem.body, solution.motion.impacts
+        if not solution.contact.mechanisms and not body.damped:
             return None
-        lost = float(flight.motion.release) - float(impacts.leaving[0])
+        lost = float(solution.motion.release) - float(impacts.leaving[0])
         if not np.isfinite(lost):
             lost = float(np.sum(impacts.lost[0]))
-        ends = speeds_about(np.asarray(impacts.fastest[:1]), np.asarray([lost]), float(body.mass))
+        ends = speeds_about(
+            np.asarray(impacts.maximum_kinetic[:1]), np.asarray([lost]), float(body.mass)
+        )
         found = capture_edges(self.together, *ends)[0]
         if self._stop is not None and self._stop.is_set():
             raise SimulationError("stopped while the critical velocity was sought")
         return found
 
 
-def _launched_from(flight: Flight, problem: Problem, *, many: bool) -> float:
+def _launched_from(solution: Solution, problem: Problem, *, many: bool) -> float:
     """A separation [m] just outside the end of contact of even the gentlest impact.
 
     It is where any force ends for a contact that yields, whose curves are those after one impact.
     """
-    reach, body = float(flight.contact.reach), flight.body or problem.body
-    if flight.contact.yields:
-        return reach + CLEARANCE
-    measures = measured(flight, body)
+    interaction_range, body = (
+        float(solution.contact.interaction_range),
+        solution.body or problem.body,
+    )
+    if solution.contact.yields:
+        return interaction_range + CLEARANCE
+    measures = measured(solution, body)
     outset = float(measures.outset)
     if outset >= float(body.release):  # its curves do not tell of what lies beyond
-        further = dataclasses.replace(body, release=reach + CLEARANCE)
-        force = abs(float(flight.motion.impacts.force[0]))
+        further = dataclasses.replace(body, release=interaction_range + CLEARANCE)
+        force = abs(float(solution.motion.impacts.force[0]))
         least = least_peak(body, measures.pull_off, force)
-        outset = contact_end(prepared(flight.contact, further, many=many)[0], float(least))
-    return min(reach, outset) + CLEARANCE
+        outset = contact_end(prepared(solution.contact, further, many=many)[0], float(least))
+    return min(interaction_range, outset) + CLEARANCE
 
 
 def critical_measures(edges: Edges | None) -> dict[str, Any]:
@@ -208,7 +218,7 @@ def _intervals(edges: Edges) -> str:
 
 
 def sought(
-    flight: Flight,
+    solution: Solution,
     problem: Problem,
     limits: Limits,
     stop: threading.Event | None,
@@ -219,16 +229,16 @@ def sought(
 
     Parameters
     ----------
-    flight, problem, limits, stop, many
+    solution, problem, limits, stop, many
         As for :class:`Launcher`.
     """
-    if not flight.outcome.ok:
+    if not solution.outcome.ok:
         return _without("not sought: the motion did not come to its end")
-    if flight.trajectory is not None and flight.contact.lagging:
+    if solution.trajectory is not None and solution.contact.lagging:
         return _without(_STEPPED)
     try:
-        launcher = Launcher(problem, flight, limits, many=many, stop=stop)
-        return critical_measures(launcher.edges(flight))
+        launcher = Launcher(problem, solution, limits, many=many, stop=stop)
+        return critical_measures(launcher.edges(solution))
     except SimulationError as error:
         return _without(f"not known: {error}")
 

@@ -1,4 +1,4 @@
-"""A built problem flown: curves that meet the tolerance, a release outside contact, the motion."""
+"""The motion of a built problem: curves within the tolerance, the release check, the impacts."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from ._jax import jax, jnp
 from .config import Case
 from .contact import Contact, ElasticContact, RigidContact
 from .contact.resolution import in_steps
-from .contact.viscoelastic import Creep, CreptContact
-from .dynamics import Body, Impacts, Limits, Motion, Table, fly, prepare, start
+from .contact.viscoelastic import Relaxation, RelaxedContact
+from .dynamics import Body, Impacts, Limits, Motion, Table, integrate_impacts, prepare, start
 from .dynamics.curve_table import FORCE, read_row
-from .dynamics.delayed_motion import fly as fly_late
-from .dynamics.output_shapes import foreseen
+from .dynamics.delayed_motion import integrate_delayed
+from .dynamics.output_shapes import shapes_of_curves
 from .dynamics.problem import CLEARANCE, Problem
-from .dynamics.record import ENDS, FLYING
+from .dynamics.record import ENDS, IN_MOTION
 from .dynamics.release import TRIES, at_release, farther, negligible_force
-from .dynamics.static_equilibrium import Datum
+from .dynamics.static_equilibrium import Reference
 from .dynamics.stepped_phase import Ended
 from .dynamics.time_series import compile_ahead
-from .dynamics.viscoelastic import fly_creeping
+from .dynamics.viscoelastic import integrate_viscoelastic
 from .errors import InputError, Outcome, SimulationError
 from .numerics.compilation import AT_ONCE, Program, signature
-from .results.conversion import Flight, measure_ahead
+from .results.conversion import Solution, measure_ahead
 
 Report = Callable[[float, str], None]
 
@@ -46,42 +46,42 @@ def silently(fraction: float, text: str) -> None:
 
 def cut_in_steps(problem: Problem) -> Problem:
     """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
-    creep = problem.creep
-    if creep is not None:
-        creep = dataclasses.replace(creep, contact=_in_steps(creep.contact))
-    return problem._replace(contact=_in_steps(problem.contact), creep=creep)
+    relaxation = problem.relaxation
+    if relaxation is not None:
+        relaxation = dataclasses.replace(relaxation, contact=_in_steps(relaxation.contact))
+    return problem._replace(contact=_in_steps(problem.contact), relaxation=relaxation)
 
 
 def _in_steps(contact: Contact) -> Contact:
-    if isinstance(contact, CreptContact):
-        return CreptContact(_in_steps(contact.told))
+    if isinstance(contact, RelaxedContact):
+        return RelaxedContact(_in_steps(contact.base))
     if not isinstance(contact, RigidContact | ElasticContact):
         return contact
     resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
     return dataclasses.replace(contact, resolved=resolved)
 
 
-def flown(
+def integrate(
     case: Case,
     problem: Problem,
-    tell: Report,
+    report: Report,
     stop: threading.Event | None,
     *,
     many: bool = False,
-) -> Flight:
+) -> Solution:
     """The motion of what was built from a case.
 
     Parameters
     ----------
     case, problem
         A case, and what was built from it.
-    tell
+    report
         Called with a fraction done and a line of text, now and then.
     stop
         Set from another thread, it ends the motion early.
     many
-        Whether the ways back from reversals are tabulated first: that compiles longer, and pays
-        where many cases follow.
+        Whether the scanning curves are tabulated first: that compiles longer, and pays where
+        many cases follow.
 
     Raises
     ------
@@ -91,27 +91,29 @@ def flown(
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
     limits = Limits.of(case.tolerance)
-    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=True, many=many)
-    return fly_prepared(problem, contact, (table, datum), limits, tell, stop)
+    problem, (contact, table, reference) = _released(
+        case, problem, limits, report, drawn=True, many=many
+    )
+    return integrate_prepared(problem, contact, (table, reference), limits, report, stop)
 
 
-def fly_prepared(
+def integrate_prepared(
     problem: Problem,
     contact: Contact,
-    curves: tuple[Table, Datum],
+    curves: tuple[Table, Reference],
     limits: Limits,
-    tell: Report,
+    report: Report,
     stop: threading.Event | None,
-) -> Flight:
-    """The motion of a body whose force curves are there already; see :func:`flown`."""
-    if problem.late is None and problem.creep is None:
-        flight = _fly(problem.body, contact, *curves, limits, tell, stop)
+) -> Solution:
+    """The motion of a body whose force curves are there already; see :func:`integrate`."""
+    if problem.delayed is None and problem.relaxation is None:
+        solution = _integrate_in_chunks(problem.body, contact, *curves, limits, report, stop)
     else:
-        flight = _fly_stepped(problem, contact, curves, limits, tell, stop)
-    return flight._replace(body=problem.body)
+        solution = _integrate_in_time(problem, contact, curves, limits, report, stop)
+    return solution._replace(body=problem.body)
 
 
-def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Datum]:
+def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Reference]:
     """Force curves over all that a body can reach, and the static equilibrium.
 
     Parameters
@@ -119,19 +121,19 @@ def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table
     contact, body
         What moves on what.
     many
-        As for :func:`flown`.
+        As for :func:`integrate`.
     """
     return _preparing(contact, many)(contact, body, many)
 
 
-def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple[Contact, Motion]:
+def first_impact(case: Case, problem: Problem, report: Report = silently) -> tuple[Contact, Motion]:
     """The contact with its curves, and the motion as far as the first impact.
 
     Parameters
     ----------
     case, problem
         A case, and what was built from it.
-    tell
+    report
         As ``progress`` of :func:`solve`.
 
     Raises
@@ -140,20 +142,20 @@ def first_impact(case: Case, problem: Problem, tell: Report = silently) -> tuple
         As :func:`solve`.
     """
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    problem, (contact, table, datum) = _released(case, problem, limits, tell, drawn=False)
+    problem, (contact, table, reference) = _released(case, problem, limits, report, drawn=False)
     body = problem.body
-    tell(0.3, "first impact")
+    report(0.3, "first impact")
     first, origin = _start(contact, body, table)
-    progress, rows = _fly_some(
-        contact, body, table, datum, origin, first, limits, _at_once(contact, body)
+    progress, rows = _integrate_some(
+        contact, body, table, reference, origin, first, limits, _at_once(contact, body)
     )
     impacts = jax.tree_util.tree_map(np.asarray, rows)
-    return contact, Motion(impacts, progress, table, datum, origin)
+    return contact, Motion(impacts, progress, table, reference, origin)
 
 
 def _released(
-    case: Case, problem: Problem, limits: Limits, tell: Report, *, drawn: bool, many: bool = False
-) -> tuple[Problem, tuple[Contact, Table, Datum]]:
+    case: Case, problem: Problem, limits: Limits, report: Report, *, drawn: bool, many: bool = False
+) -> tuple[Problem, tuple[Contact, Table, Reference]]:
     """A problem whose body is released outside contact, and its curves.
 
     Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
@@ -161,7 +163,7 @@ def _released(
     """
     chosen = case.impact is not None and case.impact.release_separation is None
     for _ in range(TRIES):
-        curves = _prepared(problem, case.numerics.tolerance, limits, tell, drawn=drawn, many=many)
+        curves = _prepared(problem, case.numerics.tolerance, limits, report, drawn=drawn, many=many)
         if not chosen:
             break
         body, table = problem.body, curves[1]
@@ -180,28 +182,28 @@ def _prepared(
     problem: Problem,
     tolerance: float,
     limits: Limits,
-    tell: Report,
+    report: Report,
     *,
     drawn: bool,
     many: bool = False,
-) -> tuple[Contact, Table, Datum]:
+) -> tuple[Contact, Table, Reference]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
     Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
     allowed, errors = tolerance, [np.inf, np.inf]
     for factor in _REFINEMENTS:
-        tell(0.02, "tracing")
+        report(0.02, "tracing")
         contact = problem.contact.refined(factor)
-        if not drawn or (problem.late is None and problem.creep is None):
+        if not drawn or (problem.delayed is None and problem.relaxation is None):
             _compile(contact, problem.body, limits, drawn=drawn, many=many)
         else:
             _preparing(contact, many).ahead(contact, problem.body, many)
-        tell(0.04, COMPILATION)
+        report(0.04, COMPILATION)
         prepared = _preparing(contact, many).ready(contact, problem.body, many)
-        tell(0.06, "force curves")
-        table, datum = prepared()
-        error, allowed = float(table.error), max(tolerance, contact.blur)
+        report(0.06, "force curves")
+        table, reference = prepared()
+        error, allowed = float(table.error), max(tolerance, contact.error_floor)
         if error <= allowed or error > _GAIN * errors[-2]:
             break
         errors.append(error)
@@ -216,7 +218,7 @@ def _prepared(
             f"{float(table.residual):.1e}. The contact has no equilibrium that follows "
             "from the one before (strong adhesion on soft bodies folds it)"
         )
-    return contact, table, datum
+    return contact, table, reference
 
 
 def _compile(
@@ -226,35 +228,35 @@ def _compile(
 
     The motion, which takes longest, first: where the shapes of the curves are known without.
     """
-    curves = _foreseen(contact, many)
-    table, datum = curves or _preparing(contact, many).ahead(contact, body, many)
+    curves = _shapes(contact, many)
+    table, reference = curves or _preparing(contact, many).ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
-    end, impacts = _fly_some.ahead(
-        contact, body, table, datum, origin, progress, limits, _at_once(contact, body)
+    end, impacts = _integrate_some.ahead(
+        contact, body, table, reference, origin, progress, limits, _at_once(contact, body)
     )
     if curves:
         _preparing(contact, many).ahead(contact, body, many)
     if drawn:
         compile_ahead(body, table, impacts)
-        measure_ahead(contact, body, Motion(impacts, end, table, datum, origin))
+        measure_ahead(contact, body, Motion(impacts, end, table, reference, origin))
 
 
-_FORESEEN: dict[Any, tuple[tuple[Table, Datum] | None]] = {}
+_SHAPES: dict[Any, tuple[tuple[Table, Reference] | None]] = {}
 _MOST = 64  # kinds of contacts whose shapes are kept
 
 
-def _foreseen(contact: Contact, many: bool) -> tuple[Table, Datum] | None:
+def _shapes(contact: Contact, many: bool) -> tuple[Table, Reference] | None:
     """Shapes of the curves, which take 5 ms to foresee, once for each kind of contact."""
     key = signature(contact, many)
-    known = _FORESEEN.get(key)
+    known = _SHAPES.get(key)
     if known is None:
-        if len(_FORESEEN) >= _MOST:
-            _FORESEEN.clear()
-        known = _FORESEEN[key] = (foreseen(contact, many),)
+        if len(_SHAPES) >= _MOST:
+            _SHAPES.clear()
+        known = _SHAPES[key] = (shapes_of_curves(contact, many),)
     return known[0]
 
 
-def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Datum]]:
+def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Reference]]:
     """The program of the curves: 10 ms slower and compiled 2 s sooner for one that deforms."""
     return _prepare_at_once if isinstance(contact, ElasticContact) and not many else _prepare
 
@@ -270,7 +272,9 @@ _prepare = Program(prepare)
 _prepare_at_once = Program(prepare, AT_ONCE)
 _start = Program(start, AT_ONCE)
 _at_release = Program(at_release, AT_ONCE)
-_fly_some = Program(fly, AT_ONCE)  # 0.8 s sooner at first, and then 1 to 9 ms later
+_integrate_some = Program(
+    integrate_impacts, AT_ONCE
+)  # 0.8 s sooner at first, and then 1 to 9 ms later
 
 
 def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) -> None:
@@ -294,68 +298,70 @@ def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) 
 def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     body = problem.body
-    release = float(problem.contact.reach) + CLEARANCE
+    release = float(problem.contact.interaction_range) + CLEARANCE
     clear = Body(body.mass, body.gravity, release, body.speed)
     prepared = _preparing(problem.contact, many)(problem.contact, clear, many)
     place = float(prepared[1].equilibrium)
     return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""
 
 
-def _fly(
+def _integrate_in_chunks(
     body: Body,
     contact: Contact,
     table: Table,
-    datum: Datum,
+    reference: Reference,
     limits: Limits,
-    tell: Report,
+    report: Report,
     stop: threading.Event | None,
-) -> Flight:
+) -> Solution:
     """The motion in chunks of impacts, so that it can be watched and stopped."""
     progress, origin = _start(contact, body, table)
     chunks: list[Impacts] = []
-    while int(progress.outcome) == FLYING and not (stop is not None and stop.is_set()):
-        given = (contact, body, table, datum, origin, progress, limits, _at_once(contact, body))
+    while int(progress.outcome) == IN_MOTION and not (stop is not None and stop.is_set()):
+        given = (contact, body, table, reference, origin, progress, limits, _at_once(contact, body))
         if not chunks:
-            tell(0.08, COMPILATION)
-        fly_on = _fly_some.ready(*given)
+            report(0.08, COMPILATION)
+        go_on = _integrate_some.ready(*given)
         if not chunks:
-            tell(0.1, "motion")
-        progress, rows = fly_on()
+            report(0.1, "motion")
+        progress, rows = go_on()
         chunks.append(jax.tree_util.tree_map(np.asarray, rows))
         count = int(progress.made)
-        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+        report(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
     if not chunks:
         raise SimulationError("stopped before the first impact")
     impacts = jax.tree_util.tree_map(lambda *parts: np.concatenate(parts), *chunks)
     code = int(progress.outcome)
-    outcome = Outcome.INTERRUPTED if code == FLYING else ENDS[code]
-    return Flight(Motion(impacts, progress, table, datum, origin), contact, outcome)
+    outcome = Outcome.INTERRUPTED if code == IN_MOTION else ENDS[code]
+    return Solution(Motion(impacts, progress, table, reference, origin), contact, outcome)
 
 
-def _fly_stepped(
+def _integrate_in_time(
     problem: Problem,
     contact: Contact,
-    prepared: tuple[Table, Datum],
+    prepared: tuple[Table, Reference],
     limits: Limits,
-    tell: Report,
+    report: Report,
     stop: threading.Event | None,
-) -> Flight:
+) -> Solution:
     """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
-    body, creep, late = problem.body, problem.creep, problem.late
-    if late is not None and isinstance(contact, ElasticContact):
-        creep = Creep.none(late)
-    tell(0.1, "motion")
+    body, relaxation, delayed = problem.body, problem.relaxation, problem.delayed
+    if delayed is not None and isinstance(contact, ElasticContact):
+        relaxation = Relaxation.none(delayed)
+    report(0.1, "motion")
 
     def made(count: int) -> None:
-        tell(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+        report(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
 
     try:
-        if creep is not None:
-            flown = fly_creeping(contact, creep, body, prepared, limits, made, stop)
+        if relaxation is not None:
+            integrate = integrate_viscoelastic(
+                contact, relaxation, body, prepared, limits, made, stop
+            )
         else:
-            assert late is not None
-            flown = fly_late(contact, late, body, prepared, limits, made, stop)
+            assert delayed is not None
+            integrate = integrate_delayed(contact, delayed, body, prepared, limits, made, stop)
     except Ended as error:
         raise SimulationError("stopped before the first impact") from error
-    motion, trajectory, outcome = flown
-    return Flight(motion, contact, outcome, trajectory)
+    motion, trajectory, outcome = integrate
+    return Solution(motion, contact, outcome, trajectory)

@@ -10,7 +10,7 @@ from numpy.polynomial.chebyshev import chebval
 from .dynamics import Body, Table
 from .dynamics.curve_table import FORCE
 from .dynamics.problem import CLEARANCE, Problem
-from .dynamics.static_equilibrium import find_datum
+from .dynamics.static_equilibrium import find_reference
 from .errors import InputError, SimulationError
 from .integration import prepared
 from .laws.law import as_float64
@@ -19,7 +19,7 @@ from .numerics.compilation import AT_ONCE, Program
 _LEAST, _FACTOR, _STEPS = 1e-24, 8.0, 40  # J: energies of curves, until they reach far enough
 _HELD = 2.0  # times the largest force holds a body back that attraction draws in
 
-_datum = Program(find_datum, AT_ONCE)
+_reference = Program(find_reference, AT_ONCE)
 
 
 def turning_at(
@@ -51,7 +51,7 @@ def turning_at(
     if load is not None and not (np.isfinite(load) and load >= 0.0):
         raise InputError(f"`load` must be 0 N or more; got {load:.6g} N", key="load")
     contact, mass = problem.contact, float(problem.body.mass)
-    release = float(contact.reach) + CLEARANCE
+    release = float(contact.interaction_range) + CLEARANCE
     if depth is not None and not -release < depth < np.inf:
         raise InputError(
             f"`depth` must lie above {-release * 1e9:.6g} nm, where forces begin; "
@@ -71,7 +71,7 @@ def turning_at(
 
 def _place(table: Table, load: float) -> float | None:
     """Where an approach first carries a load [m]; None where nothing in the table does."""
-    found = _datum(table, as_float64(load / (1.0 + 1e-9)), 0)
+    found = _reference(table, as_float64(load / (1.0 + 1e-9)), 0)
     return float(found.equilibrium) if bool(found.rests) else None
 
 

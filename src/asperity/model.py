@@ -18,10 +18,10 @@ from .contact import (
     SmoothContact,
     SmoothPlasticContact,
 )
-from .contact.delayed_formation import LATE, LateContact
+from .contact.delayed_formation import LATE, DelayedContact
 from .contact.profile import Sphere
 from .contact.resolution import Resolution
-from .contact.viscoelastic import Creep
+from .contact.viscoelastic import Relaxation
 from .dynamics import Body
 from .dynamics.gas_film import SqueezeFilm
 from .dynamics.problem import CLEARANCE, Problem
@@ -97,24 +97,24 @@ def build(case: Case, resolved: Resolution | None = None) -> Problem:
         else:
             contact = ElasticContact(interface, shape, modulus, case.numerics.rings, resolved)
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    body = Body(mass, 0.0, contact.reach + CLEARANCE)
+    body = Body(mass, 0.0, contact.interaction_range + CLEARANCE)
     if (impact := case.impact) is not None:
         release = body.release if impact.release_separation is None else impact.release_separation
         speed = impact.speed or 0.0
         body = Body(mass, impact.gravity, release, speed, _film(case), _waves(case))
-    late, off = _late(case, contact), _class_error(case, adhesion.law, modulus)
-    creep = _creep(case, contact)
-    contact = contact if creep is None else creep.relaxed()
-    return Problem(contact, body, modulus, tip, adhesion, late, off, creep)
+    delayed, off = _delayed(case, contact), _class_error(case, adhesion.law, modulus)
+    relaxation = _creep(case, contact)
+    contact = contact if relaxation is None else relaxation.relaxed()
+    return Problem(contact, body, modulus, tip, adhesion, delayed, off, relaxation)
 
 
-def _creep(case: Case, contact: Contact) -> Creep | None:
+def _creep(case: Case, contact: Contact) -> Relaxation | None:
     """How the bulk under a contact creeps, if it does."""
     table = case.viscoelasticity
     if table is None or table.model == "none":
         return None
     ratio, time = _given(table.relaxed_modulus_ratio), _given(table.relaxation_time)
-    return Creep(contact, ratio, time)
+    return Relaxation(contact, ratio, time)
 
 
 def _class_error(case: Case, adhesion: str, modulus: float) -> float:
@@ -135,13 +135,13 @@ def _law_of_radius(
     return lambda radius: _law(case, adhesion, radius, modulus, smallest)
 
 
-def _late(case: Case, contact: Contact) -> LateContact | None:
+def _delayed(case: Case, contact: Contact) -> DelayedContact | None:
     """The contact with the formation time of its menisci, if they take any."""
     time = case.capillary.formation_time
     if not time or LATE not in contact.mechanisms:
         return None
     assert isinstance(contact, RigidContact | ElasticContact | SmoothContact)
-    return LateContact(contact, time)
+    return DelayedContact(contact, time)
 
 
 def _interface(case: Case, rough: Asperities, adhesion: str, modulus: float) -> Surfaces:
@@ -216,11 +216,11 @@ def _published(
 ) -> PublishedContact:
     """The contact that the publication assumes."""
     liquid, kelvin_radius = case.liquid, case.kelvin_radius
-    tension, reach = 0.0, None
+    tension, interaction_range = 0.0, None
     if liquid is not None and kelvin_radius > 0.0:
         cosine = np.cos(_given(case.capillary.contact_angle))
         tension = assumed.capillary_factor * liquid.tension * cosine
-        reach = None if np.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
+        interaction_range = None if np.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
     work = _given(case.adhesion.work) if case.adhesion.model != "none" else 0.0
     pressure = PublishedPressure(
         density=rough.asperity_density,
@@ -230,7 +230,7 @@ def _published(
         work_of_adhesion=work,
         tension=tension,
         edge=assumed.conjunction_ends,
-        reach=reach,
+        interaction_range=interaction_range,
         fine=bool(
             assumed.polynomials == "exact" and assumed.conjunction_ends <= FINE * assumed.bands
         ),
@@ -284,7 +284,7 @@ def _menisci(case: Case, tip: float, smallest: float) -> list[Law]:
 
 
 def _formation(case: Case) -> Formation:
-    return ByContact() if case.capillary.formation == "contact" else ByKelvinGap()
+    return ByContact() if case.capillary.formation == "on-contact" else ByKelvinGap()
 
 
 def _given(value: float | None) -> float:

@@ -11,14 +11,14 @@ from .config import Case
 from .critical_velocity import sought
 from .dynamics import Limits
 from .dynamics.problem import Problem
-from .dynamics.quasi_static import trace
+from .dynamics.quasi_static import quasi_static_curve
 from .errors import InputError, Outcome, SimulationError
-from .integration import Report, cut_in_steps, first_impact, flown, silently
+from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
 from .regimes.validity import pull_warnings
 from .results.case_source import CaseLike, case_of
-from .results.conversion import Assessment, Flight, assessment_of, first_restitution, result_of
+from .results.conversion import Assessment, Solution, assessment_of, first_restitution, result_of
 from .results.result import Curve, Result
 
 
@@ -58,14 +58,14 @@ def solve(
     case = case_of(case)
     name = case.name if name is None else name
     _ = case.launch
-    tell, problem = progress or silently, build(case)
-    flight = flown(case, problem, tell, stop)
-    result = _told(case, name, problem, flight, tell, None)
+    report, problem = progress or silently, build(case)
+    solution = integrate(case, problem, report, stop)
+    result = _told(case, name, problem, solution, report, None)
     if critical:
-        tell(0.92, "critical velocity")
-        result.measures.update(sought(flight, problem, Limits.of(case.tolerance), stop))
-    tell(1.0, "done")
-    if flight.outcome is Outcome.FAILED and throw:
+        report(0.92, "critical velocity")
+        result.measures.update(sought(solution, problem, Limits.of(case.tolerance), stop))
+    report(1.0, "done")
+    if solution.outcome is Outcome.FAILED and throw:
         raise SimulationError(_failure(case), result)
     return result
 
@@ -97,15 +97,15 @@ def explore(
         As :func:`solve`.
     """
     _ = case.launch
-    tell, problem = progress or silently, cut_in_steps(build(case))
-    flight = flown(case, problem, tell, stop, many=True)
-    result = _told(case, name, problem, flight, tell, most)
-    if flight.outcome is Outcome.FAILED:
+    report, problem = progress or silently, cut_in_steps(build(case))
+    solution = integrate(case, problem, report, stop, many=True)
+    result = _told(case, name, problem, solution, report, most)
+    if solution.outcome is Outcome.FAILED:
         raise SimulationError(_failure(case), result)
-    if flight.trajectory is not None:  # the curve is that of menisci that have the time to form
-        return result, _curve_of(case, name, problem, lambda _, text: tell(0.95, text))
-    drawn, _ = trace(flight.contact, flight.motion.table, flight.motion.impacts)
-    tell(1.0, "done")
+    if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
+        return result, _curve_of(case, name, problem, lambda _, text: report(0.95, text))
+    drawn, _ = quasi_static_curve(solution.contact, solution.motion.table, solution.motion.impacts)
+    report(1.0, "done")
     return result, Curve(case, name, **drawn, warnings=result.warnings)
 
 
@@ -134,19 +134,19 @@ def critical_velocity(
     _ = case.launch
     numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
     case = case.model_copy(update={"numerics": numerics})
-    tell, problem = progress or silently, cut_in_steps(build(case))
-    flight = flown(case, problem, tell, stop, many=True)
-    return sought(flight, problem, Limits.of(case.tolerance), stop, many=True)
+    report, problem = progress or silently, cut_in_steps(build(case))
+    solution = integrate(case, problem, report, stop, many=True)
+    return sought(solution, problem, Limits.of(case.tolerance), stop, many=True)
 
 
 def _told(
-    case: Case, name: str, problem: Problem, flight: Flight, tell: Report, most: int | None
+    case: Case, name: str, problem: Problem, solution: Solution, report: Report, most: int | None
 ) -> Result:
     """The result of a motion."""
-    tell(0.9, "measures")
-    stopped = flight.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
-    elastic = None if stopped else _kept_elastic(case, lambda _, text: tell(0.9, text))
-    return result_of(case, name, problem, flight, elastic, most)
+    report(0.9, "measures")
+    stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
+    elastic = None if stopped else _kept_elastic(case, lambda _, text: report(0.9, text))
+    return result_of(case, name, problem, solution, elastic, most)
 
 
 def _failure(case: Case) -> str:
@@ -184,23 +184,23 @@ def curve(
     """
     case = case_of(case)
     name = case.name if name is None else name
-    problem, tell = build(case), progress or silently
+    problem, report = build(case), progress or silently
     if load is None and depth is None:
         _ = case.launch
-        return _curve_of(case, name, problem, tell)
+        return _curve_of(case, name, problem, report)
     problem, still = turning_at(problem, load=load, depth=depth), ("impact", "gas", "waves")
     motionless = case.model_copy(update=dict.fromkeys(still))
-    return dataclasses.replace(_curve_of(motionless, name, problem, tell), case=case)
+    return dataclasses.replace(_curve_of(motionless, name, problem, report), case=case)
 
 
-def _curve_of(case: Case, name: str, problem: Problem, tell: Report) -> Curve:
+def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     """The curve of what was built from a case."""
-    contact, motion = first_impact(case, problem, tell)
+    contact, motion = first_impact(case, problem, report)
     warnings = assessment_of(case, name, problem, contact, motion).warnings
-    tell(0.6, "unloading")
-    drawn, held = trace(contact, motion.table, motion.impacts)
+    report(0.6, "unloading")
+    drawn, held = quasi_static_curve(contact, motion.table, motion.impacts)
     warnings += pull_warnings(case, drawn["pull_off"], held)
-    tell(1.0, "done")
+    report(1.0, "done")
     return Curve(case, name, **drawn, warnings=warnings)
 
 
@@ -223,14 +223,14 @@ def assess(
     InputError, SimulationError
         As :func:`solve`.
     """
-    _, tell = case.launch, progress or silently
+    _, report = case.launch, progress or silently
     problem = build(case)
-    contact, motion = first_impact(case, problem, tell)
-    tell(1.0, "done")
+    contact, motion = first_impact(case, problem, report)
+    report(1.0, "done")
     return assessment_of(case, name, problem, contact, motion)
 
 
-def _kept_elastic(case: Case, tell: Report) -> float | None:
+def _kept_elastic(case: Case, report: Report) -> float | None:
     """Restitution of the first impact of a case that yields, were nothing in it to yield.
 
     NaN where it cannot be computed, None where it has none or nothing yields.
@@ -240,7 +240,7 @@ def _kept_elastic(case: Case, tell: Report) -> float | None:
     elastic = case.model_copy(update={"plasticity": None})
     problem = cut_in_steps(build(elastic))
     try:
-        contact, motion = first_impact(elastic, problem, tell)
+        contact, motion = first_impact(elastic, problem, report)
     except (InputError, SimulationError):
         return math.nan  # it may be released within contact, or pull too hard to be solved
-    return first_restitution(Flight(motion, contact, Outcome.MAX_IMPACTS), problem.body)
+    return first_restitution(Solution(motion, contact, Outcome.MAX_IMPACTS), problem.body)

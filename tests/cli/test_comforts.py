@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 from asperity import solver as real_solver
 from asperity.cli import app
 from asperity.cli.compiling import Compilation
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import WIDTH, say, tell, wrapped
 from asperity.cli.working import _bar_on
 from asperity.config import builtin
@@ -382,8 +382,8 @@ def test_an_answer_is_made_only_where_it_is_said(capsys: pytest.CaptureFixture[s
     def refuse() -> Any:
         raise AssertionError
 
-    Voice(quiet=True).answer(refuse, refuse)
-    Voice(as_json=True, quiet=True).answer(refuse, lambda: {"a": 1})
-    Voice().answer(lambda: "words", refuse)
+    Reporter(quiet=True).answer(refuse, refuse)
+    Reporter(as_json=True, quiet=True).answer(refuse, lambda: {"a": 1})
+    Reporter().answer(lambda: "words", refuse)
     tell("")
     assert capsys.readouterr().out == '{"a": 1}\nwords\n\n'

@@ -77,7 +77,7 @@ def test_regime_gives_the_publications_numbers(built_in: Any):
     }
     ratio = numbers["kelvin_radius_over_spacing"]["value"]
     assert ratio == pytest.approx(1.054e-9 * math.sqrt(1.69e16), rel=1e-3)
-    assert numbers["humidity_regime"]["value"] == "isolated menisci"
+    assert numbers["liquid_regime"]["value"] == "pendular"
     assert numbers["adhesion_law"] == {"value": "dmt", "unit": "", "verdict": "as the case says"}
 
 

@@ -80,7 +80,7 @@ def test_a_case_without_an_impact_has_a_curve_and_no_motion(place: Path):
     assert curve.preload is None  # any larger load gives the same
     shutil.rmtree(place / "still-out")
     found = json.loads(call("curve", "still.toml", "--depth", "3 nm", "--json").stdout)
-    assert found["deepest"] == pytest.approx(-3e-9, rel=1e-9)
+    assert found["minimum_separation"] == pytest.approx(-3e-9, rel=1e-9)
     assert found["pull_off"] == pytest.approx(curve.pull_off, rel=1e-9)
     for command in ("run", "curve", "regime", "restitution"):
         assert_refused(call(command, "still.toml", "--json"), "[impact] table must be given")

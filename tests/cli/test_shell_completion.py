@@ -91,7 +91,7 @@ def test_stores_and_their_columns_are_completed():
 
 def test_words_of_an_option_and_materials_are_completed():
     assert offered("asperity surface x.npy --missing ") == ["refuse", "keep", "fill"]
-    assert offered("asperity surface x.npy --align med") == ["median", "median-difference"]
+    assert offered("asperity surface x.npy --line-levelling med") == ["median", "median-difference"]
     assert "silica" in SOLIDS
     assert "silica" in offered("asperity materials sil")
     assert offered("asperity --show-completion z") == ["zsh"]

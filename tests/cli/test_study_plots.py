@@ -699,7 +699,7 @@ def test_cases_without_restitution_are_left_out_and_counted(tmp_path: Path):
 
 # Force against distance
 
-STIFF, PULL, SHIFT = 3e3, 2e-7, 4e-9
+STIFF, ATTRACTION, SHIFT = 3e3, 2e-7, 4e-9
 
 
 def linear_curve() -> Curve:
@@ -707,10 +707,10 @@ def linear_curve() -> Curve:
     separation = np.unique(np.concatenate([np.linspace(-5e-9, 5e-9, 41), [1e-8, 2e-8]]))
     push = -STIFF * separation
     gone = np.where(separation < 5e-9, 1.0, 0.0)
-    approach, unloading = push * gone, (push - PULL) * gone
+    approach, unloading = push * gone, (push - ATTRACTION) * gone
     return Curve(
         asperity.load("published"), "spring", separation, separation, approach, unloading, {}, {},
-        float(separation[0]), PULL, float(separation[0]), 0.0, None, 1e-15, [],
+        float(separation[0]), ATTRACTION, float(separation[0]), 0.0, None, 1e-15, [],
     )  # fmt: skip
 
 

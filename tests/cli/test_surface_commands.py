@@ -102,7 +102,7 @@ def test_a_lattice_of_paraboloids_has_its_radius_and_density():
     about = (place + 0.5 * pitch) % pitch - 0.5 * pitch
     heights = -(about**2 + about[:, None] ** 2) / (2.0 * radius)
     write_topography(Topography(heights, (step, step)), "lattice.nc")
-    found = described("lattice.nc", "--remove", "none")
+    found = described("lattice.nc", "--form-removal", "none")
     assert found["summit_radius"] == pytest.approx(radius, rel=1e-6)
     assert found["summit_density"] == pytest.approx(1.0 / pitch**2, rel=0.02)
 
@@ -201,11 +201,11 @@ def test_a_tilt_does_not_change_what_is_described():
     level, tilted = described("rough.csv"), described("tilted.nc")
     assert tilted["rms_height"] == pytest.approx(level["rms_height"], rel=1e-9)
     # So steep a slope has no summit left.
-    assert "summits need at least 10" in refused("surface", "tilted.nc", "--remove", "mean")
+    assert "summits need at least 10" in refused("surface", "tilted.nc", "--form-removal", "mean")
 
 
 def test_a_cut_of_short_waves_leaves_fewer_and_rounder_summits():
-    whole, cut = described(rough(points=128)), described("rough.csv", "--short", "300 nm")
+    whole, cut = described(rough(points=128)), described("rough.csv", "--s-filter", "300 nm")
     assert cut["summit_density"] < whole["summit_density"]
     assert cut["summit_radius"] > whole["summit_radius"]
 
@@ -223,21 +223,26 @@ def test_an_array_takes_its_size_and_unit_from_the_options():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--remove", "plane"], "`--remove` must be one of none, mean, tilt"),
-        (["--align", "x"], "`--align` must be one of"),
-        (["--align", "median", "--direction", "x"], "`--direction` must be"),
+        (["--form-removal", "plane"], "`--form-removal` must be one of none, mean, tilt"),
+        (["--line-levelling", "x"], "`--line-levelling` must be one of"),
+        (["--line-levelling", "median", "--direction", "x"], "`--direction` must be"),
         (["--degree", "9"], "`--degree` must be a whole number from 0 to 5; got 9"),
         (["--missing", "maybe"], "`--missing` must be one of refuse, keep, fill"),
-        (["--short", "5"], "`--short` must have a unit"),
-        (["--short", "-5 nm"], "`--short` must be a positive length"),
-        (["--short", "1 nm"], "rough.csv: `--short` must lie between two pixels, 40 nm"),
-        (["--long", "1 m"], "rough.csv: `--long` must lie between two pixels"),
-        (["--short", "500 nm", "--long", "100 nm"], "`--short` must lie below `--long`"),
+        (["--s-filter", "5"], "`--s-filter` must have a unit"),
+        (["--s-filter", "-5 nm"], "`--s-filter` must be a positive length"),
+        (["--s-filter", "1 nm"], "rough.csv: `--s-filter` must lie between two pixels, 40 nm"),
+        (["--l-filter", "1 m"], "rough.csv: `--l-filter` must lie between two pixels"),
+        (
+            ["--s-filter", "500 nm", "--l-filter", "100 nm"],
+            "`--s-filter` must lie below `--l-filter`",
+        ),
         (["--size", "10 um"], "`--size` must be 2 lengths, such as '10 um x 10 um'"),
         (["--size", "0 um x 1 um"], "`--size` must be positive"),
         (["--size", "3 um x 3 um"], "rough.csv: the size must be the one in the file"),
         (["--unit", "volt"], "rough.csv: the unit must be a length"),
         (["--channel", "3"], "rough.csv: holds one map and no channels; got 3"),
+        (["--short", "40 nm"], "no such option: --short; it is called --s-filter now"),
+        (["--align", "median"], "no such option: --align; it is called --line-levelling now"),
         (["rough.csv", "rough.csv"], "one or two files must be given; got 3"),
     ],
 )
@@ -356,7 +361,7 @@ def test_a_made_surface_is_read_back_by_the_command_that_is_printed(name: str):
     assert ran.exit_code == 0, ran.output
     command = shlex.split(ran.stdout.splitlines()[-1].strip())
     assert command[:3] == ["asperity", "surface", name]
-    found = described(*command[2:], "--remove", "none")
+    found = described(*command[2:], "--form-removal", "none")
     assert found["rms_height"] == pytest.approx(5e-9, rel=1e-9)
     assert found["physical_size"] == pytest.approx([3e-6, 2e-6])
     assert found["pixel_size"] == pytest.approx([62.5e-9, 62.5e-9])
@@ -374,7 +379,7 @@ def test_a_made_surface_has_the_skewness_and_kurtosis_asked_for_and_says_what_it
                "--kurtosis", "6")  # fmt: skip
     assert ran.exit_code == 0, ran.output
     assert "spectrum's rms error" in ran.stdout
-    found = described("made.nc", "--remove", "none")
+    found = described("made.nc", "--form-removal", "none")
     assert found["skewness"] == pytest.approx(-1.0, abs=0.01)
     assert found["kurtosis"] == pytest.approx(6.0, abs=0.02)
 
@@ -398,7 +403,7 @@ def test_an_rms_slope_is_met():
     ran = call("generate", "made.nc", "--points", "256", *SIZE, "--rms-slope", "0.2",
                "--cut-off", "120 nm", "--roll-off", "300 nm")  # fmt: skip
     assert ran.exit_code == 0, ran.output
-    found = described("made.nc", "--remove", "none")
+    found = described("made.nc", "--form-removal", "none")
     assert math.sqrt(2.0 * found["moments"][1]) == pytest.approx(0.2, rel=0.03)
 
 

@@ -74,8 +74,8 @@ def test_json_is_one_object_with_the_counts():
     assert (said["store"], said["cases"], said["done"]) == ("study.zarr", 50, 50)
     assert said["computed"] == 50
     assert said["cases_per_second"] == pytest.approx(50 / said["wall"])
-    assert said["lanes"] == pytest.approx(0.5)
-    assert 0.0 <= said["outside_compiled"] <= 1.0
+    assert said["batch_use"] == pytest.approx(0.5)
+    assert 0.0 <= said["overhead_share"] <= 1.0
 
 
 def test_quiet_is_quiet():

@@ -54,7 +54,7 @@ def test_the_published_case_is_the_one_of_the_publication():
         0.03,
         2e-10,
     )
-    assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "contact")
+    assert (case.capillary.model, case.capillary.formation) == ("equilibrium", "on-contact")
     assert (case.capillary.humidity, case.capillary.temperature) == (0.6, 293.15)
     assert case.capillary.contact_angle == math.radians(73)
     assert (case.impact.release_separation, case.impact.speed, case.impact.gravity) == (

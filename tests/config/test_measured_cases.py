@@ -251,7 +251,7 @@ REFUSED = [
     ({"size": "10 kg"}, "`size`"),
     ({"files": []}, "`files`"),
     ({"files": None, "source": None}, "is missing; give it, or `files` of measured surfaces"),
-    ({"short": "2 um", "long": "1 um"}, "`short`"),
+    ({"s_filter": "2 um", "l_filter": "1 um"}, "`s_filter`"),
 ]
 
 
@@ -260,10 +260,10 @@ def test_a_table_that_contradicts_itself_is_refused(case, changes, rule):
     refused(lambda: changed(case, **changes), rule)
 
 
-@pytest.mark.parametrize("key", ["size", "unit", "source", "missing", "remove", "short"])
+@pytest.mark.parametrize("key", ["size", "unit", "source", "missing", "form_removal", "s_filter"])
 def test_what_is_for_files_is_refused_without_them(key):
     given = {"size": "1 um x 1 um", "unit": "nm", "source": "gaussian", "missing": "keep"}
-    value = {**given, "remove": "tilt", "short": "10 nm"}[key]
+    value = {**given, "form_removal": "tilt", "s_filter": "10 nm"}[key]
     numbers = '[roughness]\nasperity_density = "1e14 1/m^2"\nasperity_radius = "1 nm"\n'
     text = CASE.split("[roughness]")[0] + numbers + f'rms_height = "1 nm"\n{key} = "{value}"\n'
     whole = f"{text}[adhesion]{CASE.split('[adhesion]')[1]}"
@@ -308,21 +308,32 @@ def test_liquid_on_the_surface_sees_its_rms_height_not_that_of_the_summits(case,
 
 def test_menisci_that_take_time_go_with_weighted_summits_and_not_with_classes(case):
     late = case.replace({"capillary.formation_time": "1 us"})
-    assert build(late).late is not None
+    assert build(late).delayed is not None
     changes = {"adhesion.model": "jkr", "capillary.model": "constant-volume"}
     classed = changed(late, radius_classes=1).replace(changes)
     refused(lambda: build(classed), "formation_time")
 
 
 def test_a_case_with_files_comes_back_from_its_text(case):
-    given = changed(case, radius_classes=4, missing="fill", long="1 um", size="1.28 um x 1.28 um")
+    given = changed(
+        case, radius_classes=4, missing="fill", l_filter="1 um", size="1.28 um x 1.28 um"
+    )
     assert load(given.toml()) == given
     assert load(case.toml()) == case
 
 
 def test_the_template_names_the_keys_of_files_and_loads():
     text = template()
-    for key in ("files", "source", "size", "unit", "channel", "missing", "remove", "align"):
+    for key in (
+        "files",
+        "source",
+        "size",
+        "unit",
+        "channel",
+        "missing",
+        "form_removal",
+        "line_levelling",
+    ):
         assert f"# {key} = " in text
     assert load(text).roughness.files is None
 

@@ -11,7 +11,8 @@ from asperity.sweeps.study.columns import MEASURES, columns
     "key",
     [
         "adhesion.range", "gas.closest_gap", "capillary.film_thickness", "impact.release_gap",
-        "numerics.rest", "publication.pull_while_parting_only",
+        "numerics.rest", "publication.pull_while_parting_only", "roughness.short",
+        "roughness.long", "roughness.remove", "roughness.align",
     ],
 )  # fmt: skip
 def test_an_old_key_names_the_new_one(key):
@@ -23,7 +24,7 @@ def test_an_old_key_names_the_new_one(key):
     assert table in str(raised.value)
 
 
-@pytest.mark.parametrize("name", ["impact_time", "stiction_time", "end_time"])
+@pytest.mark.parametrize("name", ["impact_time", "stiction_time", "end_time", "deepest"])
 def test_an_old_column_names_the_new_one(name):
     with pytest.raises(asperity.InputError, match=f"it is called '{RENAMED[name]}' now"):
         columns([name], motions=False)

@@ -12,7 +12,7 @@ import asperity
 from asperity import solver
 from asperity.cli import app
 from asperity.config import load
-from asperity.contact.viscoelastic import CreptContact
+from asperity.contact.viscoelastic import RelaxedContact
 from asperity.materials.solids import contact_modulus
 from asperity.model import build
 from asperity.results import colours
@@ -113,8 +113,8 @@ def test_a_rigid_bulk_and_menisci_that_take_time_are_refused():
 
 def test_without_a_model_the_bulk_is_elastic():
     case = load(SMOOTH + '[viscoelasticity]\nmodel = "none"\n')
-    assert build(case).creep is None
-    assert build(load(SMOOTH)).creep is None
+    assert build(case).relaxation is None
+    assert build(load(SMOOTH)).relaxation is None
 
 
 def test_a_case_with_creep_reads_back_and_knows_both_moduli():
@@ -122,9 +122,9 @@ def test_a_case_with_creep_reads_back_and_knows_both_moduli():
     assert load(case.toml()) == case
     problem = build(case)
     modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    assert isinstance(problem.contact, CreptContact)
-    assert float(problem.contact.told.law.modulus) == pytest.approx(0.4 * modulus)
-    assert float(problem.creep.contact.law.modulus) == pytest.approx(modulus)
+    assert isinstance(problem.contact, RelaxedContact)
+    assert float(problem.contact.base.law.modulus) == pytest.approx(0.4 * modulus)
+    assert float(problem.relaxation.contact.law.modulus) == pytest.approx(modulus)
     assert problem.modulus == pytest.approx(modulus)
 
 

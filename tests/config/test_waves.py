@@ -88,12 +88,12 @@ def _leg(problem, start, speed, memory):
 
 
 def test_motion_is_that_of_an_integration_in_time_with_gas_and_waves(problem, result):
-    memory, time = problem.contact.fresh(), 0.0
+    memory, time = problem.contact.initial_memory(), 0.0
     place, speed = float(problem.body.release), -0.5
-    for name in ("deepest", "apex"):
+    for name in ("closest_approach", "apex"):
         place, taken = _leg(problem, place, speed, memory)
         memory, time = problem.contact.remember(memory, place), time + taken
-        speed = 1e-9 if name == "deepest" else -1e-9
+        speed = 1e-9 if name == "closest_approach" else -1e-9
         assert result.events[f"{name}_separation"][0] == pytest.approx(place, rel=1e-6)
         assert result.events[f"{name}_time"][0] == pytest.approx(time, rel=1e-6)
 
@@ -185,7 +185,7 @@ def _warned(case, share, force):
     problem = build(case)
     energy = 0.5 * float(problem.body.mass) * 0.5**2
     laws = np.full(len(problem.contact.mechanisms), 1e-3 * energy)
-    impacts = SimpleNamespace(fastest=[energy], lost=np.append(laws, share * energy)[None])
+    impacts = SimpleNamespace(maximum_kinetic=[energy], lost=np.append(laws, share * energy)[None])
     motion = SimpleNamespace(impacts=impacts)
     return wave_warnings(case, problem, force, -1e-9, motion)
 

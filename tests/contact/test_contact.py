@@ -30,7 +30,7 @@ def elastic(mu, law=HERTZ, rings=80, modulus=E):
 
 @eqx.filter_jit
 def state(contact, separation):
-    return contact.state(separation, contact.fresh())
+    return contact.state(separation, contact.initial_memory())
 
 
 @eqx.filter_jit
@@ -40,12 +40,12 @@ def states(contact, separations, memory):
 
 @eqx.filter_jit
 def remember(contact, separation):
-    return contact.remember(contact.fresh(), separation)
+    return contact.remember(contact.initial_memory(), separation)
 
 
 @eqx.filter_jit
 def force_slope(contact, separation):
-    return jax.grad(lambda d: contact.state(d, contact.fresh()).force)(separation)
+    return jax.grad(lambda d: contact.state(d, contact.initial_memory()).force)(separation)
 
 
 def rigid_separation(contact, central):
@@ -165,13 +165,15 @@ def test_force_does_not_depend_on_the_units():
 
 
 def test_remembered_bonds_hold_the_elastic_contact_until_the_kelvin_gap():
-    """Parting after a touch pulls; before any touch it does not; a reversal is continuous."""
+    """Unloading pulls after a contact, and not before the first; a reversal is continuous."""
     meniscus = Meniscus(BETA, 0.0728, radians(73.0), 1.05e-9)
     contact = elastic(4.0, HERTZ + meniscus)
     deep = jnp.asarray(2.0 * SIGMA)
 
     memory = remember(contact, deep)
-    places = jnp.asarray([2.0 * SIGMA, 2.0 * SIGMA + 0.5 * meniscus.reach, 12.0 * SIGMA])
+    places = jnp.asarray(
+        [2.0 * SIGMA, 2.0 * SIGMA + 0.5 * meniscus.interaction_range, 12.0 * SIGMA]
+    )
     out = states(contact, places, memory)
     first = state(contact, deep)
     assert float(out.force[0]) == pytest.approx(float(first.force), rel=1e-7)
@@ -184,7 +186,7 @@ def test_a_smooth_body_feels_the_law_itself():
     contact = SmoothContact(law)
     d = jnp.asarray(0.5 * float(law.breaking_gap))
     assert float(state(contact, d).force) == 0.0
-    touched = contact.remember(contact.fresh(), jnp.asarray(-1e-9))
+    touched = contact.remember(contact.initial_memory(), jnp.asarray(-1e-9))
     held = contact.state(d, touched)
     assert float(held.force) == pytest.approx(float(law.bonded_force(d)), rel=1e-13)
     gone = contact.remember(touched, jnp.asarray(2.0 * float(law.breaking_gap)))

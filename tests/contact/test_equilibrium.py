@@ -9,7 +9,7 @@ import pytest
 import asperity
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
-from asperity.contact.equilibrium import rates, rise_of, settle
+from asperity.contact.equilibrium import profile_of, rates, solve_equilibrium
 from asperity.contact.profile import Sphere
 from asperity.halfspace import ring_mesh
 from asperity.interface.interface import Interface
@@ -28,17 +28,17 @@ def contact(modulus):
     return ElasticContact(layer, Sphere(RADIUS), modulus, RINGS)
 
 
-found = eqx.filter_jit(settle)
+found = eqx.filter_jit(solve_equilibrium)
 paces = eqx.filter_jit(rates)
 
 
-def residual(here, place, thresholds, size, lift):
+def residual(here, place, thresholds, size, displacement):
     """What is left of h = d + rise + u(p(h)), by dense products of NumPy; u is 0 at the end."""
     mesh = ring_mesh(here.rings)
-    h = place + rise_of(here, size, here.rings) + lift
+    h = place + profile_of(here, size, here.rings) + displacement
     pressure = np.asarray(here.interface.pressure(h, thresholds))[:-1]
     displaced = size / here.modulus * (mesh.compliance @ pressure)
-    return np.asarray(lift) - np.append(displaced, 0.0)
+    return np.asarray(displacement) - np.append(displaced, 0.0)
 
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["fresh", "torn"])
@@ -49,18 +49,23 @@ def test_rings_settle_from_nothing_and_from_a_guess_nearby(modulus, depth, bonde
     thresholds, flat = here.extreme((bonded,)).thresholds, jnp.zeros(RINGS + 1)
     rest = found(here, place, thresholds, size, flat, RINGS)
     assert float(rest.error) < 1e-10
-    left = residual(here, place, thresholds, 9e-7, rest.lift)
-    np.testing.assert_allclose(left, 0.0, atol=3e-12 * (SIGMA + float(jnp.max(rest.lift))))
+    left = residual(here, place, thresholds, 9e-7, rest.displacement)
+    np.testing.assert_allclose(left, 0.0, atol=3e-12 * (SIGMA + float(jnp.max(rest.displacement))))
     near = found(here, place + 0.1 * SIGMA, thresholds, size, flat, RINGS)
-    again = found(here, place, thresholds, size, near.lift, RINGS)
-    np.testing.assert_allclose(again.lift, rest.lift, atol=1e-11 * SIGMA, rtol=1e-11)
+    again = found(here, place, thresholds, size, near.displacement, RINGS)
+    np.testing.assert_allclose(
+        again.displacement, rest.displacement, atol=1e-11 * SIGMA, rtol=1e-11
+    )
 
 
 def test_rates_are_those_of_rings_at_two_places():
     here, place, size = contact(57e9), jnp.asarray(-2.0 * SIGMA), jnp.asarray(9e-7)
-    thresholds, flat = here.fresh().thresholds, jnp.zeros(RINGS + 1)
+    thresholds, flat = here.initial_memory().thresholds, jnp.zeros(RINGS + 1)
     step = 1e-4 * SIGMA
-    lifts = [found(here, place + k * step, thresholds, size, flat, RINGS).lift for k in (-1, 0, 1)]
+    lifts = [
+        found(here, place + k * step, thresholds, size, flat, RINGS).displacement
+        for k in (-1, 0, 1)
+    ]
     measured = 1.0 + (lifts[2] - lifts[0]) / (2.0 * step)
     rate = paces(here, place, thresholds, size, lifts[1], RINGS)
     np.testing.assert_allclose(rate, measured, rtol=1e-4)
@@ -71,7 +76,7 @@ def test_rates_are_those_of_rings_at_two_places():
 @pytest.mark.parametrize("humidity", [0.05, 0.6])
 @pytest.mark.parametrize("rms", ["2 nm", "10.5 nm"])
 def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms, humidity):
-    """Liquid wets far more than what asperities carry: the mesh, and the way back, take it in."""
+    """Liquid wets far more than what asperities carry: mesh and scanning curve take it in."""
     case = asperity.load("published-exact").replace(
         {
             "capillary.model": "kelvin-filling",
@@ -129,15 +134,15 @@ def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():
 
 def test_a_batch_settles_as_each_alone():
     here, size = contact(57e9), jnp.asarray(9e-7)
-    thresholds, flat = here.fresh().thresholds, jnp.zeros(RINGS + 1)
+    thresholds, flat = here.initial_memory().thresholds, jnp.zeros(RINGS + 1)
     places = SIGMA * jnp.asarray([5.0, 1.0, -20.0])
 
     def one(place):
-        return settle(here, place, thresholds, size, flat, RINGS).lift
+        return solve_equilibrium(here, place, thresholds, size, flat, RINGS).displacement
 
     together = jax.jit(jax.vmap(one))(places)
     for row, place in zip(together, places, strict=True):
-        alone = found(here, place, thresholds, size, flat, RINGS).lift
+        alone = found(here, place, thresholds, size, flat, RINGS).displacement
         np.testing.assert_allclose(row, alone, atol=1e-11 * SIGMA, rtol=1e-11)
 
 

@@ -61,11 +61,11 @@ def test_the_estimated_error_of_the_rings_is_what_a_finer_mesh_changes(name):
     forces, errors, deepest = {}, {}, None
     for rings in (160, 80, 40):
         contact, motion = first_impact(here := case(rings, name), build(here))
-        deepest = float(motion.impacts.deepest[0]) if deepest is None else deepest
+        deepest = float(motion.impacts.closest_approach[0]) if deepest is None else deepest
         row = read_row(motion.table, 0, deepest)
-        lift = row[quantities(contact).field]
+        displacement = row[quantities(contact).field]
         forces[rings] = row[FORCE]
-        errors[rings] = ring_error(contact, deepest, float(row[SIZE]), lift)
+        errors[rings] = ring_error(contact, deepest, float(row[SIZE]), displacement)
     for rings in (80, 40):
         true = abs(forces[rings] / forces[160] - 1.0)
         assert errors[rings] == pytest.approx(true, rel=0.3, abs=1e-11)

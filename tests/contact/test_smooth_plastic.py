@@ -37,7 +37,7 @@ def beside(work=0.05, tension=0.0728):
 
 
 @eqx.filter_jit
-def fly(contact, speeds, gravity=ZERO):
+def integrate(contact, speeds, gravity=ZERO):
     """Impacts at some speeds [m/s] from 10 nm away, one row a speed; losses are no energies yet."""
 
     def one(speed):
@@ -45,7 +45,7 @@ def fly(contact, speeds, gravity=ZERO):
         motion = simulate(contact, body, tolerance=THREE)
         rows = motion.impacts
         energy_balance_error = (
-            jnp.max(jnp.where(rows.made, rows.energy_balance_error, 0.0)) / rows.fastest[0]
+            jnp.max(jnp.where(rows.made, rows.energy_balance_error, 0.0)) / rows.maximum_kinetic[0]
         )
         return (
             rows._replace(energy_balance_error=energy_balance_error),
@@ -61,7 +61,7 @@ def test_restitution_of_a_yielding_sphere_is_that_of_thornton_and_ning():
     yielding = float(jnp.sqrt(2.0 * SPHERE.loading_work(SPHERE.yield_overlap) / MASS))
     ratios = np.array([0.3, 0.99, 1.2, 10.0, 500.0, 1000.0])
     contact = SmoothPlasticContact(SPHERE, beside(0.0, 0.0))
-    rows, restitution, _ = fly(contact, ratios * yielding)
+    rows, restitution, _ = integrate(contact, ratios * yielding)
     v = 1.0 / np.maximum(ratios, 1.0)
     closed = np.sqrt(6.0 * sqrt(3.0) / 5.0) * np.sqrt(1.0 - v**2 / 6.0)
     closed *= (v / (v + 2.0 * np.sqrt(6.0 / 5.0 - v**2 / 5.0))) ** 0.25
@@ -92,13 +92,13 @@ def test_a_sphere_that_yields_and_adheres_leaves_as_its_energies_say():
     critical = float(jnp.sqrt(2.0 * balance(ADHESIVE, low)[0] / MASS))
     assert critical == pytest.approx(1.458, rel=1e-3)
     speeds = critical * np.array([0.4, 0.9999, 1.0001, 2.0, 5.0 / critical, 20.0])
-    rows, restitution, _ = fly(contact, speeds)
+    rows, restitution, _ = integrate(contact, speeds)
     assert np.all(restitution[:2, 0] == 0.0)
-    kinetic, left = balance(ADHESIVE, -rows.deepest[2:, 0])
+    kinetic, left = balance(ADHESIVE, -rows.closest_approach[2:, 0])
     np.testing.assert_allclose(kinetic, 0.5 * MASS * speeds[2:] ** 2, rtol=1e-10)
     np.testing.assert_allclose(restitution[2:, 0], np.sqrt(left / kinetic), rtol=1e-6)
     # Each loss by its name: the first touch is that of the whole tip.
-    deepest = -rows.deepest[2:, 0]
+    deepest = -rows.closest_approach[2:, 0]
     np.testing.assert_allclose(rows.lost[2:, 0, 0], ADHESIVE.dissipated(deepest), rtol=1e-9)
     bond = ADHESIVE.formation_loss(ZERO) + ADHESIVE.rupture_loss(deepest)
     np.testing.assert_allclose(rows.lost[2:, 0, 1], bond, rtol=1e-9)
@@ -107,13 +107,13 @@ def test_a_sphere_that_yields_and_adheres_leaves_as_its_energies_say():
 
 def test_a_second_impact_keeps_nothing_and_meets_the_flattened_tip():
     contact = SmoothPlasticContact(ADHESIVE, meniscus())
-    rows, _, made = fly(contact, SPEEDS + 3.5, EARTH)
+    rows, _, made = integrate(contact, SPEEDS + 3.5, EARTH)
     assert np.all(made >= 2)
     assert np.max(rows.energy_balance_error) < 1e-8
     kept = np.asarray(rows.lost[..., 0])
-    assert np.all(np.abs(kept[:, 1] - kept[:, 0]) < 1e-9 * np.asarray(rows.fastest[:, 0]))
-    assert np.all(rows.deepest[:, 1] > rows.deepest[:, 0])
-    deepest, thrice = -rows.deepest[:, 0], made == 3
+    assert np.all(np.abs(kept[:, 1] - kept[:, 0]) < 1e-9 * np.asarray(rows.maximum_kinetic[:, 0]))
+    assert np.all(rows.closest_approach[:, 1] > rows.closest_approach[:, 0])
+    deepest, thrice = -rows.closest_approach[:, 0], made == 3
     bond = ADHESIVE.formation_loss(deepest) + ADHESIVE.rupture_loss(deepest)
     second = rows.lost[:, 1, 1] - rows.lost[:, 0, 1]
     assert np.any(thrice)
@@ -121,24 +121,29 @@ def test_a_second_impact_keeps_nothing_and_meets_the_flattened_tip():
 
 
 def test_energies_add_up_with_laws_beside_a_contact_that_yields():
-    rows, restitution, made = fly(SmoothPlasticContact(SPHERE, beside()), SPEEDS, EARTH)
+    rows, restitution, made = integrate(SmoothPlasticContact(SPHERE, beside()), SPEEDS, EARTH)
     assert np.all(made[1:] == 3)
     assert np.max(rows.energy_balance_error) < 1e-8
     lost = np.asarray(rows.lost)
-    assert np.all(np.abs(lost[:, 1, 0] - lost[:, 0, 0]) < 1e-9 * np.asarray(rows.fastest[:, 0]))
+    assert np.all(
+        np.abs(lost[:, 1, 0] - lost[:, 0, 0]) < 1e-9 * np.asarray(rows.maximum_kinetic[:, 0])
+    )
     assert np.all(lost[1:, 1, 1] > lost[1:, 0, 1])
     assert np.all((restitution[1:, 0] > 0.0) & (restitution[1:, 0] < 1.0))
-    dry = fly(SmoothPlasticContact(SPHERE, beside(0.0, 0.0)), SPEEDS)[1]
+    dry = integrate(SmoothPlasticContact(SPHERE, beside(0.0, 0.0)), SPEEDS)[1]
     assert np.all(restitution[1:, 0] < dry[1:, 0])
 
 
 def test_a_sphere_too_hard_to_yield_moves_as_one_that_cannot():
     hard = SmoothPlasticContact(ThorntonNing(RADIUS, MODULUS, 1e13), beside())
-    rows, restitution, made = fly(hard, SPEEDS, EARTH)
-    theirs = fly(SmoothContact(Hertz(RADIUS, MODULUS) + beside()), SPEEDS, EARTH)
+    rows, restitution, made = integrate(hard, SPEEDS, EARTH)
+    theirs = integrate(SmoothContact(Hertz(RADIUS, MODULUS) + beside()), SPEEDS, EARTH)
     np.testing.assert_array_equal(made, theirs[2])
     np.testing.assert_allclose(restitution, theirs[1], rtol=1e-8)
-    for ours, other in ((rows.deepest, theirs[0].deepest), (rows.apex, theirs[0].apex)):
+    for ours, other in (
+        (rows.closest_approach, theirs[0].closest_approach),
+        (rows.apex, theirs[0].apex),
+    ):
         np.testing.assert_allclose(ours, other, rtol=1e-8)
     np.testing.assert_array_equal(rows.lost[..., 0], 0.0)
     np.testing.assert_allclose(rows.lost[..., 1], theirs[0].lost[..., 0], rtol=1e-8)
@@ -146,9 +151,9 @@ def test_a_sphere_too_hard_to_yield_moves_as_one_that_cannot():
 
 def test_without_laws_beside_contact_the_work_that_is_kept_is_all_that_is_lost():
     sphere = JacksonGreen(RADIUS, MODULUS, 60e6, 0.3)
-    rows, restitution, _ = fly(SmoothPlasticContact(sphere), SPEEDS)
-    kinetic = sphere.loading_work(-rows.deepest[:, 0])
-    left = kinetic - sphere.dissipated(-rows.deepest[:, 0])
+    rows, restitution, _ = integrate(SmoothPlasticContact(sphere), SPEEDS)
+    kinetic = sphere.loading_work(-rows.closest_approach[:, 0])
+    left = kinetic - sphere.dissipated(-rows.closest_approach[:, 0])
     np.testing.assert_allclose(restitution[:, 0], np.sqrt(left / kinetic), rtol=1e-8)
     assert np.max(rows.energy_balance_error) < 1e-8
 
@@ -178,10 +183,12 @@ def test_force_is_the_slope_of_what_is_stored_and_kept(name):
     force = eqx.filter_jit(jax.vmap(lambda d, m: contact.state(d, m).force, (0, None)))
     begin = contact.contact.yield_overlap
     pressed = -begin * jnp.asarray([0.4, 0.95, 1.05, 3.0, 20.0])
-    loading = slope(contact, pressed, contact.fresh())
+    loading = slope(contact, pressed, contact.initial_memory())
     scale = float(jnp.max(jnp.abs(loading)))
-    np.testing.assert_allclose(-loading, force(pressed, contact.fresh()), atol=1e-9 * scale)
-    memory = contact.remember(contact.fresh(), -30.0 * begin)
+    np.testing.assert_allclose(
+        -loading, force(pressed, contact.initial_memory()), atol=1e-9 * scale
+    )
+    memory = contact.remember(contact.initial_memory(), -30.0 * begin)
     left = contact.contact.residual(30.0 * begin)
     unloading = jnp.linspace(-29.9 * begin, -left + 0.9e-9, 21)
     way = slope(contact, unloading, memory)
@@ -191,13 +198,13 @@ def test_force_is_the_slope_of_what_is_stored_and_kept(name):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_parts_add_up_and_nothing_is_felt_out_of_reach(name):
     contact = CONTACTS[name]
-    memory = contact.remember(contact.fresh(), -20.0 * contact.contact.yield_overlap)
-    for d, before in ((-3.0, contact.fresh()), (-15.0, memory)):
+    memory = contact.remember(contact.initial_memory(), -20.0 * contact.contact.yield_overlap)
+    for d, before in ((-3.0, contact.initial_memory()), (-15.0, memory)):
         state = contact.state(d * contact.contact.yield_overlap, before)
         assert state.parts.shape == (len(contact.components),)
         assert state.bonds.shape == (len(contact.mechanisms),)
         assert float(jnp.sum(state.parts)) == pytest.approx(float(state.force), rel=1e-12)
-    out = contact.state(1.01 * contact.reach, contact.fresh())
+    out = contact.state(1.01 * contact.interaction_range, contact.initial_memory())
     assert float(out.force) == float(out.stored) == 0.0
     np.testing.assert_array_equal(out.bonds, 0.0)
 
@@ -205,16 +212,16 @@ def test_parts_add_up_and_nothing_is_felt_out_of_reach(name):
 def test_branches_are_the_first_approach_and_then_every_combination_of_bonds():
     contact = SmoothPlasticContact(ADHESIVE, meniscus())
     assert len(contact.branches()) == 1
-    pressed = contact.remember(contact.fresh(), jnp.asarray(-1e-7))
+    pressed = contact.remember(contact.initial_memory(), jnp.asarray(-1e-7))
     worn = contact.after(contact.left_by(pressed, jnp.asarray(-1e-7)))
     assert len(worn.branches()) == 4
-    assert int(worn.branch_of(worn.fresh(), jnp.asarray(False))) == 0
+    assert int(worn.branch_of(worn.initial_memory(), jnp.asarray(False))) == 0
     for k, memory in enumerate(worn.branches()):
         assert int(worn.branch_of(memory, jnp.asarray(True))) == 1 + k
         assert float(memory[0]) == -1e-7
     assert int(worn.branch_of(pressed, jnp.asarray(True))) == 4
     apart = worn.remember(pressed, jnp.asarray(1e-6))
-    assert int(worn.branch_of(apart, jnp.asarray(False))) == worn.resting == 1
+    assert int(worn.branch_of(apart, jnp.asarray(False))) == worn.rest_branch == 1
 
 
 def test_a_law_that_would_count_a_force_twice_is_refused():
@@ -232,6 +239,6 @@ def test_a_tip_pressed_flat_that_pulls_by_more_than_it_presses_rests_where_it_tu
     found = measure(motion, body)
     assert ENDS[int(motion.end.outcome)] is Outcome.REST
     assert int(motion.end.made) == 1
-    assert float(motion.impacts.apex[0]) == float(motion.impacts.deepest[0])
+    assert float(motion.impacts.apex[0]) == float(motion.impacts.closest_approach[0])
     assert bool(found.captured)
     assert float(found.restitution[0]) == 0.0

@@ -31,23 +31,23 @@ def problem():
 
 
 @pytest.fixture(scope="module")
-def flown(problem):
+def integrated(problem):
     """Motion and measures for a viscosity [Pa s], a slip length and a release [m]."""
 
     @jax.jit
-    def fly(viscosity, slip, release=60e-9):
+    def integrate(viscosity, slip, release=60e-9):
         old = problem.body.film
         film = SqueezeFilm(old.radius, viscosity, slip, old.closest)
         body = dataclasses.replace(problem.body, film=film, release=release)
         motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
         return motion, measure(motion, body)
 
-    return fly
+    return integrate
 
 
 @pytest.fixture(scope="module")
-def in_air(flown):
-    return flown(18.2e-6, 75e-9)
+def in_air(integrated):
+    return integrated(18.2e-6, 75e-9)
 
 
 def _in_time(problem, start, sign, memory, film, until=None):
@@ -75,10 +75,11 @@ def _in_time(problem, start, sign, memory, film, until=None):
 
 def test_turns_and_times_are_those_of_an_integration_in_time(problem, in_air):
     motion, _ = in_air
-    memory, place, time = problem.contact.fresh(), float(problem.body.release), 0.0
+    memory, place, time = problem.contact.initial_memory(), float(problem.body.release), 0.0
     for k in range(2):
-        for sign, rows in ((-1, (motion.impacts.deepest, motion.impacts.deepest_time)),
-                           (1, (motion.impacts.apex, motion.impacts.apex_time))):  # fmt: skip
+        made = motion.impacts
+        for sign, rows in ((-1, (made.closest_approach, made.closest_approach_time)),
+                           (1, (made.apex, made.apex_time))):  # fmt: skip
             place, taken, _ = _in_time(problem, place, sign, memory, problem.body.film)
             memory, time = problem.contact.remember(memory, place), time + taken
             assert float(rows[0][k]) == pytest.approx(place, rel=1e-8)
@@ -88,35 +89,37 @@ def test_turns_and_times_are_those_of_an_integration_in_time(problem, in_air):
 def test_what_the_gas_takes_is_missing_from_the_energy(in_air):
     motion, _ = in_air
     rows = motion.impacts
-    assert float(jnp.max(rows.energy_balance_error) / rows.fastest[0]) < 1e-11
+    assert float(jnp.max(rows.energy_balance_error) / rows.maximum_kinetic[0]) < 1e-11
     taken = np.diff(np.asarray(rows.lost)[:, -1])
     assert np.all(taken > 0.0)
 
 
-def test_thin_gas_is_a_vacuum(problem, flown):
+def test_thin_gas_is_a_vacuum(problem, integrated):
     body = dataclasses.replace(problem.body, film=None)
     motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
-    thin, _ = flown(1e-16, 0.0)
-    for name in ("deepest", "apex", "deepest_time", "apex_time"):
+    thin, _ = integrated(1e-16, 0.0)
+    for name in ("closest_approach", "apex", "closest_approach_time", "apex_time"):
         np.testing.assert_allclose(
             getattr(thin.impacts, name), getattr(motion.impacts, name), rtol=1e-9
         )
 
 
-def test_slip_takes_less_energy_than_none(flown):
-    lost = [float(flown(18.2e-6, slip)[0].impacts.lost[0, -1]) for slip in (0.0, 75e-9, 480e-9)]
+def test_slip_takes_less_energy_than_none(integrated):
+    lost = [
+        float(integrated(18.2e-6, slip)[0].impacts.lost[0, -1]) for slip in (0.0, 75e-9, 480e-9)
+    ]
     assert lost[0] > 1.5 * lost[1] > 1.5 * lost[2]
 
 
-def test_restitution_counts_what_passes_the_end_of_contact(problem, flown):
+def test_restitution_counts_what_passes_the_end_of_contact(problem, integrated):
     """Speeds there, in and out, of an integration in time; less is lost than between apexes."""
     start = 200e-9
-    motion, measures = flown(18.2e-6, 75e-9, start)
+    motion, measures = integrated(18.2e-6, 75e-9, start)
     weight, place = float(problem.body.weight), float(measures.reference)
-    film, memory = problem.body.film, problem.contact.fresh()
+    film, memory = problem.body.film, problem.contact.initial_memory()
     speeds = []
     speeds.append(_in_time(problem, start, -1, memory, film, until=place)[2])
-    deepest = float(motion.impacts.deepest[0])
+    deepest = float(motion.impacts.closest_approach[0])
     memory = problem.contact.remember(memory, deepest)
     speeds.append(_in_time(problem, deepest, 1, memory, film, until=place)[2])
     found = float(measures.restitution[0])
@@ -126,31 +129,31 @@ def test_restitution_counts_what_passes_the_end_of_contact(problem, flown):
 
 
 @pytest.mark.parametrize("viscosity", [2e-4, 1e-3, 1e-2])
-def test_a_body_that_the_gas_holds_creeps_to_rest(problem, flown, viscosity):
-    motion, measures = flown(viscosity, 0.0)
+def test_a_body_that_the_gas_holds_creeps_to_rest(problem, integrated, viscosity):
+    motion, measures = integrated(viscosity, 0.0)
     assert ENDS[int(motion.end.outcome)] is Outcome.REST
     assert np.isnan(measures.rebound_height[0])
-    rest = float(motion.datum.equilibrium)
+    rest = float(motion.reference.equilibrium)
     goal = rest + 1e-3 * (float(problem.body.release) - rest)
     film = SqueezeFilm(problem.body.film.radius, viscosity, 0.0, problem.body.film.closest)
     _, time, _ = _in_time(
-        problem, float(problem.body.release), -1, problem.contact.fresh(), film, until=goal
+        problem, float(problem.body.release), -1, problem.contact.initial_memory(), film, until=goal
     )
     assert float(measures.time_to_rest) == pytest.approx(time, rel=2e-4)
-    assert float(motion.impacts.energy_balance_error[0] / motion.impacts.fastest[0]) < 1e-8
+    assert float(motion.impacts.energy_balance_error[0] / motion.impacts.maximum_kinetic[0]) < 1e-8
 
 
-def test_a_drag_that_cannot_be_followed_is_a_failure(flown):
-    motion, _ = flown(0.1, 0.0)
+def test_a_drag_that_cannot_be_followed_is_a_failure(integrated):
+    motion, _ = integrated(0.1, 0.0)
     assert ENDS[int(motion.end.outcome)] is Outcome.FAILED
 
 
 @pytest.mark.long
-def test_a_batch_in_gas_equals_single_motions(flown):
+def test_a_batch_in_gas_equals_single_motions(integrated):
     viscosity = jnp.asarray([1e-5, 2e-5, 2e-4])
-    both, _ = jax.jit(jax.vmap(flown, in_axes=(0, None)))(viscosity, 75e-9)
+    both, _ = jax.jit(jax.vmap(integrated, in_axes=(0, None)))(viscosity, 75e-9)
     for k, value in enumerate(viscosity):
-        one, _ = flown(value, 75e-9)
+        one, _ = integrated(value, 75e-9)
         made = np.asarray(one.impacts.made)
         np.testing.assert_array_equal(both.impacts.made[k], made)
         np.testing.assert_allclose(both.impacts.apex[k][made], one.impacts.apex[made], rtol=1e-10)

@@ -14,10 +14,10 @@ import asperity
 from asperity import InputError, Outcome, SimulationError, solver
 from asperity._jax import jax, jnp
 from asperity.contact import RigidContact, SmoothContact
-from asperity.contact.delayed_formation import LateContact
+from asperity.contact.delayed_formation import DelayedContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, Limits, prepare
-from asperity.dynamics.delayed_motion import fly
+from asperity.dynamics.delayed_motion import integrate_delayed
 from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.dynamics.motion import simulate
 from asperity.dynamics.time_collocation import Here, step
@@ -43,8 +43,10 @@ def rough(law):
 
 def delayed(contact, body, time, tolerance=TWO):
     prepared = _prepare(contact, body)
-    late = LateContact(contact, time)
-    return fly(contact, late, body, prepared, Limits.of(tolerance), lambda count: None)
+    delayed = DelayedContact(contact, time)
+    return integrate_delayed(
+        contact, delayed, body, prepared, Limits.of(tolerance), lambda count: None
+    )
 
 
 @eqx.filter_jit
@@ -52,7 +54,7 @@ def at_once(contact, body):
     return simulate(contact, body, tolerance=TWO)
 
 
-TURNS = ("deepest", "apex", "deepest_time", "apex_time")
+TURNS = ("closest_approach", "apex", "closest_approach_time", "apex_time")
 SPHERE = Meniscus(RADIUS, 0.0728, radians(73.0), 1.05e-9)
 CASES = {
     "rough": (rough(HERTZ + WET), DROP),
@@ -114,8 +116,8 @@ def test_the_ledger_closes(name, time):
     contact, body = CASES[name]
     motion, trajectory, _ = delayed(contact, body, time)
     rows = motion.impacts
-    assert np.max(rows.energy_balance_error) < 1e-8 * rows.fastest[0]
-    assert np.all(np.diff(trajectory.lost, axis=0) >= -1e-9 * rows.fastest[0])
+    assert np.max(rows.energy_balance_error) < 1e-8 * rows.maximum_kinetic[0]
+    assert np.all(np.diff(trajectory.lost, axis=0) >= -1e-9 * rows.maximum_kinetic[0])
 
 
 def _mean(cells, weights, values, edge):
@@ -138,7 +140,7 @@ def test_motion_is_that_of_explicit_asperities_each_with_its_relay():
         * (norm.pdf(edges / SIGMA) - edges / SIGMA * norm.sf(edges / SIGMA))
     )
     cells, weights = 0.5 * (edges[1:] + edges[:-1]), -np.diff(above)
-    span, pull = float(WET.reach), float(WET.pull)
+    span, pull = float(WET.interaction_range), float(WET.attraction)
 
     def forces(d, b):
         gap = d - cells
@@ -170,8 +172,8 @@ def test_motion_is_that_of_explicit_asperities_each_with_its_relay():
     drop = 120e-9 - apex
     assert drop > 1e-10
     assert 120e-9 - rows.apex[0] == pytest.approx(drop, rel=1e-3)
-    assert rows.deepest[0] == pytest.approx(deepest, rel=1e-6)
-    assert rows.deepest_time[0] == pytest.approx(first, rel=1e-6)
+    assert rows.closest_approach[0] == pytest.approx(deepest, rel=1e-6)
+    assert rows.closest_approach_time[0] == pytest.approx(first, rel=1e-6)
     assert rows.apex_time[0] == pytest.approx(last, rel=1e-5)
 
 
@@ -189,7 +191,7 @@ def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
     )
     assert series.time[wet[0] - 1] == pytest.approx(appears, rel=1e-6)
     gap = start - speed * appears
-    loss = float(SPHERE.pull) * (0.5 * float(SPHERE.reach) - gap)
+    loss = float(SPHERE.attraction) * (0.5 * float(SPHERE.interaction_range) - gap)
     assert trajectory.lost[wet[0], 0] == pytest.approx(loss, rel=1e-6)
 
 
@@ -197,11 +199,11 @@ def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
 def test_force_is_the_slope_of_the_energy_at_a_threshold_that_lags_behind(name):
     """While no bond breaks: no bond of any law is stretched to where it would."""
     place = 35e-9
-    late = LateContact(CASES[name][0], 1e-6)
-    memory = tuple(jnp.asarray(place - 0.5 * float(law.breaking_gap)) for law in late.laws)
+    delayed = DelayedContact(CASES[name][0], 1e-6)
+    memory = tuple(jnp.asarray(place - 0.5 * float(law.breaking_gap)) for law in delayed.laws)
 
     def at(part):
-        return lambda d, b: getattr(late.state(d, memory, b), part)
+        return lambda d, b: getattr(delayed.state(d, memory, b), part)
 
     slope, force = jax.jit(jax.grad(at("stored"))), jax.jit(at("force"))
     for threshold in (place + 2e-9, place + 10e-9, place - 0.4e-9):
@@ -212,17 +214,17 @@ def test_force_is_the_slope_of_the_energy_at_a_threshold_that_lags_behind(name):
 def test_a_step_is_of_high_order():
     """Against four quarters of it, the error of a step falls by over 2^12 when it is halved."""
     contact, body = CASES["rough"]
-    late = LateContact(contact, 1e-5)
+    delayed = DelayedContact(contact, 1e-5)
     one = eqx.filter_jit(step)
 
     def end(span, parts):
         here = Here(
             *(jnp.asarray(x) for x in (44e-9, -1e-4, 0.0, 45e-9)),
-            contact.fresh(),
+            contact.initial_memory(),
             jnp.asarray(True),
         )
         for _ in range(parts):
-            done = one(late, body, here, jnp.asarray(span / parts))
+            done = one(delayed, body, here, jnp.asarray(span / parts))
             here = here._replace(
                 separation=done.separation[-1], speed=done.speed[-1], threshold=done.threshold[-1]
             )
@@ -259,15 +261,15 @@ def test_restitution_in_gas_tends_to_that_with_menisci_at_once(case):
         solver.solve(case.replace({**gas, "capillary.formation_time": time}))
         for time in (None, "1 ps")
     ]
-    at_once, late = (result.measures["restitution"] for result in found)
-    np.testing.assert_allclose(late, at_once, rtol=1e-8)
+    at_once, delayed = (result.measures["restitution"] for result in found)
+    np.testing.assert_allclose(delayed, at_once, rtol=1e-8)
 
 
 def test_a_time_of_zero_is_no_time(case):
     zero = case.replace({"capillary.formation_time": "0 s"})
     none = case.replace({"capillary.formation_time": None})
-    assert asperity.model.build(zero).late is None
-    assert asperity.model.build(none).late is None
+    assert asperity.model.build(zero).delayed is None
+    assert asperity.model.build(none).delayed is None
 
 
 def test_a_motion_can_be_stopped(case):
@@ -276,10 +278,10 @@ def test_a_motion_can_be_stopped(case):
     with pytest.raises(SimulationError, match="before the first impact"):
         solver.solve(case, stop=stop)
     stop = threading.Event()
-    told = []
+    base = []
 
     def watch(fraction, text):
-        told.append(text)
+        base.append(text)
         if text == "impact 1":
             stop.set()
 
@@ -299,7 +301,7 @@ def test_a_motion_can_be_stopped(case):
             },
             "without a film",
         ),
-        ({"capillary.formation": "kelvin"}, "equilibrium"),
+        ({"capillary.formation": "capillary-condensation"}, "equilibrium"),
         ({"capillary.formation_time": "-1 s"}, "negative"),
         ({"capillary.formation_time": "1e-6"}, "unit"),
     ],

@@ -8,12 +8,12 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity import InputError, Outcome
-from asperity.contact.delayed_formation import LateContact
-from asperity.dynamics.viscoelastic.ring_menisci import Flight
-from asperity.integration import flown, silently
+from asperity.contact.delayed_formation import DelayedContact
+from asperity.dynamics.viscoelastic.ring_menisci import FreeFlight
+from asperity.integration import integrate, silently
 from asperity.model import build
 
-TURNS = ("deepest", "apex", "deepest_time", "apex_time")
+TURNS = ("closest_approach", "apex", "closest_approach_time", "apex_time")
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,7 @@ def case():
 
 
 def impacts(case):
-    return flown(case, build(case), silently, None).motion.impacts
+    return integrate(case, build(case), silently, None).motion.impacts
 
 
 def lost(case):
@@ -45,11 +45,11 @@ def test_long_formation_tends_to_the_dry_motion(case):
     """From where no asperity is wet at the release."""
     case = case.replace({"impact.release_separation": "100 nm"})
     dry = impacts(case.replace({"capillary.model": "none"}))
-    late = impacts(case.replace({"capillary.formation_time": "1000 s"}))
+    delayed = impacts(case.replace({"capillary.formation_time": "1000 s"}))
     for turn in TURNS:
-        found, wanted = float(getattr(late, turn)[0]), float(getattr(dry, turn)[0])
+        found, wanted = float(getattr(delayed, turn)[0]), float(getattr(dry, turn)[0])
         assert found == pytest.approx(wanted, rel=5e-8)
-    assert 0.0 < float(late.lost[0, 0]) < 1e-8 * lost(case)
+    assert 0.0 < float(delayed.lost[0, 0]) < 1e-8 * lost(case)
 
 
 @pytest.mark.parametrize("time", ["300 ns", "10 us", "1 ms"])
@@ -58,8 +58,10 @@ def test_a_stiff_half_space_is_the_rigid_body(case, time):
     here = case.replace({"capillary.formation_time": time})
     problem = build(here)
     hard = dataclasses.replace(problem.contact, modulus=1e7 * problem.contact.modulus)
-    late = LateContact(hard, problem.late.time)
-    found = flown(here, problem._replace(contact=hard, late=late), silently, None).motion.impacts
+    delayed = DelayedContact(hard, problem.delayed.time)
+    found = integrate(
+        here, problem._replace(contact=hard, delayed=delayed), silently, None
+    ).motion.impacts
     wanted = impacts(here.replace({"counterface.deformation": "rigid"}))
     for turn in TURNS:
         np.testing.assert_allclose(getattr(found, turn), getattr(wanted, turn), rtol=1e-7)
@@ -111,7 +113,7 @@ def test_gas_is_refused_beside_it(case):
 def test_thresholds_in_flight_are_those_of_an_integration(pace, speed, span):
     """Falling, and rising until they are met; from beside, above and below where they lag."""
     begun, gravity = np.array([0.4, 1.0, 1.3, 2.0]), 1.0
-    flight = Flight(np.ones(4), speed, gravity)
+    flight = FreeFlight(np.ones(4), speed, gravity)
 
     def rate(t, b):
         goal = 1.0 + speed * t - 0.5 * gravity * t**2

@@ -57,7 +57,7 @@ def test_time_and_losses_never_go_back(name):
             # What is drawn ends where the ledger does.
             assert abs(lost[-1] - result.ledger["lost"][key[5:]]) <= 1e-6 * energy
     # The drawn turning points are those of the record, at the same times.
-    for what in ("deepest", "apex"):
+    for what in ("closest_approach", "apex"):
         times, places = result.events[f"{what}_time"], result.events[f"{what}_separation"]
         for time, place in zip(times, places, strict=True):
             here = np.flatnonzero(np.abs(result.time - time) <= 1e-9 * result.time[-1])
@@ -68,7 +68,7 @@ def test_time_and_losses_never_go_back(name):
 def test_a_fall_lasts_as_long_as_its_speeds_say():
     """Between samples that are close the speed changes evenly: dt = 2 dd / (v + v')."""
     result = asperity.solve(load_file(EXAMPLES / "glass-bead.toml"))
-    first, then = result.events["apex_time"][0], result.events["deepest_time"][1]
+    first, then = result.events["apex_time"][0], result.events["closest_approach_time"][1]
     inside = (result.time >= first * (1.0 - 1e-12)) & (result.time <= then * (1.0 + 1e-12))
     fall = np.flatnonzero(inside)
     place, speed = result.separation[fall], result.speed[fall]
@@ -78,10 +78,10 @@ def test_a_fall_lasts_as_long_as_its_speeds_say():
 
 def test_the_time_of_a_body_that_was_just_at_rest_is_that_of_its_even_acceleration():
     """With what the quadrature misses: 2/(sqrt(e + 1) + sqrt(e)), for small e and large."""
-    from asperity.dynamics.curve_table import RATE, RISE
+    from asperity.dynamics.curve_table import RATE, TIME_NODES
 
     for energy in (0.0, 1e-12, 1e-8, 1e-6, 1e-4, 1e-3, 0.02, 0.3):
-        found = np.sum(RATE / np.sqrt(energy + RISE))
+        found = np.sum(RATE / np.sqrt(energy + TIME_NODES))
         missed = float(missed_time(np.array([energy]), np.array([1.0]))[0])
         exact = 2.0 / (np.sqrt(1.0 + energy) + np.sqrt(energy))
         assert found + missed == pytest.approx(exact, rel=1e-9)

@@ -33,7 +33,7 @@ def rough(law, sigma=SIGMA):
 
 
 @eqx.filter_jit
-def fly(contact, body, tolerance=THREE):
+def integrate(contact, body, tolerance=THREE):
     motion = simulate(contact, body, tolerance=tolerance)
     return motion, measure(motion, body)
 
@@ -60,45 +60,45 @@ CONSERVATIVE = {
 @pytest.mark.parametrize("name", CONSERVATIVE)
 def test_conservative_contact_returns_all_energy(name):
     contact, body = CONSERVATIVE[name]
-    motion, found = fly(contact, body, Tolerance(max_impacts=1))
+    motion, found = integrate(contact, body, Tolerance(max_impacts=1))
     assert float(found.restitution[0]) == pytest.approx(1.0, abs=1e-8)
     rows = motion.impacts
-    assert float(rows.energy_balance_error[0]) < 1e-6 * float(rows.fastest[0])
+    assert float(rows.energy_balance_error[0]) < 1e-6 * float(rows.maximum_kinetic[0])
     if float(body.weight) > 0.0:
         top = float(body.release + body.kinetic / body.weight)
         assert float(rows.apex[0]) == pytest.approx(top, rel=1e-7)
 
 
 def test_menisci_lose_what_they_do_beside_a_law_that_loses_nothing():
-    """A faint pull by quadrature leaves the loss as it is; both ways back are finite."""
+    """A faint pull by quadrature leaves the loss as it is; both scanning curves are finite."""
     faint = Bradley(BETA, 1e-7, 0.2e-9)
     (alone, _), (beside, found) = (
-        fly(rough(law), DROP) for law in (HERTZ + BY_CONTACT, HERTZ + faint + BY_CONTACT)
+        integrate(rough(law), DROP) for law in (HERTZ + BY_CONTACT, HERTZ + faint + BY_CONTACT)
     )
     np.testing.assert_allclose(beside.impacts.lost, alone.impacts.lost, rtol=1e-4)
     assert float(jnp.max(beside.impacts.energy_balance_error)) < 1e-6 * float(
-        beside.impacts.fastest[0]
+        beside.impacts.maximum_kinetic[0]
     )
     assert float(found.restitution[0]) < 1.0 - 1e-6
 
 
 def test_a_motion_that_loses_nothing_oscillates():
-    motion, _ = fly(rough(HERTZ), DROP)
+    motion, _ = integrate(rough(HERTZ), DROP)
     assert outcome(motion) is Outcome.OSCILLATING
     assert int(motion.end.made) == 1
 
 
 def test_without_gravity_a_rebound_escapes():
-    motion, _ = fly(*CONSERVATIVE["smooth hertz, no gravity"])
+    motion, _ = integrate(*CONSERVATIVE["smooth hertz, no gravity"])
     assert outcome(motion) is Outcome.ESCAPED
 
 
 def test_smooth_hertz_impact_depth_and_force():
     """(8/15) E* sqrt(R) depth^2.5 = m V^2 / 2 (Johnson 1985, section 11.4)."""
     contact, body = CONSERVATIVE["smooth hertz, no gravity"]
-    rows = fly(contact, body)[0].impacts
+    rows = integrate(contact, body)[0].impacts
     depth = (15.0 / 16.0 * MASS * 0.05**2 / (E * sqrt(RADIUS))) ** 0.4
-    assert float(rows.deepest[0]) == pytest.approx(-depth, rel=1e-8)
+    assert float(rows.closest_approach[0]) == pytest.approx(-depth, rel=1e-8)
     force = 4.0 / 3.0 * E * sqrt(RADIUS) * depth**1.5
     assert float(rows.force[0]) == pytest.approx(force, rel=1e-7)
 
@@ -106,9 +106,9 @@ def test_smooth_hertz_impact_depth_and_force():
 def test_smooth_hertz_contact_lasts_as_long_as_theory_says():
     """From touch to greatest depth 1.4716 depth / V (Johnson 1985, eq. 11.24)."""
     contact, body = CONSERVATIVE["smooth hertz, no gravity"]
-    rows = fly(contact, body)[0].impacts
-    depth = -float(rows.deepest[0])
-    half = float(rows.deepest_time[0]) - 1e-9 / 0.05
+    rows = integrate(contact, body)[0].impacts
+    depth = -float(rows.closest_approach[0])
+    half = float(rows.closest_approach_time[0]) - 1e-9 / 0.05
     assert half == pytest.approx(1.471638 * depth / 0.05, rel=1e-6)
 
 
@@ -119,14 +119,14 @@ STICK = sqrt(2.0 * 7.092196 * (0.05**5 * RADIUS**4 / E**2) ** (1.0 / 3.0) / MASS
 @pytest.mark.parametrize("ratio", [0.3, 0.999])
 def test_jkr_sphere_sticks_below_the_sticking_speed(ratio):
     body = Body(MASS, 0.0, 2e-9, ratio * STICK)
-    motion, found = fly(SmoothContact(JKR), body)
+    motion, found = integrate(SmoothContact(JKR), body)
     assert bool(found.captured)
     assert float(found.restitution[0]) == 0.0
     assert float(motion.impacts.apex[0]) < float(JKR.breaking_gap)
 
 
 def test_jkr_sphere_leaves_just_above_the_sticking_speed():
-    motion, found = fly(SmoothContact(JKR), Body(MASS, 0.0, 2e-9, 1.001 * STICK))
+    motion, found = integrate(SmoothContact(JKR), Body(MASS, 0.0, 2e-9, 1.001 * STICK))
     assert not bool(found.captured)
     assert outcome(motion) is Outcome.ESCAPED
 
@@ -141,11 +141,11 @@ WITH_LOSS = {
 @pytest.mark.parametrize("name", WITH_LOSS)
 def test_energies_add_up_to_the_first_one(name):
     contact, body = WITH_LOSS[name]
-    motion, _ = fly(contact, body)
+    motion, _ = integrate(contact, body)
     rows = motion.impacts
     made = int(motion.end.made)
     assert made >= 1
-    assert float(jnp.max(rows.energy_balance_error[:made])) < 1e-6 * float(rows.fastest[0])
+    assert float(jnp.max(rows.energy_balance_error[:made])) < 1e-6 * float(rows.maximum_kinetic[0])
     assert np.all(np.diff(np.asarray(rows.lost).sum(axis=1)[:made]) >= 0.0)
 
 
@@ -165,9 +165,9 @@ def test_energy_closes_on_a_half_space_with_menisci(kelvin_radius):
 
     resolved = resolution(layer(WIDE), deforms=True)
     contact = ElasticContact(layer(kelvin_radius), Sphere(RADIUS), E, 48, resolved)
-    motion, found = fly(contact, Body(MASS, 9.81, 200e-9), Tolerance(max_impacts=2))
+    motion, found = integrate(contact, Body(MASS, 9.81, 200e-9), Tolerance(max_impacts=2))
     rows = motion.impacts
-    assert float(jnp.max(rows.energy_balance_error)) < 1e-6 * float(rows.fastest[0])
+    assert float(jnp.max(rows.energy_balance_error)) < 1e-6 * float(rows.maximum_kinetic[0])
     assert 0.0 < float(found.restitution[0]) < 1.0
 
 
@@ -175,7 +175,7 @@ def test_curves_twice_as_fine_give_the_same_motion():
     """The stated error of the curves, 1e-8, is more than they have: apexes move by less."""
     contact = WITH_LOSS["rough meniscus"][0]
     body = Body(MASS, 9.81, 2e-6)
-    coarse, fine = (fly(contact.refined(k), body)[0] for k in (1, 2))
+    coarse, fine = (integrate(contact.refined(k), body)[0] for k in (1, 2))
     assert float(coarse.table.error) < 1e-8
     np.testing.assert_allclose(coarse.impacts.apex, fine.impacts.apex, rtol=1e-8)
     np.testing.assert_allclose(coarse.impacts.apex_time, fine.impacts.apex_time, rtol=1e-8)
@@ -209,13 +209,13 @@ def turning_in_time(contact, body, memory, place, speed, sign):
 @pytest.mark.parametrize("name", ["rough hertz + dmt", "rough meniscus"])
 def test_energy_integral_agrees_with_integration_in_time(name):
     contact, body = {**CONSERVATIVE, **WITH_LOSS}[name]
-    rows = fly(contact, body)[0].impacts
+    rows = integrate(contact, body)[0].impacts
     release = float(body.release)
-    down, deepest = turning_in_time(contact, body, contact.fresh(), release, 0.0, -1)
-    memory = contact.remember(contact.fresh(), jnp.asarray(deepest))
+    down, deepest = turning_in_time(contact, body, contact.initial_memory(), release, 0.0, -1)
+    memory = contact.remember(contact.initial_memory(), jnp.asarray(deepest))
     up, apex = turning_in_time(contact, body, memory, deepest, 0.0, 1)
-    assert float(rows.deepest[0]) == pytest.approx(deepest, rel=1e-7)
-    assert float(rows.deepest_time[0]) == pytest.approx(down, rel=1e-7)
+    assert float(rows.closest_approach[0]) == pytest.approx(deepest, rel=1e-7)
+    assert float(rows.closest_approach_time[0]) == pytest.approx(down, rel=1e-7)
     assert float(rows.apex[0]) == pytest.approx(apex, rel=1e-7)
     assert float(rows.apex_time[0]) == pytest.approx(down + up, rel=1e-7)
 
@@ -276,19 +276,19 @@ def test_gravity_and_hertz_set_the_time_of_a_long_fall():
 
     Depth (15 m v^2 / (16 E* sqrt(R)))^(2/5): Johnson (1985), eqs. 11.20 to 11.24.
     """
-    rows = fly(SmoothContact(Hertz(RADIUS, E)), Body(MASS, 9.81, 1e-3))[0].impacts
+    rows = integrate(SmoothContact(Hertz(RADIUS, E)), Body(MASS, 9.81, 1e-3))[0].impacts
     speed = sqrt(2.0 * 1e-3 * 9.81)
     depth = (15.0 * MASS * speed**2 / (16.0 * E * sqrt(RADIUS))) ** 0.4
     half = speed / 9.81 + 1.4716 * depth / speed
-    assert float(rows.deepest_time[0]) == pytest.approx(half, rel=1e-7)
+    assert float(rows.closest_approach_time[0]) == pytest.approx(half, rel=1e-7)
     assert float(rows.apex_time[0]) == pytest.approx(2.0 * half, rel=1e-7)
 
 
 def test_limits_end_a_motion_and_are_named():
     contact = rough(HERTZ + BY_CONTACT)
-    motion, _ = fly(contact, DROP, Tolerance(max_impacts=2))
+    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=2))
     assert outcome(motion) is Outcome.MAX_IMPACTS
-    motion, _ = fly(contact, DROP, Tolerance(max_impacts=3, time_limit=1e-6))
+    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=3, time_limit=1e-6))
     assert outcome(motion) is Outcome.TIME_LIMIT
-    motion, _ = fly(contact, DROP, Tolerance(max_impacts=3, rest=2.0))
+    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=3, rest=2.0))
     assert outcome(motion) is Outcome.REST

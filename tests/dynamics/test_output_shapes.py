@@ -10,7 +10,7 @@ from asperity import integration
 from asperity._jax import jax
 from asperity.config import builtin, load_file
 from asperity.dynamics import prepare
-from asperity.dynamics.output_shapes import foreseen
+from asperity.dynamics.output_shapes import shapes_of_curves
 from asperity.integration import cut_in_steps
 from asperity.model import build
 
@@ -34,7 +34,7 @@ KINDS = {
         },
     },
     "rigid": RIGID,
-    "rigid without losses": {**RIGID, "capillary.formation": "kelvin"},
+    "rigid without losses": {**RIGID, "capillary.formation": "capillary-condensation"},
     "rigid with bonds twice": {**RIGID, "adhesion.model": "jkr"},
     "rigid with menisci that take time": {**RIGID, "capillary.formation_time": "1 us"},
 }
@@ -55,7 +55,7 @@ def test_the_shapes_of_curves_are_those_that_are_foreseen(kind, many):
     problem = build(builtin("published-exact").replace(KINDS[kind]))
     if many:
         problem = cut_in_steps(problem)
-    found = foreseen(problem.contact, many)
+    found = shapes_of_curves(problem.contact, many)
     assert shapes(found) == shapes(traced(problem.contact, problem.body, many))
     assert bool(found[0].reversals) == (many and problem.contact.reversals > 0)
 
@@ -63,7 +63,7 @@ def test_the_shapes_of_curves_are_those_that_are_foreseen(kind, many):
 @pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
 def test_so_are_those_of_every_example_unless_its_asperities_yield(file):
     problem = build(load_file(file))
-    found = foreseen(problem.contact)
+    found = shapes_of_curves(problem.contact)
     if problem.contact.yields:
         assert found is None
     else:
@@ -73,12 +73,12 @@ def test_so_are_those_of_every_example_unless_its_asperities_yield(file):
 def test_so_are_those_of_the_published_sums():
     problem = build(builtin("published"))
     given = problem.contact, problem.body
-    assert shapes(foreseen(problem.contact)) == shapes(traced(*given, many=False))
+    assert shapes(shapes_of_curves(problem.contact)) == shapes(traced(*given, many=False))
 
 
 def test_a_motion_is_compiled_once_for_the_shapes_that_were_foreseen():
     case = builtin("published-exact").replace({**RIGID, "numerics.max_impacts": 1})
-    before = set(integration._fly_some._held)
+    before = set(integration._integrate_some._held)
     asperity.solve(case)
     asperity.solve(case.replace({"roughness.rms_height": "10.6 nm"}))
-    assert len(set(integration._fly_some._held) - before) == 1
+    assert len(set(integration._integrate_some._held) - before) == 1

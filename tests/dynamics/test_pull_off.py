@@ -92,7 +92,7 @@ def test_a_case_without_an_impact_is_loaded_to_what_is_asked(load):
 @pytest.mark.parametrize("depth", [1e-9, 3e-8])  # before and beyond where attraction alone draws it
 def test_a_case_without_an_impact_is_loaded_to_a_depth(depth):
     curve = asperity.curve(smooth("jkr").replace({"impact": None}), depth=depth)
-    assert curve.deepest == pytest.approx(-depth, rel=1e-9)
+    assert curve.minimum_separation == pytest.approx(-depth, rel=1e-9)
     assert curve.pull_off == pytest.approx(1.5 * pi * W * RADIUS, rel=1e-9)
 
 

@@ -35,11 +35,11 @@ a_humidity = st.floats(0.1, 0.97)
 
 
 @eqx.filter_jit
-def pull_off(law, rms, reach):
+def pull_off(law, rms, interaction_range):
     """Largest mean pull per asperity [N] on the way out, over separations."""
     plane = Interface(law, Gaussian(rms), 1.0)
-    h = STEPS * jnp.maximum(rms, reach)
-    return -jnp.min(plane.pressure(h, plane.torn(h)))
+    h = STEPS * jnp.maximum(rms, interaction_range)
+    return -jnp.min(plane.pressure(h, plane.saturated_memory(h)))
 
 
 LAWS = {
@@ -75,7 +75,7 @@ FORMATIONS = {"contact": ByContact(), "kelvin": ByKelvinGap()}
 def pressures(law, rms, density):
     plane = Interface(law, Gaussian(rms), density)
     h = STEPS * rms
-    return plane.pressure(h, plane.torn(h))
+    return plane.pressure(h, plane.saturated_memory(h))
 
 
 def filling(angle, humidity, formation):
@@ -105,6 +105,6 @@ def test_a_larger_contact_angle_never_pulls_more(liquid, formation, first, secon
 @given(first=a_humidity, second=a_humidity, angle=an_angle)
 def test_more_humidity_never_shortens_the_range(liquid, first, second, angle):
     dry, humid = sorted((first, second))
-    assert float(liquid(angle, humid, "contact").reach) >= float(
-        liquid(angle, dry, "contact").reach
+    assert float(liquid(angle, humid, "contact").interaction_range) >= float(
+        liquid(angle, dry, "contact").interaction_range
     )

@@ -1,4 +1,4 @@
-"""Ways back from reversals, tabulated over their place, beside ways that are solved one by one."""
+"""Scanning curves tabulated by their reversal, beside curves that are solved one by one."""
 
 import dataclasses
 from math import pi, radians
@@ -11,7 +11,7 @@ from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
 from asperity.contact.contact import Held
 from asperity.contact.profile import Sphere
-from asperity.dynamics import Body, Limits, fly, prepare, start
+from asperity.dynamics import Body, Limits, integrate_impacts, prepare, start
 from asperity.dynamics.curve_table import FORCE, SIZE, all_rows, fit
 from asperity.dynamics.scanning_table import CLOSE
 from asperity.errors import Tolerance
@@ -36,26 +36,26 @@ prepared = eqx.filter_jit(lambda contact, body: prepare(contact, body, many=True
 
 
 @eqx.filter_jit
-def flown(contact, body, table, datum):
+def integrated(contact, body, table, reference):
     progress, origin = start(contact, body, table)
     limits = Limits.of(Tolerance(max_impacts=IMPACTS))
-    return fly(contact, body, table, datum, origin, progress, limits, IMPACTS)
+    return integrate_impacts(contact, body, table, reference, origin, progress, limits, IMPACTS)
 
 
 @pytest.fixture(scope="module")
 def both():
     """The motion by the table of ways, and by ways that are solved as they come."""
     here = contact()
-    table, datum = prepared(here, BODY)
+    table, reference = prepared(here, BODY)
     solved = table._replace(reversals=())
-    return table, [flown(here, BODY, t, datum)[1] for t in (table, solved)]
+    return table, [integrated(here, BODY, t, reference)[1] for t in (table, solved)]
 
 
 def test_a_motion_by_tabulated_ways_is_that_by_solved_ones(both):
     table, (ours, judge) = both
     assert bool(jnp.all(ours.made))
     assert all(error < CLOSE for error in errors(table.reversals).values())
-    energy = float(judge.fastest[0])
+    energy = float(judge.maximum_kinetic[0])
     assert float(jnp.max(jnp.abs(ours.lost - judge.lost))) < IMPACTS * CLOSE * energy
     np.testing.assert_allclose(ours.apex, judge.apex, rtol=IMPACTS * CLOSE)
     np.testing.assert_allclose(ours.apex_time, judge.apex_time, rtol=IMPACTS * CLOSE)
@@ -80,24 +80,26 @@ def work(low, high, values):
 
 @eqx.filter_jit
 def works(contact, table, place, unloading):
-    """Of the way back from a reversal [J]: from the table, and solved on the same mesh.
+    """Of the scanning curve from a reversal [J]: from the table, and solved on the same mesh.
 
     Up to the same place: what is left to where the other ends lies on the branch.
     """
     ours = table.reversals.pieces(place, unloading)
     flat = jnp.zeros(contact.rings + 1)
     held = Held(jnp.asarray(True), ~unloading, ours.values[0, 0, SIZE], flat)
-    way = contact.way_from(place, held, jnp.asarray(True), (table.ends[0], table.ends[-1]))
-    low, high = jnp.minimum(way.enter, way.leave), jnp.maximum(way.enter, way.leave)
-    values = fit(all_rows(way.states))
-    left = (ours.leave[-1] - way.leave[-1]) * jnp.where(unloading, 1.0, -1.0)
+    curve = contact.scanning_curve_from(
+        place, held, jnp.asarray(True), (table.ends[0], table.ends[-1])
+    )
+    low, high = jnp.minimum(curve.enter, curve.leave), jnp.maximum(curve.enter, curve.leave)
+    values = fit(all_rows(curve.states))
+    left = (ours.leave[-1] - curve.leave[-1]) * jnp.where(unloading, 1.0, -1.0)
     left = left * jnp.sum(values[-1, :, FORCE])  # at its end all polynomials are 1
     return work(ours.low, ours.high, ours.values), work(low, high, values) + left
 
 
 @pytest.mark.long
 def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
-    impact = float(both[1][0].fastest[0])
+    impact = float(both[1][0].maximum_kinetic[0])
     stated, real = [], []
     for count in (4, 10):
         here = contact(ways=count)
@@ -119,16 +121,16 @@ def test_more_ways_give_a_smaller_error_and_none_more_than_stated(both):
 def test_wide_falls_have_ranges_side_by_side_each_as_good_as_it_says(shrunk):
     """Smoother bodies rest nearer to the plane, and so fall through more rms heights."""
     here = contact(sigma=shrunk * 1e-9)
-    table, datum = prepared(here, BODY)
+    table, reference = prepared(here, BODY)
     known = table.reversals
     stated = errors(known)
     assert len(stated) > 2
     outside = sorted(set(stated) - {0})
-    np.testing.assert_allclose(known.low[outside[0]], datum.equilibrium, rtol=1e-12)
+    np.testing.assert_allclose(known.low[outside[0]], reference.equilibrium, rtol=1e-12)
     np.testing.assert_array_equal(
         known.high[outside[0] : outside[-1]], known.low[outside[1] : outside[-1] + 1]
     )
-    top = min(float(table.ends[-1]), float(here.reach))
+    top = min(float(table.ends[-1]), float(here.interaction_range))
     np.testing.assert_allclose(known.high[outside[-1]], top, rtol=1e-12)
     impact = 9.81 * BODY.mass * BODY.release
     for k in outside:
@@ -158,10 +160,12 @@ def test_derivatives_pass_through_tabulated_ways():
     def lost(sigma):
         here = contact()
         here = eqx.tree_at(lambda c: c.interface.heights.rms_height, here, sigma)
-        table, datum = prepare(here, BODY, many=True)
+        table, reference = prepare(here, BODY, many=True)
         progress, origin = start(here, BODY, table)
         limits = Limits.of(Tolerance(max_impacts=3))
-        return jnp.sum(fly(here, BODY, table, datum, origin, progress, limits, 3)[0].lost)
+        return jnp.sum(
+            integrate_impacts(here, BODY, table, reference, origin, progress, limits, 3)[0].lost
+        )
 
     sigma, step = jnp.asarray(SIGMA), 2e-3 * SIGMA
     slope = jax.jit(lambda s: jax.jvp(lost, (s,), (jnp.ones(()),))[1])(sigma)

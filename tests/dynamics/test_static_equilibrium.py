@@ -9,7 +9,7 @@ from numpy.polynomial import Chebyshev
 
 from asperity._jax import jax, jnp
 from asperity.dynamics.curve_table import FORCE, STORED
-from asperity.dynamics.static_equilibrium import _outermost, end_of_contact, find_datum
+from asperity.dynamics.static_equilibrium import _outermost, end_of_contact, find_reference
 
 ENDS = np.array([0.0, 1.0, 2.5, 4.0])
 
@@ -93,7 +93,7 @@ def test_the_datum_has_derivatives_in_both_modes(derivative):
 
     def place(weight, more):
         values = here.values.at[..., 0, FORCE].add(more)
-        found = find_datum(SimpleNamespace(ends=here.ends, values=values), weight, 0)
+        found = find_reference(SimpleNamespace(ends=here.ends, values=values), weight, 0)
         return jnp.stack([found.equilibrium, found.stored])
 
     root = outermost(wave, 0.1)

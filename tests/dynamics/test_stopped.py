@@ -75,7 +75,9 @@ def test_a_film_without_slip_stops_a_body_at_the_gap_of_the_closed_form(changes,
     expected = RELEASE * math.exp(-MASS * speed / (6.0 * math.pi * VISCOSITY * RADIUS**2))
     assert result.outcome is Outcome.STOPPED
     assert result.outcome.ok
-    (place,), (apex,) = (result.events[f"{name}_separation"] for name in ("deepest", "apex"))
+    (place,), (apex,) = (
+        result.events[f"{name}_separation"] for name in ("closest_approach", "apex")
+    )
     assert place == pytest.approx(expected, rel=1e-9)
     assert apex == place
     assert verdict(result) == (
@@ -94,7 +96,7 @@ def test_with_slip_adhesion_and_roughness_the_film_stops_the_body_by_its_momentu
     changes = {**ROUGH, "adhesion": JKR, "gas.slip_length": "75 nm"}
     result = asperity.solve(load(SMOOTH).replace(changes))
     assert result.outcome is Outcome.STOPPED
-    assert result.events["deepest_separation"][0] == pytest.approx(
+    assert result.events["closest_approach_separation"][0] == pytest.approx(
         stopping_gap(10e-3, 75e-9), rel=1e-8
     )
 
@@ -103,7 +105,7 @@ def test_menisci_on_their_way_change_nothing_for_a_body_that_never_comes_near():
     """The same stepped in time, by another method."""
     result = asperity.solve(load(SMOOTH).replace({**ROUGH, "capillary": WATER}))
     assert result.outcome is Outcome.STOPPED
-    assert result.events["deepest_separation"][0] == pytest.approx(
+    assert result.events["closest_approach_separation"][0] == pytest.approx(
         stopping_gap(10e-3, 0.0), rel=1e-6
     )
 

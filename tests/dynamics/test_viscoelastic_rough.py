@@ -6,10 +6,10 @@ import pytest
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, SmoothContact
 from asperity.contact.profile import Sphere
-from asperity.contact.viscoelastic import Creep
+from asperity.contact.viscoelastic import Relaxation
 from asperity.dynamics import Body, Limits, simulate
 from asperity.dynamics.motion import prepare
-from asperity.dynamics.viscoelastic import fly_creeping, rough_phase
+from asperity.dynamics.viscoelastic import integrate_viscoelastic, rough_phase
 from asperity.dynamics.viscoelastic.ring_step import step
 from asperity.dynamics.viscoelastic.ring_system import Here
 from asperity.errors import Outcome, Tolerance
@@ -29,11 +29,13 @@ def contact(modulus=MODULUS, density=DENSITY, law=LAW, rings=48):
     return ElasticContact(Interface(law, Gaussian(SIGMA), density), Sphere(RADIUS), modulus, rings)
 
 
-def flown(ratio, time, body=BODY, tolerance=ONE, told=None):
-    creep = Creep(told or contact(), ratio, time)
-    relaxed = creep.relaxed()
+def integrated(ratio, time, body=BODY, tolerance=ONE, told=None):
+    relaxation = Relaxation(told or contact(), ratio, time)
+    relaxed = relaxation.relaxed()
     prepared = _prepare(relaxed, body)
-    return fly_creeping(relaxed, creep, body, prepared, Limits.of(tolerance), lambda made: None)
+    return integrate_viscoelastic(
+        relaxed, relaxation, body, prepared, Limits.of(tolerance), lambda made: None
+    )
 
 
 _prepare = Program(prepare)
@@ -43,7 +45,7 @@ _simulate = Program(lambda told, body: simulate(told, body, tolerance=ONE))
 def kept(motion):
     """Share of the energy at the first impact that the body has left after it."""
     rows = motion.impacts
-    return float((rows.mechanical[0] - motion.release) / rows.fastest[0])
+    return float((rows.mechanical[0] - motion.release) / rows.maximum_kinetic[0])
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +56,9 @@ def elastic():
 
 @pytest.mark.parametrize(("ratio", "time"), [(1.0, 1e-6), (0.5, 1e3)])
 def test_a_bulk_without_creep_is_the_elastic_half_space(elastic, ratio, time):
-    found = flown(ratio, time)[0]
+    found = integrated(ratio, time)[0]
     assert kept(found) == pytest.approx(kept(elastic[1.0]), abs=1e-6)
-    for name in ("deepest", "deepest_time", "apex", "apex_time"):
+    for name in ("closest_approach", "closest_approach_time", "apex", "apex_time"):
         value, expected = getattr(found.impacts, name)[0], getattr(elastic[1.0].impacts, name)[0]
         assert float(value) == pytest.approx(float(expected), rel=1e-6)
     lost = found.impacts.lost[0]
@@ -69,24 +71,24 @@ def test_a_bulk_that_creeps_at_once_is_the_relaxed_half_space(elastic):
     expected = elastic[0.5]
     off = []
     for time in (4e-9, 1e-9):
-        found = flown(0.5, time)[0]
+        found = integrated(0.5, time)[0]
         off.append(abs(kept(found) - kept(expected)))
-        deepest = float(found.impacts.deepest[0])
-        assert deepest == pytest.approx(float(expected.impacts.deepest[0]), rel=1e6 * time)
+        deepest = float(found.impacts.closest_approach[0])
+        assert deepest == pytest.approx(float(expected.impacts.closest_approach[0]), rel=1e6 * time)
     assert off[1] == pytest.approx(0.25 * off[0], rel=0.1)
 
 
 @pytest.fixture(scope="module")
-def creeping():
+def viscoelastic():
     """Three impacts with as much creep as there can be."""
-    return flown(0.5, 3e-7, tolerance=Tolerance(max_impacts=3))
+    return integrated(0.5, 3e-7, tolerance=Tolerance(max_impacts=3))
 
 
-def test_ledger_closes_and_creep_is_booked_apart(creeping):
-    motion, trajectory, outcome = creeping
+def test_ledger_closes_and_creep_is_booked_apart(viscoelastic):
+    motion, trajectory, outcome = viscoelastic
     rows = motion.impacts
     assert outcome is Outcome.MAX_IMPACTS
-    assert float(np.max(rows.energy_balance_error)) < 1e-7 * float(rows.fastest[0])
+    assert float(np.max(rows.energy_balance_error)) < 1e-7 * float(rows.maximum_kinetic[0])
     assert kept(motion) < -0.15
     lost = trajectory.lost
     assert np.all(np.diff(lost, axis=0) >= -1e-12 * lost[-1])
@@ -94,9 +96,9 @@ def test_ledger_closes_and_creep_is_booked_apart(creeping):
     assert np.all(np.diff(trajectory.series.time) >= 0.0)
 
 
-def test_rings_bind_and_break_as_the_elastic_ones_do(creeping, elastic):
+def test_rings_bind_and_break_as_the_elastic_ones_do(viscoelastic, elastic):
     """As many menisci, within the change of depth that creep makes; none are left in flight."""
-    motion, trajectory, _ = creeping
+    motion, trajectory, _ = viscoelastic
     bonds = trajectory.series.rows[:, 6]
     assert float(np.max(bonds)) == pytest.approx(float(elastic[1.0].impacts.bonds[0, 0]), rel=0.3)
     tops = np.searchsorted(trajectory.series.time, motion.impacts.apex_time)
@@ -107,28 +109,30 @@ def test_tighter_steps_close_the_ledger_better(monkeypatch):
     off = []
     for tolerance in (1e-7, 1e-9):
         monkeypatch.setattr(rough_phase, "TOLERANCE", tolerance)
-        motion = flown(0.5, 3e-7)[0]
-        off.append(float(motion.impacts.energy_balance_error[0] / motion.impacts.fastest[0]))
+        motion = integrated(0.5, 3e-7)[0]
+        off.append(
+            float(motion.impacts.energy_balance_error[0] / motion.impacts.maximum_kinetic[0])
+        )
     assert off[1] < 0.1 * off[0]
 
 
 def test_steps_are_of_the_fourth_order():
     """Into the contact and with its bonds, against many more steps."""
     told = contact()
-    creep = Creep(told, 0.4, 2e-7)
+    relaxation = Relaxation(told, 0.4, 2e-7)
     one = Program(step)
     size = jnp.asarray(1e-6)
-    rise = told.shape.rise(size * jnp.append(jnp.asarray(_mesh(told).radius), _mesh(told).end))
+    rise = told.shape.profile(size * jnp.append(jnp.asarray(_mesh(told).radius), _mesh(told).end))
     start = jnp.asarray(7.0 * SIGMA)
     here = Here(
         start, jnp.asarray(-0.02), start + rise, jnp.zeros(told.rings),
-        told.interface.fresh(jnp.zeros(told.rings + 1)),
+        told.interface.initial_memory(jnp.zeros(told.rings + 1)),
     )  # fmt: skip
 
     def end(parts):
         now, span = here, np.asarray(2e-6 / parts)
         for _ in range(parts):
-            now = jax.tree_util.tree_map(jnp.asarray, one(creep, BODY, size, now, span).here)
+            now = jax.tree_util.tree_map(jnp.asarray, one(relaxation, BODY, size, now, span).here)
         return float(now.speed)
 
     finest = end(512)
@@ -149,6 +153,6 @@ def test_many_asperities_at_high_load_lose_what_the_smooth_sphere_does():
     smooth = SmoothContact(Hertz(RADIUS, MODULUS))
     losses = []
     for told in (dense, smooth):
-        motion = flown(0.5, 5e-7, body=body, told=told)[0]
-        losses.append(float(motion.impacts.lost[0, -1] / motion.impacts.fastest[0]))
+        motion = integrated(0.5, 5e-7, body=body, told=told)[0]
+        losses.append(float(motion.impacts.lost[0, -1] / motion.impacts.maximum_kinetic[0]))
     assert losses[0] == pytest.approx(losses[1], rel=0.03)

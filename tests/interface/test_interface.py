@@ -83,7 +83,7 @@ def means(law, heights=None):
 H = jnp.linspace(-3.0, 5.0, 17) * SIGMA
 
 
-@pytest.mark.parametrize("lift", [0, 1])
+@pytest.mark.parametrize("integrated", [0, 1])
 @pytest.mark.parametrize(
     ("closed", "hidden"),
     [
@@ -92,14 +92,14 @@ H = jnp.linspace(-3.0, 5.0, 17) * SIGMA
     ],
     ids=["hertz", "meniscus"],
 )
-def test_quadrature_over_heights_equals_the_closed_form(closed, hidden, lift):
+def test_quadrature_over_heights_equals_the_closed_form(closed, hidden, integrated):
     memory = tuple(jnp.full(H.shape, 1.0e-9) for _ in means(closed).hysteretic)
 
     @eqx.filter_jit
     def both(law):
         interface = means(law)
-        found = interface.measure(H, memory, lift)
-        return found.parts.sum(axis=0), found.energy, interface.pressure(H, memory, lift)
+        found = interface.measure(H, memory, integrated)
+        return found.parts.sum(axis=0), found.energy, interface.pressure(H, memory, integrated)
 
     for exact, found in zip(both(closed), both(hidden), strict=True):
         np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-13 * float(jnp.max(abs(exact))))
@@ -162,9 +162,9 @@ SUMS = {
 }
 
 
-@pytest.mark.parametrize("lift", [0, 1])
+@pytest.mark.parametrize("integrated", [0, 1])
 @pytest.mark.parametrize("law", SUMS.values(), ids=SUMS)
-def test_pressure_is_the_slope_of_the_energy_while_bonds_are_frozen(law, lift):
+def test_pressure_is_the_slope_of_the_energy_while_bonds_are_frozen(law, integrated):
     """Frozen: within the width of the memory no bond forms or breaks."""
     interface = means(law)
     widths = [float(law.breaking_gap - law.forming_gap) for law in interface.hysteretic]
@@ -172,8 +172,8 @@ def test_pressure_is_the_slope_of_the_energy_while_bonds_are_frozen(law, lift):
 
     @eqx.filter_jit
     def both(interface, memory):
-        energy = lambda h, b: interface.energy(h[None], tuple(x[None] for x in b), lift)[0]  # noqa: E731
-        return interface.pressure(H, memory, lift), jax.vmap(jax.grad(energy))(H, memory)
+        energy = lambda h, b: interface.energy(h[None], tuple(x[None] for x in b), integrated)[0]  # noqa: E731
+        return interface.pressure(H, memory, integrated), jax.vmap(jax.grad(energy))(H, memory)
 
     pressure, slope = both(interface, memory)
     scale = float(jnp.max(jnp.abs(pressure)))
@@ -200,7 +200,7 @@ def test_work_over_a_cycle_is_the_change_of_energy_and_the_losses(name):
         work = jnp.sum(0.5 * span * pressure * weight)
         return work, state, interface.remember(memory, ends[-1])
 
-    memory, lost, work = interface.fresh(), 0.0, 0.0
+    memory, lost, work = interface.initial_memory(), 0.0, 0.0
     for first, last in pairwise(turns):
         # Bonds begin to change where the play is used up: no panel spans that kink.
         kink = first + np.sign(last - first) * width
@@ -243,7 +243,7 @@ def test_memory_is_the_bonds_of_all_asperities_over_random_reversals(path):
     """Brute force: 400 asperities, each with its own bond, against one threshold."""
     interface, step, single = brute_tools()
     c, (formation, rupture) = float(MENISCUS.breaking_gap), interface.losses()
-    bonded, memory = np.zeros(400, bool), interface.fresh()
+    bonded, memory = np.zeros(400, bool), interface.initial_memory()
     lost = brute_lost = bonds = 0.0
     for reduced in path:
         h = reduced * SIGMA
@@ -284,7 +284,7 @@ def test_a_smaller_excursion_is_wiped_out_by_a_larger_one(deepest, out, share):
     inner = low + share * (high - low)
 
     def after(*places):
-        memory = interface.fresh()
+        memory = interface.initial_memory()
         for place in places:
             memory = interface.remember(memory, jnp.asarray(place))
         return float(memory[0])
@@ -303,13 +303,13 @@ def test_pressure_of_contact_is_that_of_greenwood_and_williamson():
         assert found == pytest.approx(exact, rel=1e-6)
 
 
-def test_bonds_and_touching_asperities_are_counted_by_the_normal_tail():
+def test_bonds_and_contacting_asperities_are_counted_by_the_normal_tail():
     interface, h = means(HERTZ + MENISCUS), jnp.asarray(2.0 * SIGMA)
-    found = interface.measure(h, interface.fresh())
-    assert float(found.touching) == pytest.approx(N * 2.2750131948e-2, rel=1e-9)
-    assert float(found.bonds[0]) == pytest.approx(float(found.touching), rel=1e-12)
-    torn = interface.measure(h, interface.torn())
-    tail = float(jax.scipy.stats.norm.sf((2.0 * SIGMA - float(MENISCUS.reach)) / SIGMA))
+    found = interface.measure(h, interface.initial_memory())
+    assert float(found.contacting) == pytest.approx(N * 2.2750131948e-2, rel=1e-9)
+    assert float(found.bonds[0]) == pytest.approx(float(found.contacting), rel=1e-12)
+    torn = interface.measure(h, interface.saturated_memory())
+    tail = float(jax.scipy.stats.norm.sf((2.0 * SIGMA - float(MENISCUS.interaction_range)) / SIGMA))
     assert float(torn.bonds[0]) == pytest.approx(N * tail, rel=1e-10)
 
 

@@ -57,7 +57,7 @@ def test_a_law_grows_with_its_power_of_the_radius_and_keeps_its_gaps(make):
     for branch in ("force", "energy", "bonded_force", "bonded_energy"):
         here, there = getattr(one, branch)(gap), getattr(other, branch)(gap)
         np.testing.assert_allclose(there, scale * here, rtol=1e-13)
-    for name in ("forming_gap", "breaking_gap", "reach"):
+    for name in ("forming_gap", "breaking_gap", "interaction_range"):
         assert float(getattr(one, name)) == float(getattr(other, name))
 
 
@@ -101,7 +101,7 @@ def _step(surface, memory, separation):
 
 def followed(surface, path):
     """Pressure, energy, loss and bonds along a path, a row a step; the memory at its end."""
-    memory, bonds, lost, rows = surface.fresh(), 0.0, 0.0, []
+    memory, bonds, lost, rows = surface.initial_memory(), 0.0, 0.0, []
     formation, rupture = (np.asarray(each) for each in surface.losses())
     for separation in path:
         means, memory = _step(surface, memory, jnp.asarray(separation))
@@ -204,7 +204,10 @@ def test_where_each_class_holds_one_radius_its_threshold_is_that_of_its_relays()
         lambda radius: Jkr(radius, E, W), HEIGHTS, radii, N, radius=2e-7, classes=cut
     )
     assert isinstance(surface, RadiusClasses)
-    relays, memory = Relays(lambda radius: Jkr(radius, E, W), HEIGHTS, radii), surface.fresh()
+    relays, memory = (
+        Relays(lambda radius: Jkr(radius, E, W), HEIGHTS, radii),
+        surface.initial_memory(),
+    )
     remember = eqx.filter_jit(surface.remember)
     for separation in SIGMA * np.random.default_rng(1).uniform(-3.0, 4.0, 200):
         relays.step(separation)
@@ -247,31 +250,35 @@ def two_ways(request):
 
 
 @eqx.filter_jit
-def _all_means(surface, places, memory, lift):
-    return surface.measure(places, memory, lift)
+def _all_means(surface, places, memory, integrated):
+    return surface.measure(places, memory, integrated)
 
 
-@pytest.mark.parametrize("lift", [0, 1])
+@pytest.mark.parametrize("integrated", [0, 1])
 def test_tabulated_branches_are_the_quadratures_from_far_below_the_heights_to_the_top(
-    two_ways, lift
+    two_ways, integrated
 ):
     """Pressures to the quadrature's 1e-5 of what is there 2 rms up, forces on
     paraboloids to the 1e-6 that quintic cells leave."""
     places = jnp.asarray(SIGMA * np.concatenate([-np.geomspace(400, 8, 9), np.linspace(-7, 6, 27)]))
-    for memory in (two_ways[0].fresh(), two_ways[0].torn(), (jnp.asarray(1e-9),) * 2):
-        ours, exact = (_all_means(each, places, memory, lift) for each in two_ways)
+    for memory in (
+        two_ways[0].initial_memory(),
+        two_ways[0].saturated_memory(),
+        (jnp.asarray(1e-9),) * 2,
+    ):
+        ours, exact = (_all_means(each, places, memory, integrated) for each in two_ways)
         for one, other in zip(ours, exact, strict=True):
             one, other = np.atleast_2d(one), np.atleast_2d(other)
             least = np.max(np.abs(other[:, places > 2.0 * SIGMA]), axis=1, keepdims=True)
             off = np.abs(one - other) / (np.abs(other) + least)
-            assert off.max() < (1e-6 if lift else 1e-5)
+            assert off.max() < (1e-6 if integrated else 1e-5)
 
 
 def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(two_ways):
     """p = -dF/dh at fixed gaps of the bonds, and a work of approach that is the energy."""
     surface, _ = two_ways
     places = jnp.asarray(SIGMA * np.linspace(-20.0, 3.0, 24))
-    for unloading in (surface.fresh(), surface.torn()):
+    for unloading in (surface.initial_memory(), surface.saturated_memory()):
         slope = jax.jvp(
             lambda h, m=unloading: surface.pressure(h, m, 1), (places,), (1 + 0 * places,)
         )
@@ -279,7 +286,7 @@ def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(t
         largest = float(jnp.max(jnp.abs(pressure)))
         np.testing.assert_allclose(-slope[1], pressure, rtol=1e-5, atol=1e-7 * largest)
     np.testing.assert_array_equal(
-        surface.work_of_approach(places), surface.energy(places, surface.fresh())
+        surface.work_of_approach(places), surface.energy(places, surface.initial_memory())
     )
 
 
@@ -353,14 +360,14 @@ def test_more_classes_come_closer_to_a_relay_for_each_maugis_summit():
 
 
 def test_jkr_with_menisci_is_classes_beside_an_exact_layer():
-    """The touching are counted once, and the parts have the names of one interface."""
+    """The contacting are counted once, and the parts have the names of one interface."""
     make = lambda radius: Jkr(radius, E, W) + POWERED["meniscus"](radius)  # noqa: E731
     surface = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=3)
     assert isinstance(surface, Layers)
     assert surface.components == Interface(make(RADIUS), Gaussian(SIGMA), N).components
-    means, _ = _step(surface, surface.fresh(), jnp.asarray(0.5 * SIGMA))
-    touching = N * np.mean(HEIGHTS > 0.5 * SIGMA)
-    assert float(means.touching) == pytest.approx(touching, rel=0.02)
+    means, _ = _step(surface, surface.initial_memory(), jnp.asarray(0.5 * SIGMA))
+    contacting = N * np.mean(HEIGHTS > 0.5 * SIGMA)
+    assert float(means.contacting) == pytest.approx(contacting, rel=0.02)
 
 
 # --- motions and their gradients ---------------------------------------------------------------

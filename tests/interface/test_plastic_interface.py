@@ -43,14 +43,16 @@ def from_psi(psi):
 
 @pytest.mark.parametrize(("psi", "tolerance"), [(0.3, 1e-3), (1e-4, 1e-9)])
 @every_sum
-def test_hard_asperities_are_those_of_hertz(beside, lift, psi, tolerance):
+def test_hard_asperities_are_those_of_hertz(beside, integrated, psi, tolerance):
     interface = asperities(beside, from_psi(psi))
     elastic = Interface(Sum((Hertz(BETA, E), *terms(BESIDE[beside]))), Gaussian(SIGMA), N)
     for turn in (np.inf, -0.5 * SIGMA):
-        memory = tuple(b if np.isinf(turn) else np.asarray(turn) for b in interface.fresh())
-        found = measured(interface, LOADED, memory, lift)
+        memory = tuple(
+            b if np.isinf(turn) else np.asarray(turn) for b in interface.initial_memory()
+        )
+        found = measured(interface, LOADED, memory, integrated)
         exact = elastic.measure(
-            jnp.asarray(LOADED), tuple(jnp.full(LOADED.shape, b) for b in memory[1:]), lift
+            jnp.asarray(LOADED), tuple(jnp.full(LOADED.shape, b) for b in memory[1:]), integrated
         )
         assert worst(found.parts, exact.parts) < tolerance
         assert worst(found.energy, exact.energy, 0.1) < tolerance  # adhesion cancels contact
@@ -62,11 +64,11 @@ def test_hard_asperities_are_those_of_hertz(beside, lift, psi, tolerance):
 
 
 @eqx.filter_jit
-def slopes(interface, separation, memory, lift):
+def slopes(interface, separation, memory, integrated):
     """Pressure, and slopes of the energy and of that with all that was lost on the way."""
 
     def energies(h):
-        found = interface.measure(h, memory, lift)
+        found = interface.measure(h, memory, integrated)
         spent = jnp.tensordot(interface.losses()[0], found.bonds, 1)
         return jnp.sum(found.parts, axis=0), found.energy, found.energy + spent
 
@@ -76,17 +78,17 @@ def slopes(interface, separation, memory, lift):
 
 
 @every_sum
-def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(beside, lift):
+def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(beside, integrated):
     for overlap in YIELD:
         interface = asperities(beside, overlap)
         h = jnp.linspace(-1.5, 3.0, BATCH) * SIGMA
-        fresh = tuple(jnp.full(h.shape, b) for b in interface.fresh())
-        pressure, _, work = slopes(interface, h, fresh, lift)
+        fresh = tuple(jnp.full(h.shape, b) for b in interface.initial_memory())
+        pressure, _, work = slopes(interface, h, fresh, integrated)
         assert worst(-work, pressure, 1e-3) < 1e-7
         # Menisci neither form nor break within their reach of the closest approach.
         turns = h - jnp.linspace(0.05, 0.95, BATCH) * REACH
-        unloading = tuple(turns for _ in interface.fresh())
-        pressure, energy, _ = slopes(interface, h, unloading, lift)
+        unloading = tuple(turns for _ in interface.initial_memory())
+        pressure, energy, _ = slopes(interface, h, unloading, integrated)
         assert worst(-energy, pressure, 1e-3) < 1e-7
 
 
@@ -111,7 +113,7 @@ def test_work_over_a_cycle_is_what_was_kept_and_what_bonds_lost(beside, overlap)
     interface = asperities(beside, overlap)
     formed, broken = (np.asarray(x) for x in interface.losses())
     far = 9.5 * SIGMA
-    memory, done, lost, before = interface.fresh(), 0.0, 0.0, 0.0
+    memory, done, lost, before = interface.initial_memory(), 0.0, 0.0, 0.0
     scale = 0.0
     for first, last in pairwise([far, 1.0 * SIGMA, 1.7 * SIGMA, 0.2 * SIGMA, far]):
         # Going in again, the surfaces come to where they were closest first.
@@ -138,7 +140,7 @@ def test_work_over_a_cycle_is_what_was_kept_and_what_bonds_lost(beside, overlap)
 def test_means_do_not_depend_on_the_pieces_of_the_heights(monkeypatch):
     for name in ("_EVEN", "_RUNGS"):
         monkeypatch.setattr(module, name, 2 * getattr(module, name))
-    fine = eqx.filter_jit(lambda i, h, memory, lift: i.measure(h, memory, lift))
+    fine = eqx.filter_jit(lambda i, h, memory, integrated: i.measure(h, memory, integrated))
     h = np.tile(np.linspace(-1.0, 3.5, BATCH // 2), 2) * SIGMA
     turns = h - np.repeat([0.0, 0.7], BATCH // 2) * SIGMA
     errors = {}
@@ -147,8 +149,8 @@ def test_means_do_not_depend_on_the_pieces_of_the_heights(monkeypatch):
         memory = (turns, turns)
         coarse = measured(interface, h, memory)
         better = measured(interface, h, memory, call=fine)
-        names = [*interface.components, "energy", *interface.mechanisms, "touching"]
-        rows = [[*x.parts, x.energy, *x.bonds, x.touching] for x in (coarse, better)]
+        names = [*interface.components, "energy", *interface.mechanisms, "contacting"]
+        rows = [[*x.parts, x.energy, *x.bonds, x.contacting] for x in (coarse, better)]
         # The energies of contact and adhesion cancel at places, their sum is not small nearby.
         floors = [0.1 if name == "energy" else 1e-4 for name in names]
         errors |= {

@@ -33,7 +33,7 @@ NODES = 4096
 def each(interface, height, path):
     """What asperities of these heights do at the end of a path, each after its own history.
 
-    Returns rows to be summed (parts of the force, energy, bonds, touching, and the size of the
+    Returns rows to be summed (parts of the force, energy, bonds, contacting, and the size of the
     energy), and what changes by jumps along the heights.
     """
     contact, laws = interface.contact, terms(interface.law)
@@ -162,7 +162,7 @@ def checks(path):
 def test_memory_is_that_of_all_asperities_over_random_reversals(beside, overlap):
     """Every asperity remembers how deep it was and whether it is bonded; two numbers suffice."""
     interface, path = asperities(beside, overlap), random_walk()
-    memories, memory = [], interface.fresh()
+    memories, memory = [], interface.initial_memory()
     step = eqx.filter_jit(interface.remember)
     for h in path:
         memory = step(memory, jnp.asarray(h))
@@ -176,8 +176,8 @@ def test_memory_is_that_of_all_asperities_over_random_reversals(beside, overlap)
         walked[path.size - move :] = [*path[:move], h]
         sums.append(direct_sum(interface, jnp.asarray(walked)))
     *exact, energies = np.stack(sums, axis=1)
-    names = [*interface.components, "energy", *interface.mechanisms, "touching"]
-    rows = [*found.parts, found.energy, *found.bonds, found.touching]
+    names = [*interface.components, "energy", *interface.mechanisms, "contacting"]
+    rows = [*found.parts, found.energy, *found.bonds, found.contacting]
     errors = {
         name: worst(row, sum_, 1e-6, energies if name == "energy" else sum_)
         for name, row, sum_ in zip(names, rows, exact, strict=True)
@@ -215,6 +215,6 @@ def test_a_second_approach_to_the_same_depth_keeps_nothing_more(beside, overlap)
         np.testing.assert_allclose(y, x, rtol=1e-12)
     # Coming back, contact pushes by the force from which it parted.
     back = measured(interface, [depth], after(interface, depth, 9.0 * SIGMA))
-    came = measured(interface, [depth], interface.fresh())
+    came = measured(interface, [depth], interface.initial_memory())
     np.testing.assert_allclose(back.parts[0], came.parts[0], rtol=1e-8)
     np.testing.assert_allclose(back.bonds, came.bonds, rtol=1e-8)

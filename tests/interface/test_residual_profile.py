@@ -85,7 +85,7 @@ def test_more_points_change_nothing(monkeypatch):
     """What is tabulated, and the first approach, are as close as their tolerance says."""
     coarse = asperities("dmt + meniscus", 0.03)
     place = jnp.asarray(0.2 * SIGMA)
-    memory = coarse.remember(coarse.fresh(), place)
+    memory = coarse.remember(coarse.initial_memory(), place)
 
     separation = place + jnp.geomspace(0.01, 2.0, 8) * SIGMA
     rows = tuple(jnp.full(8, b) for b in memory)
@@ -108,13 +108,13 @@ def test_more_points_change_nothing(monkeypatch):
 
 
 @every_yield
-@pytest.mark.parametrize("lift", [0, 1])
-def test_the_first_approach_is_that_of_surfaces_that_remember_nothing(lift, overlap):
+@pytest.mark.parametrize("integrated", [0, 1])
+def test_the_first_approach_is_that_of_surfaces_that_remember_nothing(integrated, overlap):
     interface = asperities("dmt + meniscus", overlap)
     separation = jnp.linspace(-3.0, 4.0, BATCH) * SIGMA
-    fresh = tuple(jnp.full(BATCH, b) for b in interface.fresh())
-    exact = eqx.filter_jit(interface.measure)(separation, fresh, lift)
-    found = eqx.filter_jit(interface.first_approach)(separation, lift)
+    fresh = tuple(jnp.full(BATCH, b) for b in interface.initial_memory())
+    exact = eqx.filter_jit(interface.measure)(separation, fresh, integrated)
+    found = eqx.filter_jit(interface.first_approach)(separation, integrated)
     for name in exact._fields:
         assert worst(getattr(found, name), getattr(exact, name), 1e-3) < 1e-7, name
 
@@ -145,11 +145,11 @@ class Unknown(Dmt):
 
 
 @pytest.fixture(scope="module")
-def flown():
+def integrated():
     """Losses and apexes of three impacts."""
     body = Body(2e-12, 9.81, 60e-9, 0.2)
 
-    def fly(interface):
+    def integrate(interface):
         motion = simulate(
             RigidContact(interface, Sphere(20e-6)), body, tolerance=Tolerance(max_impacts=3)
         )
@@ -159,17 +159,17 @@ def flown():
             motion.impacts.energy_balance_error / motion.release,
         )
 
-    return jax.jit(fly)
+    return jax.jit(integrate)
 
 
-def test_a_law_without_powers_is_integrated_and_moves_the_body_alike(flown):
+def test_a_law_without_powers_is_integrated_and_moves_the_body_alike(integrated):
     known = asperities("dmt + meniscus", 0.1)
     beside = Sum((Unknown(DMT.radius, DMT.work_of_adhesion), *known.law.parts[1:]))
     unknown = dataclasses.replace(known, law=beside)
-    assert unknown.flattened(unknown.fresh(), 1) is None
-    lost, apex, energy_balance_error = flown(known)
+    assert unknown.flattened(unknown.initial_memory(), 1) is None
+    lost, apex, energy_balance_error = integrated(known)
     assert np.all(np.diff(apex) < 0.0)  # it bounces
-    lost_too, apex_too, closure_too = flown(unknown)
+    lost_too, apex_too, closure_too = integrated(unknown)
     np.testing.assert_allclose(lost_too, lost, rtol=1e-6)
     np.testing.assert_allclose(apex_too, apex, atol=1e-6 * SIGMA)
     assert np.max(energy_balance_error) < 1e-8
@@ -180,12 +180,12 @@ def test_liquid_on_the_surface_lies_beside_what_was_flattened():
     yielding = asperities("dmt", 0.1)
     filling = Interface(KelvinFilling(0.0728, 0.5, 0.5e-9), Gaussian(2.0 * SIGMA), 1.0)
     layers = Layers((yielding, filling))
-    memory = layers.remember(layers.fresh(), jnp.asarray(0.5 * SIGMA))
+    memory = layers.remember(layers.initial_memory(), jnp.asarray(0.5 * SIGMA))
     place = jnp.asarray([0.7, 1.5]) * SIGMA
     exact, found = both(layers, place, memory)
     for name in exact._fields:
         assert worst(getattr(found, name), getattr(exact, name), 1e-3) < 1e-7, name
-    rows = tuple(jnp.full(2, b) for b in layers.fresh())
+    rows = tuple(jnp.full(2, b) for b in layers.initial_memory())
     fresh = eqx.filter_jit(layers.measure)(place, rows, 1)
     first = eqx.filter_jit(layers.first_approach)(place, 1)
     for name in exact._fields:

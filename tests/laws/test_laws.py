@@ -102,7 +102,7 @@ def test_laws_do_not_depend_on_the_units(k):
             np.testing.assert_allclose(there, here, rtol=1e-9, atol=1e-11 * np.max(np.abs(here)))
     assert float(scaled.formation_loss) == pytest.approx(float(law.formation_loss) * energy)
     assert float(scaled.rupture_loss) == pytest.approx(float(law.rupture_loss) * energy)
-    assert float(scaled.reach) == pytest.approx(float(law.reach) * length)
+    assert float(scaled.interaction_range) == pytest.approx(float(law.interaction_range) * length)
 
 
 @every_law

@@ -17,7 +17,7 @@ from asperity.laws.testing import check_law
 R, E, W = 2.5e-7, 5e9, 0.05  # m, Pa, J/m^2
 DEPTH = (9.0 * pi**2 * W**2 * R / (16.0 * E**2)) ** (1.0 / 3.0)
 WIDTH = (R * DEPTH) ** 0.5
-PULL = pi * W * R
+ATTRACTION = pi * W * R
 FOLDS_MEET = (9.0 * pi / (16.0 * (pi - 1.0))) ** (1.0 / 3.0)
 """Elasticity at which the fold outside contact lies where contact begins: 0.938."""
 
@@ -89,7 +89,7 @@ def test_contact_solves_both_equations(elasticity):
     end = float(law.rupture_gap)
     gaps = np.append(end - DEPTH * random.uniform(0.03, 3.0, 6), -20.0 * DEPTH)
     exact = np.array([solved(elasticity, gap) for gap in gaps])
-    np.testing.assert_allclose(force_of(law, gaps), exact, rtol=1e-9, atol=1e-9 * PULL)
+    np.testing.assert_allclose(force_of(law, gaps), exact, rtol=1e-9, atol=1e-9 * ATTRACTION)
 
 
 @pytest.mark.parametrize("elasticity", [0.005, 0.05, 0.3, 0.7, 0.9])
@@ -119,7 +119,7 @@ def test_force_is_the_slope_of_the_energy_from_deep_inside_to_the_rupture(elasti
     around = [end - ladder, (end + ladder)[end + ladder < last - 1e-7 * DEPTH]]
     gaps = np.concatenate([deep, near, *around])
     force, _, slope = curves_of(law, gaps)
-    np.testing.assert_allclose(force, -slope, rtol=1e-9, atol=1e-12 * PULL)
+    np.testing.assert_allclose(force, -slope, rtol=1e-9, atol=1e-12 * ATTRACTION)
 
 
 @every_lambda
@@ -180,7 +180,7 @@ def test_stiff_contact_loses_only_what_the_snaps_outside_contact_cost(elasticity
     """
     law = law_of(elasticity)
     fold = 8.0 * elasticity / (3.0 * pi)
-    unit = PULL * DEPTH * elasticity**2 * fold**3
+    unit = ATTRACTION * DEPTH * elasticity**2 * fold**3
     assert float(law.formation_loss) == pytest.approx(16.0 / 9.0 * unit, rel=1e-6)
     assert float(law.rupture_loss) == pytest.approx(1.0 / 9.0 * unit, rel=1e-6)
 
@@ -219,7 +219,7 @@ def test_soft_contact_tends_to_jkr():
     gaps = np.linspace(-5.0 * DEPTH, 0.8 * DEPTH, 60)
     exact = np.asarray(jkr.bonded_force(jnp.asarray(gaps)))
     laws = [law_of(elasticity) for elasticity in (5.0, 50.0)]
-    miss = [np.max(np.abs(force_of(law, gaps) - exact)) / PULL for law in laws]
+    miss = [np.max(np.abs(force_of(law, gaps) - exact)) / ATTRACTION for law in laws]
     assert miss[0] < 1.3e-2
     assert miss[1] < 1.4e-4
     assert float(laws[1].breaking_gap) == pytest.approx(float(jkr.breaking_gap), rel=1e-4)
@@ -234,7 +234,7 @@ def test_stiff_contact_tends_to_dmt():
     gaps = np.linspace(-2.0 * DEPTH, -0.2 * DEPTH, 40)
     dmt = np.asarray((Hertz(R, E) + Dmt(R, W)).force(jnp.asarray(gaps)))
     found = [force_of(law_of(elasticity), gaps) for elasticity in (5e-3, 5e-5, 5e-7)]
-    miss = np.array([np.max(np.abs(force - dmt)) / PULL for force in found])
+    miss = np.array([np.max(np.abs(force - dmt)) / ATTRACTION for force in found])
     assert miss[0] < 0.1 * 2.0
     np.testing.assert_allclose(-np.diff(np.log10(miss)) / 2.0, 0.5, atol=0.05)
 
@@ -257,10 +257,10 @@ def slopes():
     def all_of(shares, law, gaps):
         values = shares * jnp.stack([law.radius, law.modulus, law.work_of_adhesion, law.spacing])
         law = Maugis(*values)
-        ends = jnp.stack([law.breaking_gap / DEPTH, law.formation_loss / (PULL * DEPTH),
-                          law.rupture_loss / (PULL * DEPTH)])  # fmt: skip
-        energy = law.bonded_energy(gaps) / (PULL * DEPTH)
-        return jnp.concatenate([law.bonded_force(gaps) / PULL, energy, ends])
+        ends = jnp.stack([law.breaking_gap / DEPTH, law.formation_loss / (ATTRACTION * DEPTH),
+                          law.rupture_loss / (ATTRACTION * DEPTH)])  # fmt: skip
+        energy = law.bonded_energy(gaps) / (ATTRACTION * DEPTH)
+        return jnp.concatenate([law.bonded_force(gaps) / ATTRACTION, energy, ends])
 
     return eqx.filter_jit(all_of), eqx.filter_jit(jax.jacfwd(all_of))
 

@@ -131,7 +131,7 @@ def test_the_laws_differ_by_what_the_page_says(curves):
 
 
 def test_the_fits_end_where_the_page_says(gallery):
-    """Where the mean overlap of touching asperities is 110 times that of yield."""
+    """Where the mean overlap of contacting asperities is 110 times that of yield."""
     law = gallery["laws"]["Kogut-Etsion"]
     rms = gallery["tip"] * (13.0 * gallery["hardness"] / gallery["modulus"]) ** 2
     heights = gallery["Gaussian"](rms)

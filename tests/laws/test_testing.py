@@ -118,9 +118,11 @@ def test_energy_that_does_not_vanish_far_away_is_found():
 
 def test_a_reach_too_short_is_found():
     class Wrong(CutOff):
-        reach = property(lambda self: 0.5 * self.extent)
+        interaction_range = property(lambda self: 0.5 * self.extent)
 
-    refuse(Wrong, "Wrong, free branch: beyond `reach` = 2.5e-09 m the force must be below")
+    refuse(
+        Wrong, "Wrong, free branch: beyond `interaction_range` = 2.5e-09 m the force must be below"
+    )
 
 
 def test_a_law_that_cannot_be_traced_is_found():

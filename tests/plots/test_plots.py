@@ -22,7 +22,7 @@ from asperity.results.result import Result
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from fake_result import GRAVITY, MASS, PULL, RELEASE, SURFACE, bounce, loading
+from fake_result import ATTRACTION, GRAVITY, MASS, RELEASE, SURFACE, bounce, loading
 
 
 def shorten(result: Result, points: int) -> Result:
@@ -30,7 +30,7 @@ def shorten(result: Result, points: int) -> Result:
     cut = slice(0, points)
     last = result.time[cut][-1] if points else -1.0
     events = {
-        key: values[result.events[f"{key.split('_')[0]}_time"] <= last]
+        key: values[result.events[f"{key.rpartition('_')[0]}_time"] <= last]
         for key, values in result.events.items()
     }
     tops = events["apex_time"].size
@@ -210,13 +210,13 @@ def test_largest_forces_belong_to_their_impacts():
     push = impacts.largest(result, "elastic", 1.0)
     fast = np.sqrt(2 * GRAVITY * (RELEASE - SURFACE)) * 0.8 ** np.arange(10)
     np.testing.assert_allclose(push, fast * np.sqrt(2e4 * MASS), rtol=1e-9)
-    np.testing.assert_allclose(impacts.largest(result, "capillary", -1.0), PULL)
+    np.testing.assert_allclose(impacts.largest(result, "capillary", -1.0), ATTRACTION)
     assert impacts.largest(result, "magnetic", 1.0).size == 0
 
 
 def test_heights_count_from_static_equilibrium():
-    assert impacts.datum(bounce(impacts=2)) == pytest.approx(SURFACE)
-    assert impacts.datum(shorten(bounce(impacts=2), 10)) is None
+    assert impacts.reference(bounce(impacts=2)) == pytest.approx(SURFACE)
+    assert impacts.reference(shorten(bounce(impacts=2), 10)) is None
 
 
 def falling(result: Result, point: int) -> Result:

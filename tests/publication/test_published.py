@@ -25,7 +25,7 @@ MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
 GRAVITY = 9.81
 
 
-def pressure(functions=None, reach=None, bands=100, edge=EDGE, **changes):
+def pressure(functions=None, interaction_range=None, bands=100, edge=EDGE, **changes):
     values = {
         "density": N,
         "radius": BETA,
@@ -35,7 +35,9 @@ def pressure(functions=None, reach=None, bands=100, edge=EDGE, **changes):
         "tension": TENSION,
         **changes,
     }
-    return PublishedPressure(functions or HeightFunctions(), bands, reach, edge=edge, **values)
+    return PublishedPressure(
+        functions or HeightFunctions(), bands, interaction_range, edge=edge, **values
+    )
 
 
 def contact(retraction_only=1.0, **options):
@@ -53,12 +55,14 @@ def test_pressures_are_those_of_equations_9_15_and_16(reduced):
     moment = quad(lambda s: (s - reduced) ** 1.5 * phi(s), reduced, reduced + 12.0)[0]
     hertz = 4.0 / 3.0 * N * np.sqrt(BETA) * SIGMA**1.5 * E * moment
     assert float(found.contact(h)) == pytest.approx(hertz, rel=1e-8)
-    touching = ndtr(-reduced)
-    assert float(found.adhesion(h)) == pytest.approx(2.0 * pi * BETA * W * N * touching, rel=1e-11)
-    waiting = max(0.5 - touching, 0.0)
+    contacting = ndtr(-reduced)
+    assert float(found.adhesion(h)) == pytest.approx(
+        2.0 * pi * BETA * W * N * contacting, rel=1e-11
+    )
+    waiting = max(0.5 - contacting, 0.0)
     menisci = 4.0 * pi * BETA * TENSION * N * waiting
     assert float(found.capillary(h)) == pytest.approx(menisci, rel=1e-11)
-    assert float(found.touching(h)) == pytest.approx(N * touching, rel=1e-11)
+    assert float(found.touching(h)) == pytest.approx(N * contacting, rel=1e-11)
 
 
 def test_nothing_acts_beyond_the_end_of_the_conjunction():
@@ -78,12 +82,18 @@ def test_printed_polynomials_are_those_of_the_text():
 
 def test_bands_without_end_are_the_integral_over_asperities_that_do_not_touch():
     """Eq. 15 with a Kelvin radius of 5 nm, as the number of bands grows: first order."""
-    reach, h = 3e-9, 2.5 * SIGMA
-    low = max(h - reach, 0.0) / SIGMA
-    whole = quad(lambda z: phi(z) * (1.0 - (h - z * SIGMA) / reach), low, h / SIGMA)[0]
+    interaction_range, h = 3e-9, 2.5 * SIGMA
+    low = max(h - interaction_range, 0.0) / SIGMA
+    whole = quad(lambda z: phi(z) * (1.0 - (h - z * SIGMA) / interaction_range), low, h / SIGMA)[0]
     expected = 4.0 * pi * BETA * TENSION * N * whole
     errors = [
-        abs(float(pressure(reach=reach, bands=bands).capillary(jnp.asarray(h))) / expected - 1.0)
+        abs(
+            float(
+                pressure(interaction_range=interaction_range, bands=bands).capillary(jnp.asarray(h))
+            )
+            / expected
+            - 1.0
+        )
         for bands in (50, 100, 200)
     ]
     assert errors[2] < 0.01
@@ -92,11 +102,13 @@ def test_bands_without_end_are_the_integral_over_asperities_that_do_not_touch():
 
 
 def test_a_kelvin_radius_without_end_needs_no_bands():
-    far = pressure(reach=1e3, bands=7).capillary(jnp.asarray(2.0 * SIGMA))
+    far = pressure(interaction_range=1e3, bands=7).capillary(jnp.asarray(2.0 * SIGMA))
     assert float(far) == pytest.approx(float(pressure().capillary(jnp.asarray(2.0 * SIGMA))))
 
 
-@pytest.mark.parametrize("options", [{}, {"functions": HeightFunctions(1.0)}, {"reach": 3e-9}])
+@pytest.mark.parametrize(
+    "options", [{}, {"functions": HeightFunctions(1.0)}, {"interaction_range": 3e-9}]
+)
 @pytest.mark.parametrize("place", [-5e-9, 1e-9, 20e-9, 31.2e-9])
 def test_force_is_the_slope_of_the_energy_in_both_directions(options, place):
     """On the way in of the stored energy, on the way out less the work that the pulls take."""
@@ -126,7 +138,7 @@ def test_force_on_the_sphere_is_the_integral_over_the_conjunction():
         assert float(part) == pytest.approx(sign * whole, rel=1e-8)
 
 
-def flown(made, gap, impacts=30, **tolerance):
+def integrated(made, gap, impacts=30, **tolerance):
     body = Body(MASS, GRAVITY, gap)
     motion = simulate(made, body, tolerance=Tolerance(max_impacts=impacts, **tolerance))
     return motion, measure(motion, body)
@@ -144,8 +156,10 @@ def stepped(made, gap, impacts):
         places = d + 0.5 * (end - d) * (nodes + 1.0)
         x = places / SIGMA
         push = np.array([moment(v) for v in x]) * 4.0 / 3.0 * N * np.sqrt(BETA) * SIGMA**1.5 * E
-        touching = ndtr(-x)
-        pull = 2.0 * pi * BETA * W * N * touching + 4.0 * pi * BETA * TENSION * N * (0.5 - touching)
+        contacting = ndtr(-x)
+        pull = 2.0 * pi * BETA * W * N * contacting + 4.0 * pi * BETA * TENSION * N * (
+            0.5 - contacting
+        )
         total = push - unloading * pull
         return 2.0 * pi * RADIUS * float(0.5 * (end - d) * weights @ total)
 
@@ -180,7 +194,7 @@ def stepped(made, gap, impacts):
 
 def test_motion_agrees_with_an_integration_in_time():
     """Three impacts of the published case: heights to 1e-7, times to 1e-8."""
-    motion, _ = flown(contact(), 41.5e-9, 3)
+    motion, _ = integrated(contact(), 41.5e-9, 3)
     expected = stepped(contact(), 41.5e-9, 3)
     np.testing.assert_allclose(motion.impacts.apex - EDGE * SIGMA,
                                expected[:, 0] - EDGE * SIGMA, rtol=1e-7)  # fmt: skip
@@ -188,14 +202,14 @@ def test_motion_agrees_with_an_integration_in_time():
 
 
 def test_pulls_in_both_directions_lose_nothing():
-    _, found = flown(contact(retraction_only=0.0), 41.5e-9, 4)
+    _, found = integrated(contact(retraction_only=0.0), 41.5e-9, 4)
     assert float(found.restitution[0]) == pytest.approx(1.0, abs=1e-8)
 
 
 def test_the_ledger_closes_where_pulls_act_while_parting():
-    motion, found = flown(contact(), 41.5e-9)
+    motion, found = integrated(contact(), 41.5e-9)
     made = np.asarray(motion.impacts.made)
-    energy = float(motion.impacts.fastest[0])
+    energy = float(motion.impacts.maximum_kinetic[0])
     assert np.max(np.asarray(motion.impacts.energy_balance_error)[made]) < 1e-10 * energy
     lost = float(np.sum(np.asarray(motion.impacts.lost)[made][0]))
     heights = 41.5e-9 - float(motion.impacts.apex[0])
@@ -205,7 +219,7 @@ def test_the_ledger_closes_where_pulls_act_while_parting():
 
 
 def test_rebounds_count_from_the_edge_of_the_conjunction():
-    motion, found = flown(contact(), 41.5e-9, 2)
+    motion, found = integrated(contact(), 41.5e-9, 2)
     np.testing.assert_allclose(found.rebound_height, motion.impacts.apex - EDGE * SIGMA)
 
 
@@ -213,7 +227,7 @@ def test_decrement_has_a_gradient_through_the_published_case():
     def decrement(factor):
         made = contact()
         made = replace(made, pressure=replace(made.pressure, tension=TENSION * factor))
-        return flown(made, 41.5e-9, 1)[1].log_decrement[0]
+        return integrated(made, 41.5e-9, 1)[1].log_decrement[0]
 
     value = jax.jit(jax.value_and_grad(decrement))
     slope = float(value(jnp.asarray(1.0))[1])
@@ -231,7 +245,7 @@ def case():
 
 def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
     assert case.kelvin_radius == np.inf
-    assert build(case).contact.pressure.reach is None
+    assert build(case).contact.pressure.interaction_range is None
     with pytest.raises(
         InputError, match=r"`humidity` must lie in \[0, 1\) without an `adsorbed_film_thickness`"
     ):
@@ -244,7 +258,11 @@ def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
         ("counterface.deformation", "half-space", "`deformation` must be 'rigid' with a"),
         ("adhesion.model", "jkr", "`model` must be 'dmt' or 'none' with a"),
         ("adhesion.model", "bradley", "`model` must be 'dmt' or 'none' with a"),
-        ("capillary.formation", "kelvin", "`formation` must be 'contact' with a"),
+        (
+            "capillary.formation",
+            "capillary-condensation",
+            "`formation` must be 'on-contact' with a",
+        ),
         ("roughness", None, r"a \[roughness\] table must be given with \[publication\]"),
         ("publication.polynomials", "print", "did you mean 'printed'"),
         ("publication.conjunction_ends", 0.0, r"`conjunction_ends` must lie in \[0.1, 8\]; got 0"),
@@ -298,11 +316,11 @@ def test_the_curve_of_the_published_case_loses_what_the_first_impact_loses(case)
     assert np.all(curve.force_unloading <= curve.force_loading + 1e-18)
 
 
-@pytest.mark.parametrize("reach", [3e-9, 15e-9, 300e-9])
+@pytest.mark.parametrize("interaction_range", [3e-9, 15e-9, 300e-9])
 @pytest.mark.parametrize("edge", [3.0, 5.0])
-def test_the_sum_over_narrow_bands_is_that_term_by_term(reach, edge):
+def test_the_sum_over_narrow_bands_is_that_term_by_term(interaction_range, edge):
     """At a twentieth of an rms height a band, where the program takes the integral."""
-    wide = pressure(reach=jnp.asarray(reach), bands=100, edge=edge)
+    wide = pressure(interaction_range=jnp.asarray(interaction_range), bands=100, edge=edge)
     fine = replace(wide, fine=True)
     h = jnp.linspace(-2.0, 0.9999 * edge, 300) * SIGMA
     one_by_one, slopes = wide.capillary(h), jax.vmap(jax.grad(wide.capillary))(h)
@@ -313,14 +331,16 @@ def test_the_sum_over_narrow_bands_is_that_term_by_term(reach, edge):
 
 
 @pytest.mark.parametrize("release", [41.5e-9, 20e-9])  # outside the conjunction, and within it
-@pytest.mark.parametrize("reach", [None, 15e-9])
-def test_curves_summed_panel_by_panel_are_integrals_from_each_place(reach, release):
-    touched = contact(reach=None if reach is None else jnp.asarray(reach))
+@pytest.mark.parametrize("interaction_range", [None, 15e-9])
+def test_curves_summed_panel_by_panel_are_integrals_from_each_place(interaction_range, release):
+    touched = contact(
+        interaction_range=None if interaction_range is None else jnp.asarray(interaction_range)
+    )
     ends = touched.panels(jnp.asarray(-2.0 * SIGMA), jnp.asarray(release))
     points = np.polynomial.chebyshev.chebpts1(16)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
     summed, each = touched.curves(ends, places), Contact.curves(touched, ends, places)
-    for name in ("force", "stored", "bonds", "parts", "touching"):
+    for name in ("force", "stored", "bonds", "parts", "contacting"):
         found, expected = getattr(summed, name), getattr(each, name)
         largest = float(jnp.max(jnp.abs(expected)))
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-11 * largest, err_msg=name)

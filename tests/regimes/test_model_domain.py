@@ -130,12 +130,12 @@ def test_the_mean_overlap_is_that_of_the_tail_of_the_heights():
 
 def test_asperities_pressed_deeper_than_a_tenth_of_their_tips_are_warned_of():
     sharp, blunt = (changed(ROUGH, roughness__asperity_radius=tip) for tip in ("2 nm", "1000 nm"))
-    (line,) = warned(sharp, "the mean overlap of touching asperities")
+    (line,) = warned(sharp, "the mean overlap of contacting asperities")
     share, width = (float(line.split(word)[1].split(" ")[0]) for word in (
-        "touching asperities is ", "their contact radius "))  # fmt: skip
+        "contacting asperities is ", "their contact radius "))  # fmt: skip
     assert share > 0.1
     assert width == pytest.approx(math.sqrt(share), rel=0.02)
-    assert not warned(blunt, "the mean overlap of touching asperities")
+    assert not warned(blunt, "the mean overlap of contacting asperities")
 
 
 def test_a_wide_contact_is_warned_of_with_its_depth():
@@ -201,19 +201,19 @@ def test_there_is_no_verdict_where_not_one_asperity_is_expected_to_touch():
         impact__speed="1 mm/s", roughness__asperity_density="1e12 1/m^2",
     )  # fmt: skip
     result = asperity.solve(case)
-    touching = result.regime["touching_asperities"]
-    assert touching < 0.1
+    contacting = result.regime["contacting_asperities"]
+    assert contacting < 0.1
     assert verdict(result).startswith(
-        f"no verdict: {touching:.2g} asperities are expected to touch"
+        f"no verdict: {contacting:.2g} asperities are expected to touch"
     )
     assert "most single bodies touch none and a few touch one" in verdict(result)
     assert "sticks" not in result.summary()
     assert "bounces" not in result.summary()
-    assert f"No verdict: {touching:.2g} asperities" in " ".join(result.summary().split())
+    assert f"No verdict: {contacting:.2g} asperities" in " ".join(result.summary().split())
     assert any("most single bodies touch none" in line for line in result.warnings)
 
 
-def test_a_smooth_body_has_a_verdict_and_no_number_of_touching_asperities():
+def test_a_smooth_body_has_a_verdict_and_no_number_of_contacting_asperities():
     result = asperity.solve(changed(SMOOTH, numerics__max_impacts=1))
-    assert result.regime["touching_asperities"] is None
+    assert result.regime["contacting_asperities"] is None
     assert "no verdict" not in verdict(result)

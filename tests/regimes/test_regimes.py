@@ -193,15 +193,15 @@ def test_every_number_that_does_not_apply_says_why():
     nothing = Regime(None, None, None, None, "none")
     found = verdicts(Situation(nothing, False, 1e-6, None, 1.0, 0.0, None))
     missing = {name: one.verdict for name, one in found.items() if one.value is None}
-    assert set(missing) == set(found) - {"adhesion_law", "humidity_regime"}
+    assert set(missing) == set(found) - {"adhesion_law", "liquid_regime"}
     assert all(missing.values())
     assert missing["load_parameter"] == "the case has no adhesion"
 
 
 def test_the_state_of_the_liquid_is_said_with_its_reason():
     dmt = Regime(0.02, 0.0232, 0.5, 7e3, "dmt")
-    regime = dmt._replace(wetting="coalesced", wetting_reason="7 nm reach 6 nm")
-    found = verdicts(situation(regime=regime, kelvin_radius=7e-9))["humidity_regime"]
+    regime = dmt._replace(liquid_regime="coalesced", liquid_regime_reason="7 nm reach 6 nm")
+    found = verdicts(situation(regime=regime, kelvin_radius=7e-9))["liquid_regime"]
     assert (found.value, found.verdict) == ("coalesced", "7 nm reach 6 nm")
 
 

@@ -26,77 +26,78 @@ CONTACT = RigidContact(Interface(LAW, Gaussian(SIGMA), N), Sphere(RADIUS))
 
 
 @pytest.fixture(scope="module")
-def flown():
+def integrated():
     run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=4)))
     motion = run(CONTACT, BODY)
     return motion, measure(motion, BODY)
 
 
-def test_impact_speed_is_that_of_free_fall_to_where_forces_begin(flown):
-    _, found = flown
+def test_impact_speed_is_that_of_free_fall_to_where_forces_begin(integrated):
+    _, found = integrated
     fall = 200e-9 - float(found.reference)
     assert float(found.impact_speed) == pytest.approx(sqrt(2.0 * 9.81 * fall), rel=1e-6)
 
 
-def test_the_largest_speed_is_that_at_the_static_equilibrium(flown):
+def test_the_largest_speed_is_that_at_the_static_equilibrium(integrated):
     """There the weight is carried: free fall less the stored energy."""
-    motion, found = flown
+    motion, found = integrated
     weight = float(BODY.weight)
-    fallen = weight * (200e-9 - float(motion.datum.equilibrium)) - float(motion.datum.stored)
+    ground = motion.reference
+    fallen = weight * (200e-9 - float(ground.equilibrium)) - float(ground.stored)
     assert float(found.maximum_speed) == pytest.approx(sqrt(2.0 * fallen / MASS), rel=1e-4)
 
 
-def test_rebound_heights_count_from_the_static_equilibrium(flown):
-    motion, found = flown
-    state = CONTACT.state(motion.datum.equilibrium, CONTACT.fresh())
+def test_rebound_heights_count_from_the_static_equilibrium(integrated):
+    motion, found = integrated
+    state = CONTACT.state(motion.reference.equilibrium, CONTACT.initial_memory())
     assert float(state.force) == pytest.approx(float(BODY.weight), rel=1e-7)
-    heights = np.asarray(motion.impacts.apex) - float(motion.datum.equilibrium)
+    heights = np.asarray(motion.impacts.apex) - float(motion.reference.equilibrium)
     np.testing.assert_allclose(found.rebound_height, heights, rtol=1e-12)
 
 
-def test_decrement_is_the_logarithm_of_successive_heights(flown):
-    motion, found = flown
-    release = 200e-9 - float(motion.datum.equilibrium)
+def test_decrement_is_the_logarithm_of_successive_heights(integrated):
+    motion, found = integrated
+    release = 200e-9 - float(motion.reference.equilibrium)
     heights = np.concatenate([[release], found.rebound_height])
     np.testing.assert_allclose(found.log_decrement, np.log(heights[:-1] / heights[1:]), rtol=1e-12)
     assert np.all(np.asarray(found.log_decrement) > 0.0)
 
 
-def test_restitution_of_a_drop_is_the_root_of_the_ratio_of_heights(flown):
+def test_restitution_of_a_drop_is_the_root_of_the_ratio_of_heights(integrated):
     """Apart, all energy is m g (d - d_ref)."""
-    motion, found = flown
+    motion, found = integrated
     above = np.concatenate([[200e-9], motion.impacts.apex]) - float(found.reference)
     np.testing.assert_allclose(found.restitution, np.sqrt(above[1:] / above[:-1]), rtol=1e-6)
 
 
-def test_energies_are_compared_where_contact_ends(flown):
-    motion, found = flown
+def test_energies_are_compared_where_contact_ends(integrated):
+    motion, found = integrated
     peak = float(motion.impacts.force[0])
     torn = CONTACT.state(found.reference, CONTACT.extreme((True,)))
-    fresh = CONTACT.state(found.reference, CONTACT.fresh())
+    fresh = CONTACT.state(found.reference, CONTACT.initial_memory())
     largest = max(abs(float(torn.force)), abs(float(fresh.force)))
     assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
 
 
-def test_rebound_period_is_from_maximum_to_maximum(flown):
-    motion, found = flown
+def test_rebound_period_is_from_maximum_to_maximum(integrated):
+    motion, found = integrated
     times = np.concatenate([[0.0], motion.impacts.apex_time])
     np.testing.assert_allclose(found.rebound_period, np.diff(times), rtol=1e-12)
 
 
-def test_power_loss_is_the_energy_missing_at_the_next_maximum(flown):
-    motion, found = flown
+def test_power_loss_is_the_energy_missing_at_the_next_maximum(integrated):
+    motion, found = integrated
     energy = np.concatenate([[float(motion.release)], motion.impacts.mechanical])
     power = -np.diff(energy) / np.asarray(found.rebound_period)
     np.testing.assert_allclose(found.power_loss, power, rtol=1e-5)
 
 
-def test_loss_of_a_cycle_is_that_of_the_menisci_made(flown):
+def test_loss_of_a_cycle_is_that_of_the_menisci_made(integrated):
     """All asperities that touch at the deepest point lose 2 pi beta gamma cos(theta) c each."""
-    motion, _ = flown
+    motion, _ = integrated
     formation, rupture = CONTACT.losses()
     count = 2.0 * pi * RADIUS * SIGMA * N
-    count *= float(height_integral(1.0, motion.impacts.deepest[0] / SIGMA))
+    count *= float(height_integral(1.0, motion.impacts.closest_approach[0] / SIGMA))
     expected = count * float(formation[0] + rupture[0])
     assert float(motion.impacts.lost[0, 0]) == pytest.approx(expected, rel=1e-8)
 
@@ -108,7 +109,7 @@ def test_published_power_loss_is_the_work_of_attraction_on_the_way_out():
     run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=1)))
     motion = run(contact, BODY)
     found = measure(motion, BODY)
-    deepest = float(motion.impacts.deepest[0]) / SIGMA
+    deepest = float(motion.impacts.closest_approach[0]) / SIGMA
     area = 2.0 * pi * RADIUS * SIGMA * 2.0 * pi * BETA * W * N * SIGMA
     work = area * float(height_integral(2.0, deepest)) / 2.0
     power = work / float(motion.impacts.apex_time[0])
@@ -116,8 +117,8 @@ def test_published_power_loss_is_the_work_of_attraction_on_the_way_out():
     assert abs(float(found.power_loss[0])) < 1e-12 * power
 
 
-def test_what_does_not_apply_is_not_a_number(flown):
-    _, found = flown
+def test_what_does_not_apply_is_not_a_number(integrated):
+    _, found = integrated
     assert not bool(found.captured)
     assert np.isnan(float(found.time_to_rest))
     assert np.isnan(float(found.capture_time))
@@ -143,7 +144,7 @@ def test_load_parameter_of_one_rigid_asperity_pulled_off_is_two():
     assert load_parameter(7.0 * pull, 7.0, W, BETA) == pytest.approx(2.0, rel=1e-14)
 
 
-def test_measures_are_arrays_of_one_row_an_impact(flown):
-    _, found = flown
+def test_measures_are_arrays_of_one_row_an_impact(integrated):
+    _, found = integrated
     for name in ("rebound_height", "restitution", "log_decrement", "rebound_period", "power_loss"):
         assert jnp.shape(getattr(found, name)) == (4,)

@@ -216,7 +216,7 @@ def test_json_of_a_result_has_the_documented_keys(result: Result, curve: Curve):
     assert found["regime"]["load_parameter"] is None
     assert list(records.json_object(curve)) == [
         *("rigid_separation", "central_separation", "force_loading", "force_unloading"),
-        *("deepest", "pull_off", "pull_off_separation", "work_of_separation", "preload"),
+        *("minimum_separation", "pull_off", "pull_off_separation", "work_of_separation", "preload"),
         *("loss", "warnings"),
     ]
 

@@ -24,29 +24,29 @@ H = np.linspace(-12.0, 5.0, 69) * SIGMA
 
 
 @eqx.filter_jit
-def measured(sampled, separations, lift):
-    """Parts, energy and touching of Hertz + DMT; one compilation a lift and a number of nodes."""
-    return Interface(HERTZ + DMT, sampled, 1.0).measure(separations, (), lift)
+def measured(sampled, separations, integrated):
+    """Parts, energy and contacting of Hertz + DMT; one compilation a lift and a number of nodes."""
+    return Interface(HERTZ + DMT, sampled, 1.0).measure(separations, (), integrated)
 
 
-def sums(heights, radii, separations, lift):
-    """Means over the summits one by one: elastic, adhesion, energy, touching, four rows."""
+def sums(heights, radii, separations, integrated):
+    """Means over the summits one by one: elastic, adhesion, energy, contacting, four rows."""
     overlap = np.maximum(np.asarray(heights) - np.asarray(separations)[:, None], 0.0)
     stiffness, pull = 4.0 / 3.0 * E * np.sqrt(radii), -2.0 * pi * radii * W
     deep = overlap > 0.0
-    if lift == 0:
-        elastic, adhesion, touching = stiffness * overlap**1.5, pull * deep, deep
+    if integrated == 0:
+        elastic, adhesion, contacting = stiffness * overlap**1.5, pull * deep, deep
         energy = stiffness * overlap**2.5 / 2.5 + pull * overlap
     else:
-        elastic, adhesion, touching = stiffness * overlap**2.5 / 2.5, pull * overlap, overlap
+        elastic, adhesion, contacting = stiffness * overlap**2.5 / 2.5, pull * overlap, overlap
         energy = stiffness * overlap**3.5 / 2.5 / 3.5 + pull * overlap**2 / 2.0
-    return np.stack([np.mean(rows, axis=1) for rows in (elastic, adhesion, energy, touching)])
+    return np.stack([np.mean(rows, axis=1) for rows in (elastic, adhesion, energy, contacting)])
 
 
-def found(sampled, separations, lift):
-    means = measured(sampled, jnp.asarray(separations), lift)
+def found(sampled, separations, integrated):
+    means = measured(sampled, jnp.asarray(separations), integrated)
     return np.stack(
-        [*np.asarray(means.parts), np.asarray(means.energy), np.asarray(means.touching)]
+        [*np.asarray(means.parts), np.asarray(means.energy), np.asarray(means.contacting)]
     )
 
 
@@ -63,48 +63,51 @@ def sampled():
     return Sampled(HEIGHTS, RADII, RADIUS)
 
 
-@pytest.mark.parametrize("lift", [0, 1])
-def test_deep_in_the_means_are_the_sums_over_all_summits(sampled, lift):
+@pytest.mark.parametrize("integrated", [0, 1])
+def test_deep_in_the_means_are_the_sums_over_all_summits(sampled, integrated):
     """All touch: weights with powers 0, 1/2 and 1 of the radius, to 1e-4 from 4 rms below."""
     deep = H[HEIGHTS.min() - 4.0 * SIGMA > H]
     assert deep.size > 20
-    exact = sums(HEIGHTS, RADII, deep, lift)
-    np.testing.assert_allclose(found(sampled, deep, lift), exact, rtol=1e-4)
+    exact = sums(HEIGHTS, RADII, deep, integrated)
+    np.testing.assert_allclose(found(sampled, deep, integrated), exact, rtol=1e-4)
 
 
 def test_count_and_mean_height_are_exact_where_all_touch(sampled):
     """The kernels keep them: the number that touch, and their mean overlap."""
     deep = H[H + 8.0 * float(sampled.step) < HEIGHTS.min()]
-    for lift in (0, 1):
-        touching, exact = found(sampled, deep, lift)[3], sums(HEIGHTS, RADII, deep, lift)[3]
-        np.testing.assert_allclose(touching, exact, rtol=1e-13)
+    for integrated in (0, 1):
+        contacting, exact = (
+            found(sampled, deep, integrated)[3],
+            sums(HEIGHTS, RADII, deep, integrated)[3],
+        )
+        np.testing.assert_allclose(contacting, exact, rtol=1e-13)
 
 
-@pytest.mark.parametrize("lift", [0, 1])
-def test_the_kernel_moves_the_means_by_less_than_the_choice_of_the_summits(sampled, lift):
+@pytest.mark.parametrize("integrated", [0, 1])
+def test_the_kernel_moves_the_means_by_less_than_the_choice_of_the_summits(sampled, integrated):
     """Down to where ten touch: a twentieth of the sampling error; counts by it and one summit."""
     places = H[np.array([np.count_nonzero(h < HEIGHTS) >= 10 for h in H])]
     pairs = zip(HEIGHTS, RADII, strict=True)
-    each = np.stack([sums(np.array([z]), np.array([r]), places, lift) for z, r in pairs])
+    each = np.stack([sums(np.array([z]), np.array([r]), places, integrated) for z, r in pairs])
     mean = each.mean(axis=0)
     error = each.std(axis=0) / np.sqrt(COUNT)
-    share = np.full((4, 1), 0.05) if lift else np.array([[0.05], [1.0], [0.05], [1.0]])
+    share = np.full((4, 1), 0.05) if integrated else np.array([[0.05], [1.0], [0.05], [1.0]])
     one = np.max(abs(each), axis=0) / COUNT * (share == 1.0)
-    off = abs(found(sampled, places, lift) - mean)
+    off = abs(found(sampled, places, integrated) - mean)
     assert np.max(off - share * error - one - 1e-12 * abs(mean)) <= 0.0
 
 
-@pytest.mark.parametrize("lift", [0, 1])
-def test_no_mean_leaves_those_of_heights_moved_by_the_width_of_the_kernel(sampled, lift):
+@pytest.mark.parametrize("integrated", [0, 1])
+def test_no_mean_leaves_those_of_heights_moved_by_the_width_of_the_kernel(sampled, integrated):
     """A bound at the top too, where a few summits touch: each is spread by at most four steps."""
     step = float(sampled.step)
     drawn = 1.0 - np.sqrt(1.0 - 2.0 / 3.0 * (step / HEIGHTS.std()) ** 2)
     moved = 4.0 * step + drawn * np.max(abs(HEIGHTS - HEIGHTS.mean()))
     sign = np.array([1.0, -1.0, 1.0])[:, None]
     rows = [0, 1, 3]
-    ours = sign * found(sampled, H, lift)[rows]
-    least = sign * sums(HEIGHTS, RADII, H + moved, lift)[rows]
-    most = sign * sums(HEIGHTS, RADII, H - moved, lift)[rows]
+    ours = sign * found(sampled, H, integrated)[rows]
+    least = sign * sums(HEIGHTS, RADII, H + moved, integrated)[rows]
+    most = sign * sums(HEIGHTS, RADII, H - moved, integrated)[rows]
     slack = 1e-12 * np.max(abs(most), axis=1, keepdims=True)
     assert (ours >= least - slack).all()
     assert (ours <= most + slack).all()
@@ -113,8 +116,8 @@ def test_no_mean_leaves_those_of_heights_moved_by_the_width_of_the_kernel(sample
 def test_above_the_top_nothing_touches_and_nothing_pulls(sampled):
     above = float(sampled.top) + np.array([1e-12, 1e-9, 1e-6])
     assert float(sampled.top) < HEIGHTS.max() + 7.0 * float(sampled.step)
-    for lift in (0, 1):
-        np.testing.assert_array_equal(found(sampled, above, lift), 0.0)
+    for integrated in (0, 1):
+        np.testing.assert_array_equal(found(sampled, above, integrated), 0.0)
 
 
 def test_finer_nodes_converge_to_the_sums_with_the_square_of_their_step():
@@ -168,13 +171,13 @@ def test_tails_are_integrals_of_one_another(sampled, size):
     assert off[2] < 1e-6
 
 
-@pytest.mark.parametrize("lift", [0, 1])
+@pytest.mark.parametrize("integrated", [0, 1])
 @pytest.mark.parametrize(
     "law",
     [HERTZ + DMT, HERTZ + Meniscus(RADIUS, 0.0728, radians(40.0), 1.3e-9)],
     ids=["hertz + dmt", "hertz + meniscus"],
 )
-def test_pressure_is_the_slope_of_the_energy(sampled, law, lift):
+def test_pressure_is_the_slope_of_the_energy(sampled, law, integrated):
     """To 1e-6 of the largest: energy and pressure are tables of their own."""
     interface = Interface(law, sampled, 1.0)
     places = jnp.asarray(np.linspace(-3.0, 3.0, 25)) * SIGMA
@@ -182,8 +185,10 @@ def test_pressure_is_the_slope_of_the_energy(sampled, law, lift):
 
     @eqx.filter_jit
     def both(interface):
-        energy = lambda h, b: interface.energy(h[None], tuple(x[None] for x in b), lift)[0]  # noqa: E731
-        return interface.pressure(places, memory, lift), jax.vmap(jax.grad(energy))(places, memory)
+        energy = lambda h, b: interface.energy(h[None], tuple(x[None] for x in b), integrated)[0]  # noqa: E731
+        return interface.pressure(places, memory, integrated), jax.vmap(jax.grad(energy))(
+            places, memory
+        )
 
     pressure, slope = both(interface)
     scale = float(jnp.max(jnp.abs(pressure)))

@@ -6,7 +6,7 @@ from numpy.polynomial import chebyshev
 
 from asperity._jax import jnp
 from asperity.surfaces.heights import Gaussian, Sampled, spread_of
-from asperity.surfaces.heights.panel_length import WAY_NODES, Fineness, fineness_of
+from asperity.surfaces.heights.panel_length import SCANNING_NODES, PanelLengths, fineness_of
 
 _RANDOM = np.random.default_rng(3)
 RMS = 2e-9
@@ -44,29 +44,29 @@ def largest_error(heights, length, nodes):
 
 def test_pieces_of_the_stated_lengths_read_the_curves_to_the_stated_error(sampled):
     """Wherever they begin: the trial's 4e-6 for panels and 2e-5 for ways, within a half more."""
-    told = sampled.fineness
+    told = sampled.panel_lengths
     assert largest_error(sampled, told.panel, 16) < 6e-6
-    for nodes, longest in zip(WAY_NODES, told.ways, strict=True):
+    for nodes, longest in zip(SCANNING_NODES, told.scanning, strict=True):
         assert largest_error(sampled, longest, nodes) < 3e-5
 
 
 def test_longer_pieces_would_not_read_them(sampled):
     """Nothing is cut much finer than it has to be."""
-    longer = min(1.6 * sampled.fineness.panel, Fineness().panel)
-    if longer < Fineness().panel:
+    longer = min(1.6 * sampled.panel_lengths.panel, PanelLengths().panel)
+    if longer < PanelLengths().panel:
         assert largest_error(sampled, longer, 16) > 4e-6
 
 
 def test_a_smooth_density_is_cut_as_gaussian_heights_are():
     place = np.arange(-300.0, 301.0) / 40.0
     told = fineness_of(np.exp(-0.5 * place**2), 40.0)
-    assert told.panel == Fineness().panel == Gaussian(RMS).fineness.panel
+    assert told.panel == PanelLengths().panel == Gaussian(RMS).panel_lengths.panel
     assert told.grain == 1.0
-    assert told.ways[-1] > 3.0
+    assert told.scanning[-1] > 3.0
 
 
 def test_a_way_takes_the_fewest_nodes_in_all():
-    told = Fineness(0.5, (0.1, 0.25, 0.6, 0.7))
+    told = PanelLengths(0.5, (0.1, 0.25, 0.6, 0.7))
     assert told.along(0.0) == (6, 1)
     assert told.along(0.2) == (8, 1)  # not 6 on each of two
     assert told.along(0.7) == (16, 1)  # not 12 on each of two
@@ -75,12 +75,12 @@ def test_a_way_takes_the_fewest_nodes_in_all():
 
 
 def test_of_two_the_finer_counts():
-    one, other = Fineness(0.5, (0.1, 0.2, 0.6, 0.7)), Fineness(0.7, (0.1, 0.25, 0.3, 0.5))
-    assert one.and_of(other) == Fineness(0.5, (0.1, 0.2, 0.3, 0.5))
+    one, other = PanelLengths(0.5, (0.1, 0.2, 0.6, 0.7)), PanelLengths(0.7, (0.1, 0.25, 0.3, 0.5))
+    assert one.and_of(other) == PanelLengths(0.5, (0.1, 0.2, 0.3, 0.5))
 
 
 def test_a_single_height_and_two_far_apart_are_cut_in_a_bounded_number():
     for heights in ([0.0], [3e-9], [0.0, 1e-6], [0.0] * 1000 + [1e-6]):
-        told = spread_of(np.asarray(heights)).fineness
-        assert 0.0 < told.panel <= Fineness().panel
+        told = spread_of(np.asarray(heights)).panel_lengths
+        assert 0.0 < told.panel <= PanelLengths().panel
         assert told.panel > 0.02

@@ -198,12 +198,12 @@ def test_a_plane_is_a_sphere_of_no_curvature():
     assert step.values["tilt_x"] == pytest.approx(np.arctan(0.3), rel=1e-4)
 
 
-@pytest.mark.parametrize("remove", ["tilt", "curvature", "sphere"])
-def test_pixels_on_one_line_determine_no_form(remove):
+@pytest.mark.parametrize("form_removal", ["tilt", "curvature", "sphere"])
+def test_pixels_on_one_line_determine_no_form(form_removal):
     heights = np.full(SHAPE, np.nan)
     heights[10] = roughness()[10]
     with pytest.raises(InputError, match=r"a\.npy: .*got 120 pixels"):
-        levelled(surface(heights), remove)
+        levelled(surface(heights), form_removal)
 
 
 # --- scan lines ----------------------------------------------------------------------------
@@ -316,8 +316,8 @@ def test_a_wave_passes_as_the_standard_says(axis, ratio):
         (slice(140, -140), slice(180, -180)) if ratio > 2 else (slice(90, -90), slice(120, -120))
     )
     passed = transmission(cut, wavelength)
-    low, _ = band_limited(surface(wave), short=cut)
-    high, _ = band_limited(surface(wave), long=cut)
+    low, _ = band_limited(surface(wave), s_filter=cut)
+    high, _ = band_limited(surface(wave), l_filter=cut)
     atol = 2e-12
     np.testing.assert_allclose(low.heights[inner], passed * wave[inner], rtol=0, atol=atol)
     np.testing.assert_allclose(high.heights[inner], (1 - passed) * wave[inner], rtol=0, atol=atol)
@@ -325,15 +325,15 @@ def test_a_wave_passes_as_the_standard_says(axis, ratio):
 
 def test_a_cut_at_two_pixels_passes_half_of_the_shortest_wave():
     zigzag = np.broadcast_to((-1.0) ** np.arange(64), (64, 64)) * 1e-9
-    low, _ = band_limited(surface(zigzag, (1e-8, 1e-8)), short=2e-8)
+    low, _ = band_limited(surface(zigzag, (1e-8, 1e-8)), s_filter=2e-8)
     np.testing.assert_allclose(low.heights[20:-20, 20:-20], 0.5 * zigzag[20:-20, 20:-20], rtol=0.01)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3])
 def test_a_constant_passes_the_short_cut_up_to_the_edge_and_nothing_the_long_one(share):
     level = surface(with_gaps(np.full(SHAPE, 7e-9), share))
-    low, _ = band_limited(level, short=200e-9)
-    high, _ = band_limited(level, long=200e-9)
+    low, _ = band_limited(level, s_filter=200e-9)
+    high, _ = band_limited(level, l_filter=200e-9)
     np.testing.assert_array_equal(low.missing, level.missing)
     np.testing.assert_allclose(low.heights[~low.missing], 7e-9, rtol=1e-12)
     np.testing.assert_allclose(high.heights[~low.missing], 0.0, atol=1e-20)
@@ -342,7 +342,7 @@ def test_a_constant_passes_the_short_cut_up_to_the_edge_and_nothing_the_long_one
 def test_the_filter_is_the_weighted_mean_of_the_pixels_that_are_there():
     """Against the sum written out, with gaps, at a corner and inside."""
     heights, cut = with_gaps(roughness(), 0.3), 200e-9
-    low, _ = band_limited(surface(heights), short=cut)
+    low, _ = band_limited(surface(heights), s_filter=cut)
     x, y = places()
     there = np.isfinite(heights)
     for row, column in np.argwhere(there)[[0, 1, 4000, -1]]:
@@ -354,18 +354,27 @@ def test_the_filter_is_the_weighted_mean_of_the_pixels_that_are_there():
 
 def test_low_and_high_parts_add_up_to_the_surface():
     rough = surface(roughness())
-    low, high = band_limited(rough, short=200e-9)[0], band_limited(rough, long=200e-9)[0]
+    low, high = band_limited(rough, s_filter=200e-9)[0], band_limited(rough, l_filter=200e-9)[0]
     np.testing.assert_allclose(low.heights + high.heights, rough.heights, rtol=0, atol=1e-22)
 
 
 @pytest.mark.parametrize(
     ("cuts", "rule"),
     [
-        ({"short": 29e-9}, "`short` must lie between two pixels, 30 nm, .* 1.2 um; got 29 nm"),
-        ({"long": 1.3e-6}, "`long` must lie between two pixels, 30 nm, .* 1.2 um; got 1.3 um"),
-        ({"short": 1e-6, "long": 1e-7}, "`short` must lie below `long`, 100 nm; got 1 um"),
-        ({"short": 0.0}, "`short` must be a positive length"),
-        ({"long": np.nan}, "`long` must be a positive length"),
+        (
+            {"s_filter": 29e-9},
+            "`s_filter` must lie between two pixels, 30 nm, .* 1.2 um; got 29 nm",
+        ),
+        (
+            {"l_filter": 1.3e-6},
+            "`l_filter` must lie between two pixels, 30 nm, .* 1.2 um; got 1.3 um",
+        ),
+        (
+            {"s_filter": 1e-6, "l_filter": 1e-7},
+            "`s_filter` must lie below `l_filter`, 100 nm; got 1 um",
+        ),
+        ({"s_filter": 0.0}, "`s_filter` must be a positive length"),
+        ({"l_filter": np.nan}, "`l_filter` must be a positive length"),
     ],
 )
 def test_a_cut_that_the_map_cannot_show_is_refused(cuts, rule):
@@ -382,9 +391,21 @@ def test_a_scan_is_prepared_in_order_and_says_what_was_done():
     raw = with_gaps(rough.heights + 0.02 * x - (x**2 + y**2) / 2e-4 + stripes("rows"), 0.05)
     made = prepared(
         surface(raw),
-        Preparation(missing="fill", remove="curvature", align="median", short=4e-8, long=6e-7),
+        Preparation(
+            missing="fill",
+            form_removal="curvature",
+            line_levelling="median",
+            s_filter=4e-8,
+            l_filter=6e-7,
+        ),
     )
-    assert [step.name for step in made.steps] == ["lines", "form", "short", "long", "missing"]
+    assert [step.name for step in made.steps] == [
+        "lines",
+        "form",
+        "s_filter",
+        "l_filter",
+        "missing",
+    ]
     assert made.missing_pixels == np.isnan(raw).sum()
     assert made.topography.missing_pixels == 0
     for before, after in zip(made.steps[:-1], made.steps[1:], strict=True):
@@ -397,14 +418,14 @@ def test_a_scan_is_prepared_in_order_and_says_what_was_done():
 
 def test_nothing_is_done_unless_asked_for():
     rough = surface(roughness())
-    made = prepared(rough, Preparation(remove="none"))
+    made = prepared(rough, Preparation(form_removal="none"))
     assert made.topography is rough
     assert made.steps == ()
 
 
 def test_gaps_are_refused_before_anything_is_done():
     with pytest.raises(InputError, match="pixels are missing"):
-        prepared(surface(with_gaps(roughness(), 0.1)), Preparation(align="median"))
+        prepared(surface(with_gaps(roughness(), 0.1)), Preparation(line_levelling="median"))
 
 
 def test_filled_heights_enter_no_fit():
@@ -421,7 +442,9 @@ def test_filled_heights_enter_no_fit():
 def test_a_preparation_does_not_change_what_it_is_given():
     rough = surface(roughness())
     before = rough.heights.copy()
-    prepared(rough, Preparation(remove="sphere", align="median-difference", short=5e-8))
+    prepared(
+        rough, Preparation(form_removal="sphere", line_levelling="median-difference", s_filter=5e-8)
+    )
     np.testing.assert_array_equal(rough.heights, before)
 
 
@@ -429,14 +452,14 @@ def test_a_preparation_does_not_change_what_it_is_given():
     ("key", "value"),
     [
         ("missing", "guess"),
-        ("remove", "plane"),
-        ("align", "mean"),
+        ("form_removal", "plane"),
+        ("line_levelling", "mean"),
         ("direction", "diagonal"),
         ("degree", 6),
         ("degree", 1.5),
         ("degree", True),
-        ("short", -1e-9),
-        ("long", np.inf),
+        ("s_filter", -1e-9),
+        ("l_filter", np.inf),
     ],
 )
 def test_a_preparation_refuses_by_key(key, value):

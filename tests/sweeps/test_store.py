@@ -346,7 +346,7 @@ def test_a_tally_adds_up():
     for task in TASKS:
         tally = tally.plus(compute(FakeStudy(pause=0.001), task)[1], wall=1.0 + task)
     assert (tally.tasks, tally.cases) == (STUDY.tasks, STUDY.size)
-    assert tally.lanes == pytest.approx(0.5)
+    assert tally.batch_use == pytest.approx(0.5)
     assert tally.rate == pytest.approx(STUDY.size / STUDY.tasks)
     assert tally.left == 0.0
     assert tally.outside == pytest.approx(1.0 - 0.25e-3 * STUDY.tasks / STUDY.tasks)

@@ -17,9 +17,9 @@ from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import parse
 
 KEEP = """keep = ["captured", "impact_speed", "restitution", "rebound_height", "log_decrement",
- "rebound_period", "power_loss", "capture_time", "time_to_rest", "last_apex_time", "deepest",
- "energy_lost", "lost_adhesion", "lost_capillary", "lost_gas", "lost_plastic", "lost_waves",
- "lost_viscous"]
+ "rebound_period", "power_loss", "capture_time", "time_to_rest", "last_apex_time",
+ "minimum_separation", "energy_lost", "lost_adhesion", "lost_capillary", "lost_gas",
+ "lost_plastic", "lost_waves", "lost_viscous"]
 keep_impacts = 3
 """
 SINGLE = ("impact_speed", "capture_time", "time_to_rest")
@@ -42,7 +42,7 @@ work = "30 mJ/m^2"
 equilibrium_spacing = "0.2 nm"
 [base.capillary]
 model = "equilibrium"
-formation = "contact"
+formation = "on-contact"
 liquid = "water"
 humidity = 0.6
 temperature = "20 degC"
@@ -106,7 +106,7 @@ def test_cases_side_by_side_are_the_cases_one_by_one(name):
     study = parse("schema = 1\n" + STUDIES[name])
     columns, effort = compute(study, 0)
     assert effort.cases == study.size
-    assert 0.0 < effort.lanes <= 1.0
+    assert 0.0 < effort.batch_use <= 1.0
     for number in range(study.size):
         result = solve(study.case(number))
         count = len(result.measures["restitution"])

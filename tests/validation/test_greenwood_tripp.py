@@ -24,7 +24,7 @@ RADIUS, BETA, SIGMA, E = 50e-6, 0.25e-9, 10.5e-9, 56.8e9
 
 @eqx.filter_jit
 def state(contact, separation):
-    return contact.state(separation, contact.fresh())
+    return contact.state(separation, contact.initial_memory())
 
 
 @cache

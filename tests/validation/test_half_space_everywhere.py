@@ -29,7 +29,7 @@ def contact(mu: float, rings: int) -> ElasticContact:
 
 @eqx.filter_jit
 def state(elastic: ElasticContact, separation: jax.Array) -> State:
-    return elastic.state(separation, elastic.fresh())
+    return elastic.state(separation, elastic.initial_memory())
 
 
 @pytest.mark.long

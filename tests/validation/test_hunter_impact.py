@@ -31,7 +31,7 @@ LITTLE = 1e-4
 
 
 @pytest.fixture(scope="module")
-def flown():
+def integrated():
     """One impact with a coefficient [J s/N^2] and a speed [m/s], and its restitution."""
     return _fly
 
@@ -57,63 +57,63 @@ def figures():
 
 
 def _shares(rows):
-    return np.asarray(rows.lost[:, 0, -1] / rows.fastest[:, 0])
+    return np.asarray(rows.lost[:, 0, -1] / rows.maximum_kinetic[:, 0])
 
 
 def test_known_figures_are_met():
     assert misses(figures()) == []
 
 
-def test_little_loss_is_hunters_to_first_order(flown):
+def test_little_loss_is_hunters_to_first_order(integrated):
     """What is missing is 0.65 of the share, whatever coefficient and speed."""
     whole = float(STEEL.coefficient)
     factors = np.array([1e-4, 1e-3, 1e-2, 1e-4, 1e-2])
     speeds = np.array([1.0, 1.0, 1.0, 0.01, 0.01])
-    rows, _ = flown(whole * factors, speeds)
+    rows, _ = integrated(whole * factors, speeds)
     one = np.array([hertz_share(STEEL, MODULUS, RADIUS, MASS, speed) for speed in speeds])
     off = _shares(rows) / (factors * one) - 1.0
     assert np.all(np.abs(off[[0, 3]]) < 1e-6)
     np.testing.assert_allclose(off / (factors * one), -0.65, atol=1e-3)
 
 
-def test_share_grows_as_the_speed_to_three_fifths(flown):
+def test_share_grows_as_the_speed_to_three_fifths(integrated):
     speeds = np.logspace(-4, 0, 5)
-    rows, restitution = flown(np.full(5, float(STEEL.coefficient)), speeds)
+    rows, restitution = integrated(np.full(5, float(STEEL.coefficient)), speeds)
     slopes = np.diff(np.log(1.0 - np.asarray(restitution) ** 2)) / np.diff(np.log(speeds))
     np.testing.assert_allclose(slopes, 0.6, atol=2e-3)
     np.testing.assert_allclose(1.0 - np.asarray(restitution) ** 2, _shares(rows), rtol=1e-8)
 
 
-def test_waves_that_are_quick_carry_nothing(flown):
+def test_waves_that_are_quick_carry_nothing(integrated):
     """At fixed moduli 1 - e^2 falls as the root of the half-space's density."""
     densities = DENSITY * np.array([1e-12, 1e-8, 1e-4, 1e-4, 1e-4])
     coefficients = [float(WaveRadiation.into(YOUNG, POISSON, d).coefficient) for d in densities]
-    rows, restitution = flown(np.array(coefficients), np.full(5, 0.1))
+    rows, restitution = integrated(np.array(coefficients), np.full(5, 0.1))
     lost = _shares(rows)[:3]
     np.testing.assert_allclose(lost[1:] / lost[:-1], 100.0, rtol=1e-4)
     assert float(restitution[0]) == pytest.approx(1.0, abs=1e-8)
 
 
-def test_what_waves_take_is_missing_from_the_energy(flown):
+def test_what_waves_take_is_missing_from_the_energy(integrated):
     coefficients = float(STEEL.coefficient) * np.array([0.01, 1.0, 10.0, 30.0, 100.0])
-    rows, restitution = flown(coefficients, np.full(5, 1.0))
-    assert np.max(np.asarray(rows.energy_balance_error[:, 0] / rows.fastest[:, 0])) < 1e-12
+    rows, restitution = integrated(coefficients, np.full(5, 1.0))
+    assert np.max(np.asarray(rows.energy_balance_error[:, 0] / rows.maximum_kinetic[:, 0])) < 1e-12
     assert np.all(np.diff(np.asarray(restitution)) < 0.0)
 
 
-def test_impact_is_that_of_an_integration_in_time(flown):
+def test_impact_is_that_of_an_integration_in_time(integrated):
     """With shares up to a fifth, where the second order counts.
 
     The integration knows no cut-off of quick changes, which is left as the difference.
     """
     factors = np.array([1.0, 3.0, 10.0, 30.0, 30.0])
-    rows, restitution = flown(float(STEEL.coefficient) * factors, np.full(5, 1.0))
+    rows, restitution = integrated(float(STEEL.coefficient) * factors, np.full(5, 1.0))
     for k, factor in enumerate(factors):
         deepest, speed, time = _in_time(factor * float(STEEL.coefficient), 1.0)
         cut = 3e-7 * factor**2
-        assert float(rows.deepest[k, 0]) == pytest.approx(-deepest, rel=cut)
+        assert float(rows.closest_approach[k, 0]) == pytest.approx(-deepest, rel=cut)
         assert float(restitution[k]) == pytest.approx(speed, rel=cut)
-        taken = float(rows.deepest_time[k, 0]) - 1e-9  # less the release gap at 1 m/s
+        taken = float(rows.closest_approach_time[k, 0]) - 1e-9  # less the release gap at 1 m/s
         assert taken == pytest.approx(time, rel=cut)
 
 

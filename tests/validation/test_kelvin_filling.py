@@ -16,7 +16,7 @@ from figures import Figure
 
 RADIUS, TENSION, ANGLE = 10e-6, 0.0728, radians(30.0)
 KELVIN = (0.3e-9, 1e-9, 10e-9, 100e-9)
-PULL = 4.0 * pi * RADIUS * TENSION * cos(ANGLE)
+ATTRACTION = 4.0 * pi * RADIUS * TENSION * cos(ANGLE)
 
 
 def filling(kelvin_radius, formation=None):
@@ -34,13 +34,13 @@ def figures():
         rms = 1e-4 * radius
         contact = RigidContact(on_surface(radius, rms), Sphere(RADIUS))
         depths = jnp.linspace(-8.0, 8.0, 65) * rms
-        force = np.array([float(contact.state(d, contact.fresh()).force) for d in depths])
+        force = np.array([float(contact.state(d, contact.initial_memory()).force) for d in depths])
         source = "4 pi R gamma cos(angle): Derjaguin; Israelachvili (2011), ch. 17"
         name = f"pull of a filled gap, Kelvin radius {radius * 1e9:g} nm"
-        rows.append(Figure(name, source, PULL, -force.min(), "N", 2e-3))
+        rows.append(Figure(name, source, ATTRACTION, -force.min(), "N", 2e-3))
         plane = on_surface(radius, rms)
         touch = jnp.asarray(-20.0 * rms)
-        work = -float(plane.energy(touch, plane.torn()))
+        work = -float(plane.energy(touch, plane.saturated_memory()))
         expected = 2.0 * TENSION * cos(ANGLE)
         name = f"work of wet separation, Kelvin radius {radius * 1e9:g} nm"
         rows.append(Figure(name, "2 gamma cos(angle)", expected, work, "J/m^2", 1e-12))
@@ -58,7 +58,7 @@ def test_a_smooth_sphere_has_the_meniscus_of_the_equilibrium_law(formation):
     law = Meniscus(RADIUS, TENSION, ANGLE, 2e-9, formation)
     contact = RigidContact(on_surface(2e-9, 1e-14, formation), Sphere(RADIUS))
     bonded = contact.extreme((True,) * len(contact.mechanisms))
-    for gap in np.array([0.1, 0.4, 0.9, 1.2]) * float(law.reach):
+    for gap in np.array([0.1, 0.4, 0.9, 1.2]) * float(law.interaction_range):
         gap = jnp.asarray(gap)
         found = contact.state(gap, bonded)
         assert float(found.force) == pytest.approx(
@@ -76,13 +76,13 @@ def test_the_tension_acts_on_the_share_of_places_below_the_kelvin_gap(reduced):
     span = 2.0 * radius * cos(ANGLE)
     share = norm.cdf(separation / rms) - norm.cdf((separation - span) / rms)
     plane = on_surface(radius, rms)
-    found = float(plane.pressure(jnp.asarray(separation), plane.fresh()))
+    found = float(plane.pressure(jnp.asarray(separation), plane.initial_memory()))
     assert found == pytest.approx(-TENSION / radius * share, rel=1e-12)
 
 
 def test_more_humidity_reaches_further():
-    reach = [float(filling(radius).reach) for radius in KELVIN]
-    assert reach == sorted(reach)
+    interaction_range = [float(filling(radius).interaction_range) for radius in KELVIN]
+    assert interaction_range == sorted(interaction_range)
 
 
 def test_filling_by_contact_loses_what_filling_at_the_kelvin_gap_does_not():

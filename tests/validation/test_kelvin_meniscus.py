@@ -56,8 +56,8 @@ def test_capillary_force_does_not_depend_on_humidity_but_its_range_does(humidity
     r_k = kelvin_radius(WATER, humidity, 293.15)
     law = Meniscus(50e-6, 0.075, ANGLE, r_k, ByKelvinGap())
     assert touch(humidity).holds
-    assert float(law.reach) == pytest.approx(2.0 * r_k * cos(ANGLE), rel=1e-14)
-    assert float(law.force(law.reach * 1.000001)) == 0.0
+    assert float(law.interaction_range) == pytest.approx(2.0 * r_k * cos(ANGLE), rel=1e-14)
+    assert float(law.force(law.interaction_range * 1.000001)) == 0.0
 
 
 def test_work_of_wet_separation_is_twice_the_tension_times_the_cosine():
@@ -67,15 +67,15 @@ def test_work_of_wet_separation_is_twice_the_tension_times_the_cosine():
 
 def banded(h, sigma, density, law, bands):
     """The publication's eqs. 13-15 with the asperities that touch, heights in bands."""
-    c, pull = float(law.reach), float(law.pull)
+    c, pull = float(law.interaction_range), float(law.pull)
     edges = np.linspace(0.0, c, bands + 1)
     gap = 0.5 * (edges[:-1] + edges[1:])
     phi = np.exp(-0.5 * ((h - gap) / sigma) ** 2) / (np.sqrt(2.0 * pi) * sigma)
     node, weight = np.polynomial.legendre.leggauss(80)
     deep = 0.5 * 9.0 * (node + 1.0) * sigma
     inside = np.exp(-0.5 * ((h + deep) / sigma) ** 2) / (np.sqrt(2.0 * pi) * sigma)
-    touching = 4.5 * sigma * np.sum(weight * inside)
-    return -density * pull * (np.sum(phi * (1.0 - gap / c)) * c / bands + touching)
+    contacting = 4.5 * sigma * np.sum(weight * inside)
+    return -density * pull * (np.sum(phi * (1.0 - gap / c)) * c / bands + contacting)
 
 
 @pytest.mark.parametrize("reduced", [0.0, 2.0, 4.37])

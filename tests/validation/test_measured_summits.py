@@ -42,7 +42,7 @@ def law(radius):
 @eqx.filter_jit
 def pressures(surface, separations):
     """Elastic pressure and pull of surfaces that come closer, two rows."""
-    means = surface.measure(separations, surface.fresh(separations), 0)
+    means = surface.measure(separations, surface.initial_memory(separations), 0)
     elastic = means.parts[surface.components.index("elastic")]
     return jnp.stack([elastic, elastic - jnp.sum(means.parts, axis=0)])
 
@@ -209,13 +209,13 @@ def field_figures(name: str) -> tuple[Figure, ...]:
     rows = []
     for k, what in enumerate(("contact pressure", "pull of those that touch")):
         for j, place in enumerate(PLACES[:2]):
-            touching = np.count_nonzero(
+            contacting = np.count_nonzero(
                 found.heights > found.heights.mean() + place * found.scatter
             )
             rows.append(
                 Figure(
                     f"summits, {name}: {what} over that of their Gaussian fit, {place:g} rms up",
-                    SAMPLED, ratio[2 + k, j], float(ratio[k, j]), "", 0.03 + 3.0 / sqrt(touching),
+                    SAMPLED, ratio[2 + k, j], float(ratio[k, j]), "", 0.03 + 3.0 / sqrt(contacting),
                 )
             )  # fmt: skip
     return tuple(rows)
@@ -256,7 +256,9 @@ def pull_off(name: str, modulus: float) -> float:
     fitted = Interface(soft(found.radius), Gaussian(found.scatter, mean), found.density)
     summits = measured_surface(soft, found.heights, found.radii, found.density, radius=found.radius)
     places = jnp.asarray(mean + found.scatter * np.linspace(-3.0, 8.0, 600))
-    torn = eqx.filter_jit(lambda each: jnp.min(each.pressure(places, each.torn(places), 1)))
+    torn = eqx.filter_jit(
+        lambda each: jnp.min(each.pressure(places, each.saturated_memory(places), 1))
+    )
     return float(torn(summits) / torn(fitted))
 
 

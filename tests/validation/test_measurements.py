@@ -31,8 +31,8 @@ def test_mean_pull_off_of_alumina_falls_far_more_than_measured():
     assert 16.0 < mean.factor < 17.0
     assert 64.0 < mean.low < mean.high < 120.0
     inputs = measured.alumina_inputs()
-    touching = [measured.pull_off(1.5e-9, *given).touching for given in inputs]
-    assert max(touching) * 10e-6 < 0.1
+    contacting = [measured.pull_off(1.5e-9, *given).contacting for given in inputs]
+    assert max(contacting) * 10e-6 < 0.1
     assert wet.low > mean.low
     assert one.factor == 1.0
 

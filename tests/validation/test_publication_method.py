@@ -38,7 +38,7 @@ def case():
 def rebounds(method, case, impacts=1, **options):
     """Heights above the edge [m], the release first, and times of the apexes [s]."""
     model = method.of_problem(build(case), deforms=False, **options)
-    apexes, times = method.fly(model, impacts)
+    apexes, times = method.integrate(model, impacts)
     return np.array([model.release, *apexes]) - model.edge * model.rms, np.array(times)
 
 
@@ -73,7 +73,7 @@ def test_with_the_printed_polynomials_too(method, case):
 def test_with_those_and_an_edge_at_3_both_stick_at_the_first_impact(method, case):
     printed = {"f0": method.PRINTED_F0, "f32": method.PRINTED_F32}
     model = method.of_problem(build(case), deforms=False, **printed)
-    apexes, _ = method.fly(model, 1)
+    apexes, _ = method.integrate(model, 1)
     assert apexes[0] < model.edge * model.rms
     ours = asperity.solve(case.replace({"publication.polynomials": "printed"}))
     assert ours.measures["log_decrement"] == [None]

@@ -36,14 +36,14 @@ def resting():
     """Where it rests, 45.9 nm or lambda' = 4.37; how many asperities touch; what bears it."""
     problem = build(dry())
     rest = equilibrium(problem.contact, problem.body)
-    at_rest = problem.contact.state(rest, problem.contact.fresh())
+    at_rest = problem.contact.state(rest, problem.contact.initial_memory())
     reduced = float(rest) / dry().roughness.rms_height
     weight, force = float(problem.body.weight), float(at_rest.force)
-    touching = float(at_rest.touching)
+    contacting = float(at_rest.contacting)
     return (
         Figure("published case, dry: rests at", SOURCE, 45.9, float(rest) * 1e9, "nm", 0.05 / 45.9),
         Figure("published case, dry: rests at", SOURCE, 4.37, reduced, "rms", 0.005 / 4.37),
-        Figure("published case, dry: touch at rest", SOURCE, 0.07, touching, "", 0.005 / 0.07),
+        Figure("published case, dry: touch at rest", SOURCE, 0.07, contacting, "", 0.005 / 0.07),
         Figure("published case, dry: force at rest", "weight", weight, force, "N", 1e-8),
     )
 
@@ -52,7 +52,7 @@ def resting():
 def at_three():
     """Adhesion of about 1 nN against a contact force of 4.9 uN at lambda' = 3."""
     problem = build(dry())
-    found = problem.contact.state(jnp.asarray(3.0 * 10.5e-9), problem.contact.fresh())
+    found = problem.contact.state(jnp.asarray(3.0 * 10.5e-9), problem.contact.initial_memory())
     parts = dict(zip(problem.contact.components, map(float, found.parts), strict=True))
     contact, pull = parts["elastic"] * 1e6, -parts["adhesion"] * 1e9
     return (

@@ -45,7 +45,7 @@ def forces(reduced):
     contact = RigidContact(
         Interface(Hertz(BETA, E) + Dmt(BETA, W), Gaussian(SIGMA), N), Sphere(RADIUS)
     )
-    found = contact.state(jnp.asarray(reduced * SIGMA), contact.fresh())
+    found = contact.state(jnp.asarray(reduced * SIGMA), contact.initial_memory())
     around = 2.0 * pi * RADIUS * SIGMA * N
     repulsion = around * 4.0 / 3.0 * E * np.sqrt(BETA) * SIGMA**1.5 * TABLE[reduced][0] / 2.5
     pull = -around * 2.0 * pi * BETA * W * TABLE[reduced][1]

@@ -26,7 +26,7 @@ def pressures(interface, separations, memory):
 
 def largest_tension(interface, sigma, span, torn):
     """Of one asperity's mean force [N], by two grids, the second around the first's minimum."""
-    memory = interface.torn() if torn else interface.fresh()
+    memory = interface.saturated_memory() if torn else interface.initial_memory()
     low, high = -3.0 * sigma - 6.0 * span, 8.0 * sigma + 3.0 * span
     for _ in range(3):
         h = np.linspace(low, high, 601)

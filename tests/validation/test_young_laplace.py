@@ -159,13 +159,19 @@ def test_equilibrium_meniscus_at_touch_tends_to_the_classical_pull_as_its_root(d
 def test_equilibrium_pull_falls_in_a_straight_line_but_for_its_edge(degrees):
     """Eq. 12 on half of its range; the edge costs -e c R/(2 x), x its radius, of 4 pi R cos."""
     angle, kelvin_radius = radians(degrees), 1e-4
-    bridge, reach = kelvin_bridge(angle, kelvin_radius), 2.0 * kelvin_radius * cos(angle)
+    bridge, interaction_range = (
+        kelvin_bridge(angle, kelvin_radius),
+        2.0 * kelvin_radius * cos(angle),
+    )
     for share in (0.1, 0.2, 0.3, 0.4, 0.5):
         bridge = yl.solved(
-            bridge, bridge.bodies, pressure=-1.0 / kelvin_radius, separation=share * reach
+            bridge,
+            bridge.bodies,
+            pressure=-1.0 / kelvin_radius,
+            separation=share * interaction_range,
         )
         straight = 1.0 - share
-        edge = 0.5 * edge_energy(angle) / cos(angle) * sqrt(0.5 * reach / (1.0 - share))
+        edge = 0.5 * edge_energy(angle) / cos(angle) * sqrt(0.5 * interaction_range / (1.0 - share))
         pull = bridge.pull / (4.0 * pi * cos(angle))
         assert pull == pytest.approx(straight - edge, abs=0.05 * edge)
 

@@ -268,7 +268,12 @@ def test_a_motion_and_a_curve_unpack_to_their_numbers(client: TestClient, tables
     assert np.allclose(approach, curve.force_loading, rtol=1e-6)
     assert found["curve"]["pull_off"] == curve.pull_off
     begin, end = motion["first_contact"]
-    assert begin < result.events["deepest_time"][0] < end < result.events["apex_time"][0] * 1.2
+    assert (
+        begin
+        < result.events["closest_approach_time"][0]
+        < end
+        < result.events["apex_time"][0] * 1.2
+    )
 
 
 def test_what_is_drawn_keeps_small_late_bounces_jumps_and_what_is_no_number():
@@ -523,7 +528,7 @@ def ending(outcome: Outcome, impacts: int = 6, **measures: Any) -> Result:
 
 def captured_at(impact: int) -> Result:
     """A result whose body sticks in an impact, counted from 0."""
-    when = bounce(impacts=6).events["deepest_time"][impact]
+    when = bounce(impacts=6).events["closest_approach_time"][impact]
     return ending(Outcome.OSCILLATING, captured=impact == 0, capture_time=when)
 
 

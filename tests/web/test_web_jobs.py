@@ -45,13 +45,13 @@ class Held:
         self.left = threading.Event()
         self._answer = answer
 
-    def __call__(self, tell: Report, stop: threading.Event) -> object:
+    def __call__(self, report: Report, stop: threading.Event) -> object:
         self.stop = stop
         self.begun.set()
         try:
             until = time.monotonic() + LONG
             while not self.may_end.is_set() and time.monotonic() < until:
-                tell(0.5, "computing")
+                report(0.5, "computing")
                 time.sleep(0.005)
             return self._answer
         finally:
@@ -76,7 +76,7 @@ def run_apart(main: Coroutine[Any, Any, Any]) -> Any:
 
 
 def quick(answer: object) -> Task:
-    return lambda tell, stop: answer
+    return lambda report, stop: answer
 
 
 # The desk
@@ -102,7 +102,7 @@ def test_an_older_one_that_ends_late_does_not_speak():
         desk = Desk(threads=2)
         begun, going, ended = (threading.Event() for _ in range(3))
 
-        def deaf(tell: Report, stop: threading.Event) -> str:
+        def deaf(report: Report, stop: threading.Event) -> str:
             begun.set()
             going.wait(LONG)
             ended.set()
@@ -226,7 +226,7 @@ def test_patience_ends_a_computation():
 def test_what_is_wrong_with_a_case_is_told_and_is_no_failure(
     error: Exception, caplog: pytest.LogCaptureFixture
 ):
-    def refuse(tell: Report, stop: threading.Event) -> None:
+    def refuse(report: Report, stop: threading.Event) -> None:
         raise error
 
     async def ask() -> Event:
@@ -237,7 +237,7 @@ def test_what_is_wrong_with_a_case_is_told_and_is_no_failure(
 
 
 def test_a_thread_survives_a_failure_which_is_told_and_logged(caplog: pytest.LogCaptureFixture):
-    def fail(tell: Report, stop: threading.Event) -> None:
+    def fail(report: Report, stop: threading.Event) -> None:
         raise ZeroDivisionError("a bug")
 
     async def ask() -> list[Event]:
@@ -308,13 +308,13 @@ def every_word(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(desks, "OFTEN", 0.05)
 
-    def task(tell: Report, stop: threading.Event) -> None:
-        tell(0.0, "loading")
-        tell(0.0, "compilation")
+    def task(report: Report, stop: threading.Event) -> None:
+        report(0.0, "loading")
+        report(0.0, "compilation")
         for number in range(100):
-            tell(number / 100.0, f"impact {number}")
+            report(number / 100.0, f"impact {number}")
             time.sleep(2e-3)
-        tell(1.0, "measures")
+        report(1.0, "measures")
 
     async def ask() -> list[Any]:
         job = Desk(threads=1).ask("A", task)

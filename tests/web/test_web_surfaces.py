@@ -197,7 +197,7 @@ def test_an_upload_gives_what_the_file_itself_gives(
 ):
     """The same asperities, motion and warnings as of a case beside the file."""
     token = upload(client, "scan.csv", surface)
-    tables = case_of("scan.csv", source="gaussian", remove="mean")
+    tables = case_of("scan.csv", source="gaussian", form_removal="mean")
     found = explored(client, tables, **{"scan.csv": token})["answer"]
 
     (tmp_path / "scan.csv").write_bytes(surface)

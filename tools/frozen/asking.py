@@ -29,7 +29,7 @@ KEPT = (
     "capture_time",
     "time_to_rest",
     "last_apex_time",
-    "deepest",
+    "minimum_separation",
     "contact_time",
     "maximum_force",
     "pull_off",
@@ -115,7 +115,7 @@ def _curve(out: Answer, case: asperity.Case) -> None:
         out["values"][f"curve.{name}"] = [number(value) for value in sampled]
     out["values"]["curve.rigid_separation"] = [number(value) for value in (near, far)]
     scalars = {
-        "deepest": curve.deepest,
+        "minimum_separation": curve.minimum_separation,
         "pull_off": curve.pull_off,
         "pull_off_separation": curve.pull_off_separation,
         "work_of_separation": curve.work_of_separation,

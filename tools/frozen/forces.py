@@ -62,21 +62,24 @@ def laws() -> list[Structure]:
     return out
 
 
+_FORMATIONS = {"on-contact": "contact", "capillary-condensation": "kelvin"}
+
+
 def liquids() -> list[Structure]:
     """Each liquid and formation: rough on a rigid and on an elastic bulk, and a smooth sphere."""
     ways = [
-        ("equilibrium", "contact"),
-        ("equilibrium", "kelvin"),
-        ("constant-volume", "contact"),
-        ("constant-volume", "kelvin"),
-        ("kelvin-filling", "contact"),
-        ("kelvin-filling", "kelvin"),
+        ("equilibrium", "on-contact"),
+        ("equilibrium", "capillary-condensation"),
+        ("constant-volume", "on-contact"),
+        ("constant-volume", "capillary-condensation"),
+        ("kelvin-filling", "on-contact"),
+        ("kelvin-filling", "capillary-condensation"),
     ]
     out = []
     for model, formation in ways:
         rms = {"surface_rms_height": 2e-9} if model == "kelvin-filling" else {}
         liquid = water(model, formation, **rms)
-        name = f"{model}-{formation}"
+        name = f"{model}-{_FORMATIONS[formation]}"
         out.append(
             Structure(
                 f"rough-rigid-{name}",

@@ -81,7 +81,7 @@ def drawn_work(model: str) -> Ranges:
     return {} if model == "none" else WORK
 
 
-def water(model: str, formation: str = "contact", **keys: Any) -> Changes:
+def water(model: str, formation: str = "on-contact", **keys: Any) -> Changes:
     """Menisci in place of the base's."""
     table = {
         "model": model,

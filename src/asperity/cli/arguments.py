@@ -10,7 +10,7 @@ from asperity.cli import shell_completion
 from asperity.errors import InputError
 
 
-def _one_voice(ctx: typer.Context, value: bool) -> bool:
+def _one_manner(ctx: typer.Context, value: bool) -> bool:
     """Refuse to be quiet and verbose at once; the later of the two options finds the other."""
     both = value and (ctx.params.get("quiet") or ctx.params.get("verbose"))
     if both and not ctx.resilient_parsing:
@@ -99,12 +99,12 @@ Json = Annotated[
 OnlyJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI units.")]
 Quiet = Annotated[
     bool,
-    typer.Option("-q", "--quiet", callback=_one_voice, help="Print nothing but errors and JSON."),
+    typer.Option("-q", "--quiet", callback=_one_manner, help="Print nothing but errors and JSON."),
 ]
 Verbose = Annotated[
     bool,
     typer.Option(
-        "-v", "--verbose", callback=_one_voice, help="Say each step and how long it took."
+        "-v", "--verbose", callback=_one_manner, help="Say each step and how long it took."
     ),
 ]
 Version = Annotated[
@@ -177,17 +177,17 @@ SurfaceFiles = Annotated[
     ),
 ]
 Channel = Annotated[str | None, optional("channel", "NAME|N", "Channel of an instrument's file.")]
-Remove = Annotated[
+FormRemoval = Annotated[
     str | None,
     choice(
-        "remove", "FORM", "none|mean|tilt|curvature|sphere", "tilt",
+        "form-removal", "FORM", "none|mean|tilt|curvature|sphere", "tilt",
         "none", "mean", "tilt", "curvature", "sphere",
     ),
 ]  # fmt: skip
-Align = Annotated[
+LineLevelling = Annotated[
     str | None,
     choice(
-        "align", "HOW", "Scan lines: none|median|median-difference|polynomial", "none",
+        "line-levelling", "HOW", "Scan lines: none|median|median-difference|polynomial", "none",
         "none", "median", "median-difference", "polynomial",
     ),
 ]  # fmt: skip
@@ -199,11 +199,11 @@ Direction = Annotated[
     ),
 ]  # fmt: skip
 Degree = Annotated[int | None, optional("degree", "N", "Degree of a scan line's polynomial.", "1")]
-Short = Annotated[
-    str | None, optional("short", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
+SFilter = Annotated[
+    str | None, optional("s-filter", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
 ]
-Long = Annotated[
-    str | None, optional("long", "LENGTH", "Cut wavelengths above this, such as '5 um'.")
+LFilter = Annotated[
+    str | None, optional("l-filter", "LENGTH", "Cut wavelengths above this, such as '5 um'.")
 ]
 MadeFile = Annotated[
     str,

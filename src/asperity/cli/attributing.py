@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.study_plots import done
 from asperity.errors import InputError
 
@@ -38,29 +38,29 @@ def sensitivity(
     force : bool
         Whether earlier files may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     from asperity.results.records import check_folder, write_folder
 
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     folder = None
-    if output is not None or not voice.as_json:
+    if output is not None or not reporter.as_json:
         folder = Path(output or f"{Path(study).stem}-sensitivity")
         check_folder(folder, SENSITIVITY_FILES, force=force)
-    found = _indices(study, measure, voice)
-    voice.answer(lambda: "\n".join(_index_lines(found)), found.json_object)
+    found = _indices(study, measure, reporter)
+    reporter.answer(lambda: "\n".join(_index_lines(found)), found.json_object)
     if folder is not None:
-        with voice.step("pictures and files"):
+        with reporter.step("pictures and files"):
             files = done(
                 lambda: importlib.import_module("asperity.plots.study.bars").pictures(found)
             )
             text = json.dumps(found.json_object(), allow_nan=False)
             files["sensitivity.json"] = text.encode() + b"\n"
             written = write_folder(folder, files, SENSITIVITY_FILES, force=force)
-        voice.written(written)
+        reporter.written(written)
 
 
-def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
+def _indices(file: str, measure: str, reporter: Reporter) -> Sensitivity:
     """The indices, computed in a thread of its own."""
     import dataclasses
 
@@ -77,7 +77,7 @@ def _indices(file: str, measure: str, voice: Voice) -> Sensitivity:
         raise
     batch = importlib.import_module("asperity.sweeps.compute.batch")
     cases, computed = study.size * (len(study.axes) + 2), 0
-    with voice.watch() as progress:
+    with reporter.watch() as progress:
 
         def tell_of(count: int) -> None:
             nonlocal computed

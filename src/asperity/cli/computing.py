@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.reporter import Voice, files_of, written_to
+from asperity.cli.reporter import Reporter, files_of, written_to
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
@@ -47,7 +47,7 @@ class _Request:
     folder: Path | None
     force: bool
     earlier: bool
-    voice: Voice
+    reporter: Reporter
     given: Mapping[str, Any]
     published: bool | None
 
@@ -80,19 +80,19 @@ def compute(
     force : bool
         Whether earlier results may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     named = source_of(case)
     folder, earlier = None, False
-    if output is not None or not voice.as_json:
+    if output is not None or not reporter.as_json:
         folder = Path(output or named.case.output.directory or f"{named.name}-out")
         earlier = _earlier(folder, what, named)
         force = force or earlier
         check_folder(folder, _FILES[what], force=force)
-    request = _Request(what, named, folder, force, earlier, voice, given or {}, published)
+    request = _Request(what, named, folder, force, earlier, reporter, given or {}, published)
     try:
-        with voice.watch() as progress:
+        with reporter.watch() as progress:
             work = Work(lambda stop: _task(request, stop, progress))
             result, code = work.wait()
     except InputError as error:
@@ -183,8 +183,8 @@ def _deliver(result: Answer, request: _Request, code: int) -> int:
     written, code = _keep(result, request, code)
     if code:
         say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
-    request.voice.answer(lambda: _brief(result, request), lambda: _object(result))
-    request.voice.written(written, earlier=request.earlier)
+    request.reporter.answer(lambda: _brief(result, request), lambda: _object(result))
+    request.reporter.written(written, earlier=request.earlier)
     return code
 
 
@@ -214,10 +214,10 @@ def _keep(result: Answer, request: _Request, code: int) -> tuple[Sequence[Path],
     files = None
     if not code:
         # In a thread, where no interruption can be lost in a callback of somebody else's.
-        with request.voice.step("record and pictures"):
+        with request.reporter.step("record and pictures"):
             files, code = Work(lambda stop: _files(result, request)).wait()
     files = files or _files(result, request, pictures=False)
-    with request.voice.step("files"):
+    with request.reporter.step("files"):
         return write_folder(request.folder, files, own, force=request.force), code
 
 
@@ -233,14 +233,14 @@ def redraw(record: str, output: str | None, *, force: bool, **manner: bool) -> N
     force : bool
         Whether pictures in ``output`` may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     from asperity import plots
 
-    voice = Voice(**manner)
-    with voice.step("record"):
+    reporter = Reporter(**manner)
+    with reporter.step("record"):
         result = read(record)
-    with voice.step("pictures"):
+    with reporter.step("pictures"):
         pictures = plots.pictures(result)
     if not pictures:
         raise InputError(
@@ -248,4 +248,4 @@ def redraw(record: str, output: str | None, *, force: bool, **manner: bool) -> N
         )
     folder = Path(record).parent if output is None else Path(output)
     written = write_folder(folder, pictures, tuple(pictures), force=force or output is None)
-    voice.answer(lambda: written_to(written), lambda: {"record": record, **files_of(written)})
+    reporter.answer(lambda: written_to(written), lambda: {"record": record, **files_of(written)})

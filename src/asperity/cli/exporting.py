@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.study_plots import done, held_axes, is_store
 from asperity.cli.working import Progress
 from asperity.errors import InputError
@@ -46,7 +46,7 @@ def export(
     force : bool
         Whether files may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     options = {"output": output, "restitution": restitution, "force-table": force_table}
     given = [name for name, file in options.items() if file is not None]
@@ -57,23 +57,25 @@ def export(
         )
     if at and restitution is None:
         raise InputError("`at` must go with --restitution; got it without", key="at")
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     if force_table is not None:
-        written, facts = _export_force(source, force_table, voice, force=force)
+        written, facts = _export_force(source, force_table, reporter, force=force)
     elif restitution is not None:
-        written, facts = _export_restitution(source, restitution, held_axes(at), voice, force=force)
+        written, facts = _export_restitution(
+            source, restitution, held_axes(at), reporter, force=force
+        )
     else:
         assert output is not None
-        written, facts = _export_table(source, output, voice, force=force)
+        written, facts = _export_table(source, output, reporter, force=force)
     found = {"file": str(written), "bytes": written.stat().st_size, **facts}
-    voice.answer(lambda: f"written to {written}", lambda: found)
+    reporter.answer(lambda: f"written to {written}", lambda: found)
 
 
-def _export_table(source: str, output: str, voice: Voice, *, force: bool) -> Exported:
+def _export_table(source: str, output: str, reporter: Reporter, *, force: bool) -> Exported:
     from asperity.sweeps.analysis.export import export as write
     from asperity.sweeps.store.dataset import open_results
 
-    with voice.step("table"):
+    with reporter.step("table"):
         path: Path = done(lambda: write(source, output, force=force))
     found = open_results(source)
     columns = [*(axis.key for axis in found.study.axes), *found.columns]
@@ -82,13 +84,13 @@ def _export_table(source: str, output: str, voice: Voice, *, force: bool) -> Exp
 
 
 def _export_restitution(
-    source: str, file: str, held: dict[str, str], voice: Voice, *, force: bool
+    source: str, file: str, held: dict[str, str], reporter: Reporter, *, force: bool
 ) -> Exported:
     from asperity.sweeps.analysis.restitution_table import restitution_of, write_restitution
     from asperity.sweeps.analysis.view import at
     from asperity.sweeps.store.dataset import dataset_of, open_results
 
-    with voice.step("restitution"):
+    with reporter.step("restitution"):
         found = open_results(source)
         found.refuse_empty()
         names = [n for n in ("outcome", "impact_speed", "restitution") if n in found.columns]
@@ -99,7 +101,7 @@ def _export_restitution(
     return path, {"kind": "restitution", "impact_speed": speeds, "restitution": bounces}
 
 
-def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Exported:
+def _export_force(source: str, file: str, reporter: Reporter, *, force: bool) -> Exported:
     from asperity.results.case_source import source_of
     from asperity.sweeps.analysis.force_table import check_force_table, write_force_table
 
@@ -114,14 +116,14 @@ def _export_force(source: str, file: str, voice: Voice, *, force: bool) -> Expor
         return curve
 
     try:
-        with voice.watch() as progress:
+        with reporter.watch() as progress:
             curve = done(lambda: task(progress))
         path = write_force_table(curve, file, force=force)
     except InputError as error:
         error.file = error.file or given.file
         raise
     for line in curve.warnings:
-        voice.note(f"asperity: warning: {line}")
+        reporter.note(f"asperity: warning: {line}")
     return path, {"kind": "force-table", "points": int(curve.rigid_separation.size),
                   "pull_off": curve.pull_off, "loss": curve.loss,
                   "warnings": curve.warnings}  # fmt: skip

@@ -13,7 +13,7 @@ import numpy as np
 import typer
 
 from asperity.cli.options import in_options
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import WIDTH, say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, OutputError, one_line
@@ -71,7 +71,7 @@ def generate(
         ``rms_slope``, ``seed``, ``skewness``, ``kurtosis`` as numbers; ``heights``, a file; None
         where one is not given.
     """
-    voice = Voice(as_json=as_json, quiet=quiet, verbose=verbose)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     target = check_target(file, force=force)
     if not target.parent.is_dir():
         raise OutputError(f"{file}: cannot be written: no folder {target.parent}", path=file)
@@ -79,14 +79,16 @@ def generate(
     distribution = "kurtosis" if options["heights"] is None else "heights"
     with in_options(heights=distribution):
         wanted = _wanted(options)
-        with voice.watch(compiles=False) as progress:
+        with reporter.watch(compiles=False) as progress:
             made, code = Work(lambda stop: _make(wanted, progress)).wait()
     if code or made is None:
         say("asperity: interrupted; nothing was written", whole=True)
         raise typer.Exit(code)
-    with voice.step("file"):
+    with reporter.step("file"):
         write_topography(made.topography, file, force=force)
-    voice.answer(lambda: "\n".join(_lines(file, wanted, made)), lambda: _object(file, wanted, made))
+    reporter.answer(
+        lambda: "\n".join(_lines(file, wanted, made)), lambda: _object(file, wanted, made)
+    )
 
 
 def _wanted(options: dict[str, Any]) -> _Wanted:

@@ -8,7 +8,15 @@ from collections.abc import Iterator
 
 from asperity.errors import InputError
 
-PREPARATION = ("missing", "remove", "align", "direction", "degree", "short", "long")
+PREPARATION = (
+    "missing",
+    "form_removal",
+    "line_levelling",
+    "direction",
+    "degree",
+    "s_filter",
+    "l_filter",
+)
 """Options that say how a map is prepared."""
 
 _OTHERWISE = {"rolloff": "roll-off", "cutoff": "cut-off"}

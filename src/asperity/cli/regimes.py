@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, SimulationError
@@ -39,11 +39,11 @@ def tell_regime(case: str, **manner: bool) -> None:
     case : str
         As the user named it.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
-    voice = Voice(**manner)
-    (found,) = _assessed([source_of(case)], voice)
-    voice.answer(lambda: _regime_text(found), lambda: _regime_object(found))
+    reporter = Reporter(**manner)
+    (found,) = _assessed([source_of(case)], reporter)
+    reporter.answer(lambda: _regime_text(found), lambda: _regime_object(found))
 
 
 def _regime_text(found: Assessment) -> str:
@@ -72,30 +72,30 @@ def draw_map(cases: Sequence[str], *, output: str | None, force: bool, **manner:
     force : bool
         Whether an earlier map may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     given = [source_of(case) for case in cases]
     for one in given:
         _need_a_place(one)
     picture = None
-    if output is not None or not voice.as_json:
+    if output is not None or not reporter.as_json:
         picture = Path(output or MAP_FILE)
         _check_picture(picture, force=force)
-    found = _assessed(given, voice)
+    found = _assessed(given, reporter)
     places = _places(given, found)
-    with voice.step("map"):
+    with reporter.step("map"):
         frame = Frame.around(places)
         boundaries = frame.boundaries()
         written = _keep(picture, frame, boundaries, places) if picture else []
-    voice.answer(
+    reporter.answer(
         lambda: "\n".join(_map_lines(places, found)),
         lambda: plain(_map_object(boundaries, places, found)),
     )
-    voice.written(written)
+    reporter.written(written)
 
 
-def _assessed(given: Sequence[Source], voice: Voice) -> list[Assessment]:
+def _assessed(given: Sequence[Source], reporter: Reporter) -> list[Assessment]:
     """What each case's numbers say; an error names the file."""
 
     def task(stop: threading.Event, progress: Progress | None) -> list[Assessment]:
@@ -113,7 +113,7 @@ def _assessed(given: Sequence[Source], voice: Voice) -> list[Assessment]:
                 raise SimulationError(f"{one.file or one.name}: {error}", error.partial) from error
         return found
 
-    with voice.watch() as progress:
+    with reporter.watch() as progress:
         found, code = Work(lambda stop: task(stop, progress)).wait()
     if code or found is None:
         say("asperity: interrupted; nothing was written", whole=True)

@@ -20,7 +20,7 @@ _WIDE = 40
 _DETAIL = re.compile(r"impact \d+|[\d,]+ of [\d,]*\d")  # of a step that goes on
 
 
-class Voice:
+class Reporter:
     """What a command says of itself.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
@@ -52,24 +52,28 @@ def compute(
     options
         ``size``, ``unit`` and ``missing`` of these files, None where not given.
     """
-    voice = Voice(as_json=as_json, quiet=quiet, verbose=verbose)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     read_tables(tables)  # before anything is computed
     _refuse_loose(surfaces, options)
     folder = None
     if output is not None or not as_json:
         folder = Path(output or FOLDER)
         check_folder(folder, REPRODUCTION_FILES, force=force)
-    done, code = _computed(tables, refit, None if surfaces is None else (surfaces, options), voice)
+    done, code = _computed(
+        tables, refit, None if surfaces is None else (surfaces, options), reporter
+    )
     if done is None:
         say("asperity: interrupted before there was anything to keep", whole=True)
         raise typer.Exit(code)
-    with voice.step("figures as pictures, and files"):
+    with reporter.step("figures as pictures, and files"):
         written, code = _keep(done, folder, code, force=force)
     if code:
         say(f"asperity: {Outcome.INTERRUPTED.message}", whole=True)
-    voice.answer(lambda: "\n".join([report.brief(done), *_about_surfaces(done)]), done.json_object)
+    reporter.answer(
+        lambda: "\n".join([report.brief(done), *_about_surfaces(done)]), done.json_object
+    )
     if written:
-        voice.below(_written(written, done))
+        reporter.below(_written(written, done))
     if code:
         raise typer.Exit(code)
     if done.problems:
@@ -87,7 +91,7 @@ def _computed(
     tables: str | None,
     refit: bool,
     measured: tuple[tuple[str, str], dict[str, Any]] | None,
-    voice: Voice,
+    reporter: Reporter,
 ) -> tuple[Reproduction | None, int]:
     """The reproduction, or what there is of it, and the exit code of an interruption."""
     kept: list[Reproduction] = []
@@ -102,7 +106,7 @@ def _computed(
             keep=kept.append,
         )
 
-    with voice.watch() as progress:
+    with reporter.watch() as progress:
         done, code = Work(lambda stop: task(stop, progress)).wait()
     return done or (kept[-1] if kept else None), code
 

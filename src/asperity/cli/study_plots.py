@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from asperity.cli.reporter import Voice, files_of, written_to
+from asperity.cli.reporter import Reporter, files_of, written_to
 from asperity.cli.terminal import WIDTH, say, wrapped
 from asperity.cli.working import Work
 from asperity.errors import InputError
@@ -66,14 +66,14 @@ def plot_store(
     pareto : tuple of str or None
         Two goals such as ``min:time_to_rest``, in place of a picture over axes.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     from asperity.results.records import check_folder, write_folder
     from asperity.sweeps.analysis.pareto import front_of, goal_of
     from asperity.sweeps.analysis.view import at as held_at
     from asperity.sweeps.store.dataset import dataset_of, open_results
 
-    voice, held = Voice(**manner), held_axes(at)
+    reporter, held = Reporter(**manner), held_axes(at)
     goals = None if pareto is None else (goal_of(pareto[0]), goal_of(pareto[1]))
     folder = Path(output) if output is not None else _beside(store)
     again = force or output is None
@@ -87,18 +87,18 @@ def plot_store(
         dataset = dataset_of(found, _read_for(found, wanted))
         return dataset, sweep.pictures(dataset, measure=measure, x=x, y=y, held=held, pareto=goals)
 
-    with voice.step("results and pictures"):
+    with reporter.step("results and pictures"):
         dataset, files = done(draw)
     written = write_folder(folder, files, tuple(files), force=again)
-    _note_missing(dataset, voice)
+    _note_missing(dataset, reporter)
     about = {"store": store, **files_of(written)}
     about |= {name: int(dataset.attrs[name]) for name in ("cases", "computed", "failed")}
     if goals is None:
-        voice.answer(lambda: written_to(written), lambda: about)
+        reporter.answer(lambda: written_to(written), lambda: about)
         return
     chosen, _ = held_at(dataset, held)
     front = front_of(chosen, goals)
-    voice.answer(
+    reporter.answer(
         lambda: "\n".join([*_front_lines(chosen, front), "", written_to(written)]),
         lambda: {**about, "front": _front_object(chosen, front)},
     )
@@ -148,16 +148,16 @@ def done(task: Callable[[], Answer]) -> Answer:
     return found
 
 
-def _note_missing(dataset: xarray.Dataset, voice: Voice) -> None:
+def _note_missing(dataset: xarray.Dataset, reporter: Reporter) -> None:
     """Say how many cases are not computed yet, and how many failed."""
     cases, computed = dataset.attrs["cases"], dataset.attrs["computed"]
     if computed < cases:
-        voice.note(
+        reporter.note(
             f"asperity: {cases - computed} of {cases} cases are not computed yet; "
             "`asperity sweep STUDY --resume` goes on"
         )
     if dataset.attrs["failed"]:
-        voice.note(f"asperity: {dataset.attrs['failed']} of {cases} cases failed")
+        reporter.note(f"asperity: {dataset.attrs['failed']} of {cases} cases failed")
 
 
 def _front_object(dataset: xarray.Dataset, front: Front) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from asperity.cli.options import PREPARATION, in_options
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError
@@ -31,7 +31,7 @@ class _Request:
 
     folder: Path | None
     force: bool
-    voice: Voice
+    reporter: Reporter
 
 
 def describe(
@@ -59,19 +59,19 @@ def describe(
     """
     if len(files) > _MOST_FILES:
         raise InputError(f"one or two files must be given; got {len(files)}; name two at most")
-    asked, voice = treatment(options), Voice(as_json=as_json, quiet=quiet, verbose=verbose)
+    asked, reporter = treatment(options), Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     folder = None
     if output is not None or not as_json:
         folder = Path(output or "-".join([*map(_stem, files), "out"]))
         check_folder(folder, SURFACE_FILES, force=force)
-    found, code = _found(files, asked, voice)
+    found, code = _found(files, asked, reporter)
     if found is None:
         say("asperity: interrupted; nothing was written", whole=True)
         raise typer.Exit(code)
     for one in found.surfaces if isinstance(found, Pair) else (found,):
         with in_options():
             one.description.summits.at_least()
-    _deliver(found, _Request(folder, force, voice))
+    _deliver(found, _Request(folder, force, reporter))
 
 
 def treatment(options: Mapping[str, Any]) -> Treatment:
@@ -93,7 +93,7 @@ def treatment(options: Mapping[str, Any]) -> Treatment:
         channel = given.pop("channel", None)
         size = given.pop("size", None)
         unit = given.pop("unit", None)
-        for name in ("short", "long"):
+        for name in ("s_filter", "l_filter"):
             if name in given:
                 given[name] = quantity(given[name], "m", name)
         width, length = lengths(size, 2, "size") if size is not None else (0.0, 0.0)
@@ -117,26 +117,28 @@ def pair_of(files: tuple[str, str], asked: Treatment) -> Pair:
         return pair(*(surface(file, asked) for file in files))
 
 
-def _found(files: list[str], asked: Treatment, voice: Voice) -> tuple[Surface | Pair | None, int]:
+def _found(
+    files: list[str], asked: Treatment, reporter: Reporter
+) -> tuple[Surface | Pair | None, int]:
     """The description, and the exit code of an interruption."""
 
     def task(stop: threading.Event, progress: Progress | None) -> Surface | Pair | None:
         with in_options(*PREPARATION):
             return surfaces(tuple(files), asked, progress, stop)
 
-    with voice.watch(compiles=False) as progress:
+    with reporter.watch(compiles=False) as progress:
         found, code = Work(lambda stop: task(stop, progress)).wait()
     return (None if code else found), code
 
 
 def _deliver(found: Surface | Pair, request: _Request) -> None:
     """Write the files and print the answer."""
-    with request.voice.step("pictures and files"):
+    with request.reporter.step("pictures and files"):
         written, code = _keep(found, request)
     if code:
         say("asperity: interrupted while drawing; the rest is kept", whole=True)
-    request.voice.answer(lambda: surface_report.text(found), lambda: plain(found.json_object()))
-    request.voice.written(written)
+    request.reporter.answer(lambda: surface_report.text(found), lambda: plain(found.json_object()))
+    request.reporter.written(written)
     if code:
         raise typer.Exit(code)
 

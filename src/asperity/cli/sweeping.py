@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import typer
 
-from asperity.cli.reporter import Voice
+from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines, lines_of, progress_of, took, warnings
 from asperity.cli.terminal import exit_code_of, say
 from asperity.cli.working import Progress, Work
@@ -77,11 +77,11 @@ def sweep(
     force : bool
         Whether a store that is there may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     from asperity.sweeps.compute.runner import one_thread
 
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     one_thread(at_once=True)
     _refuse_both(force=force, resume=resume)
     _refuse_both(force=force, repair=repair)
@@ -90,11 +90,11 @@ def sweep(
         raise InputError(f"`--workers` must be at least 1; got {workers}")
     request = _request(study, output, shard, workers, scheduler)
     for warning in request.study.warnings:
-        voice.note(f"asperity: {warning}")
+        reporter.note(f"asperity: {warning}")
     _refuse_huge(request.study, yes)
-    store, tasks = _opened(request, voice, resume=resume, repair=repair, force=force)
-    tally, code = _filled(request, store, tasks, voice)
-    _tell_sweep(request, store, tally, code, voice)
+    store, tasks = _opened(request, reporter, resume=resume, repair=repair, force=force)
+    tally, code = _filled(request, store, tasks, reporter)
+    _tell_sweep(request, store, tally, code, reporter)
     if code:
         raise typer.Exit(code)
 
@@ -142,7 +142,7 @@ def _refuse_huge(study: Study, yes: bool) -> None:
 
 
 def _opened(
-    request: _Request, voice: Voice, *, resume: bool, repair: bool, force: bool
+    request: _Request, reporter: Reporter, *, resume: bool, repair: bool, force: bool
 ) -> tuple[Store, Sequence[int]]:
     """The store, open for writing, and the tasks wanted of it."""
     from asperity.sweeps.store.repair import remove
@@ -151,7 +151,7 @@ def _opened(
     study, path = request.study, request.path
     tasks = range(study.tasks) if request.shard is None else request.shard.tasks(study.tasks)
     if repair:
-        store, damaged = _mended(request, voice)
+        store, damaged = _mended(request, reporter)
         return store, tasks if resume else damaged
     if force:
         remove(path)
@@ -170,18 +170,18 @@ def _is_empty(path: Path, study: Study) -> bool:
         return False
 
 
-def _mended(request: _Request, voice: Voice) -> tuple[Store, Sequence[int]]:
+def _mended(request: _Request, reporter: Reporter) -> tuple[Store, Sequence[int]]:
     """The store with nothing in it that is not as it was written, and the tasks that went."""
     from asperity.sweeps.store.repair import mend
     from asperity.sweeps.store.store import Store
 
     for file in mend(request.path, request.study):
-        voice.note(f"asperity: {file}: written again")
+        reporter.note(f"asperity: {file}: written again")
     store = Store.open(request.path, request.study, writable=True)
     damaged = store.check()
     for task, name in damaged:
         chunk = store.chunk_file(task, name)
-        voice.note(f"asperity: {chunk}: column {name}, task {task} is corrupt")
+        reporter.note(f"asperity: {chunk}: column {name}, task {task} is corrupt")
     tasks = sorted({task for task, _ in damaged})
     if tasks:
         store.forget(tasks)
@@ -206,7 +206,7 @@ def _runner(request: _Request) -> Iterator[Runner]:
 
 
 def _filled(
-    request: _Request, store: Store, tasks: Sequence[int], voice: Voice
+    request: _Request, store: Store, tasks: Sequence[int], reporter: Reporter
 ) -> tuple[Tally | None, int]:
     """What the run did, None where it did not stop in time; and its exit code."""
     from asperity.sweeps.compute.log import Log
@@ -221,7 +221,7 @@ def _filled(
             log.task(task, effort, tally)
             for case, line in effort.warned:
                 log.write(f"case {case}: {line}")
-            voice.detail(f"task {task}: {effort.cases:,} cases in {effort.wall:.3g} s")
+            reporter.detail(f"task {task}: {effort.cases:,} cases in {effort.wall:.3g} s")
             if bar is not None:
                 bar(tally.cases / tally.cases_wanted, progress_of(tally))
 
@@ -230,7 +230,7 @@ def _filled(
         with _runner(request) as runner:
             return fill(request.study, store, runner, tasks=tasks, progress=kept, stop=stop)
 
-    with voice.watch() as bar:
+    with reporter.watch() as bar:
         try:
             tally, code = Work(lambda stop: task(stop, bar)).wait()
         except KeyboardInterrupt as impatience:  # a second Ctrl-C
@@ -240,7 +240,7 @@ def _filled(
 
 
 def _tell_sweep(
-    request: _Request, store: Store, tally: Tally | None, code: int, voice: Voice
+    request: _Request, store: Store, tally: Tally | None, code: int, reporter: Reporter
 ) -> None:
     """What is in the store now, and what this run took."""
     if code:
@@ -249,16 +249,16 @@ def _tell_sweep(
             f"{store.path}, `--resume` goes on with them",
             whole=True,
         )
-    if voice.as_json or not code:
-        voice.answer(
+    if reporter.as_json or not code:
+        reporter.answer(
             lambda: "\n".join([*lines(store), *lines_of(tally)]),
             lambda: about(store) | took(tally),
         )
-    for warning in [] if voice.as_json else warnings(tally):
-        voice.note(f"asperity: {warning}")
+    for warning in [] if reporter.as_json else warnings(tally):
+        reporter.note(f"asperity: {warning}")
     missing = store.size - store.cases_done
     if missing and not code and request.shard is None:
-        voice.note(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")
+        reporter.note(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")
 
 
 def merge(
@@ -279,27 +279,27 @@ def merge(
     force : bool
         Whether a store that is there may be replaced.
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
     """
     from asperity.sweeps.store.merge import join, whole
 
-    voice = Voice(**manner)
+    reporter = Reporter(**manner)
     path = Path(output) if output is not None else whole(Path(stores[0]))
     if path.resolve() in {Path(store).resolve() for store in stores}:
         raise InputError(f"`--output` must be none of the stores to merge; got {path}")
-    with voice.watch(compiles=False) as bar:
+    with reporter.watch(compiles=False) as bar:
 
         def copied(count: int, of: int) -> None:
             if bar is not None:
                 bar(count / of, f"{count:,} of {of:,} tasks")
 
         joined = join(path, stores, replace=force, progress=copied)
-    voice.answer(lambda: "\n".join(lines(joined)), lambda: about(joined))
+    reporter.answer(lambda: "\n".join(lines(joined)), lambda: about(joined))
     missing = [task for task in range(joined.tasks) if task not in joined.done]
     if missing:
         named = ", ".join(str(task) for task in missing[:_NAMED])
         more = f" and {len(missing) - _NAMED:,} more" if len(missing) > _NAMED else ""
-        voice.note(
+        reporter.note(
             f"asperity: {path}: tasks {named}{more} are missing in the stores; "
             f"`asperity sweep STUDY -o {path} --resume` computes them"
         )

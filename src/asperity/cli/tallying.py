@@ -15,7 +15,7 @@ def progress_of(tally: Tally) -> str:
     """How far a run is, for the bar."""
     return (
         f"{tally.cases:,} of {tally.cases_wanted:,}, {rate(tally)}, "
-        f"lanes {tally.lanes:.0%}, {duration(tally.left)} left"
+        f"batch use {tally.batch_use:.0%}, {duration(tally.left)} left"
     )
 
 
@@ -54,9 +54,9 @@ def took(tally: Tally | None) -> dict[str, Any]:
         "computed": tally.cases,
         "wall": tally.wall,
         "cases_per_second": tally.rate,
-        "lanes": tally.lanes,
-        "outside_compiled": tally.outside,
-        "looked_at": tally.looked,
+        "batch_use": tally.batch_use,
+        "overhead_share": tally.outside,
+        "cases_checked": tally.looked,
         "warnings": warnings(tally),
     }
 
@@ -86,5 +86,5 @@ def lines_of(tally: Tally | None) -> list[str]:
         return ["  nothing was left to compute"]
     return [
         f"  computed {tally.cases:,} in {tally.wall:.3g} s: {rate(tally)}, "
-        f"lanes {tally.lanes:.0%} useful, {tally.outside:.0%} of the time outside compiled code"
+        f"batch use {tally.batch_use:.0%}, {tally.outside:.0%} of the time outside compiled code"
     ]

@@ -53,6 +53,14 @@ class Commands(TyperGroup):
         """Run the command that the arguments name."""
         try:
             return super().invoke(ctx)
+        except typer.TyperException as error:
+            from asperity.config.old_words import new_name  # here: it takes 0.2 s to import
+
+            old = str(getattr(error, "option_name", ""))
+            new = new_name(old.removeprefix("--")).replace("_", "-")
+            if old in (f"--{new}", ""):
+                raise
+            code = _fail(f"no such option: {old}; it is called --{new} now", EXIT_INPUT)
         except InputError as error:
             code = _fail(_with_place(error), EXIT_INPUT)
         except SimulationError as error:

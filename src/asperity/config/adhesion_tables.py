@@ -68,12 +68,12 @@ class Capillary(Table):
         "'none', 'equilibrium' (constant Kelvin radius), 'constant-volume', or 'kelvin-filling'.",
         "equilibrium",
     )
-    formation: Literal["contact", "kelvin"] = entry(
+    formation: Literal["on-contact", "capillary-condensation"] = entry(
         "",
-        "'contact': forms when touched, holds to the Kelvin gap (a loss); "
-        "'kelvin': forms at it (no loss).",
-        "contact",
-        default="contact",
+        "'on-contact': forms when touched, holds to the Kelvin gap (a loss); "
+        "'capillary-condensation': forms at it (no loss).",
+        "on-contact",
+        default="on-contact",
     )
     liquid: str | None = entry(
         "",
@@ -132,10 +132,11 @@ class Capillary(Table):
                 f"no asperities; got model = '{self.model}'",
                 key="surface_rms_height",
             )
-        if self.formation_time and self.formation == "kelvin":
+        if self.formation_time and self.formation == "capillary-condensation":
             raise InputError(
-                "`formation_time` must be absent with formation = 'kelvin', whose menisci are in "
-                "equilibrium with the vapour at every gap and have no delay; take 'contact'; got "
+                "`formation_time` must be absent with formation = 'capillary-condensation', whose "
+                "menisci are in equilibrium with the vapour at every gap and have no delay; take "
+                "'on-contact'; got "
                 f"{self.formation_time:.6g} s",
                 key="formation_time",
             )

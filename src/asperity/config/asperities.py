@@ -66,7 +66,7 @@ class Asperities:
         return None if self.surface is None else self.surface.rms_height
 
     def covered(self, separation: float) -> float:
-        """Share of the area that touching asperities cover at a separation [m].
+        """Share of the area that contacting asperities cover at a separation [m].
 
         Density times pi radius times the mean overlap: of the summits where they are in use, else
         of Gaussian heights.

@@ -13,8 +13,13 @@ RENAMED = {
     "impact_time": "rebound_period",
     "stiction_time": "time_to_rest",
     "end_time": "last_apex_time",
+    "deepest": "minimum_separation",
+    "short": "s_filter",
+    "long": "l_filter",
+    "remove": "form_removal",
+    "align": "line_levelling",
 }
-"""Keys of cases and columns of studies, by their old names."""
+"""Keys of cases, columns of studies and options of commands, by their old names."""
 
 
 def new_name(word: str) -> str:

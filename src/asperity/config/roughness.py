@@ -55,11 +55,11 @@ class Roughness(Table):
     missing: Literal["refuse", "keep", "fill"] | None = entry(
         "", "Missing pixels: 'refuse' (default), 'keep' or 'fill'.", "fill", default=None
     )
-    remove: Literal["none", "mean", "tilt", "curvature", "sphere"] | None = entry(
+    form_removal: Literal["none", "mean", "tilt", "curvature", "sphere"] | None = entry(
         "", "Form that is removed: 'tilt' (default), 'none', 'mean', 'curvature' or 'sphere'.",
         "tilt", default=None,
     )  # fmt: skip
-    align: Literal["none", "median", "median-difference", "polynomial"] | None = entry(
+    line_levelling: Literal["none", "median", "median-difference", "polynomial"] | None = entry(
         "", "Scan lines: 'none' (default), 'median', 'median-difference' or 'polynomial'.",
         "none", default=None,
     )  # fmt: skip
@@ -69,10 +69,10 @@ class Roughness(Table):
     degree: Annotated[int, Number("[0, 5]", whole=True)] | None = entry(
         "1", "Degree of a scan line's polynomial; 1.", 1, default=None
     )
-    short: fields.Length | None = entry(
+    s_filter: fields.Length | None = entry(
         "m", "Wavelength below which waves are cut.", "10 nm", default=None
     )
-    long: fields.Length | None = entry(
+    l_filter: fields.Length | None = entry(
         "m", "Wavelength above which waves are cut.", "5 um", default=None
     )
     radius_classes: Annotated[int, Number("[1, 64]", whole=True)] | None = entry(
@@ -81,8 +81,8 @@ class Roughness(Table):
     )  # fmt: skip
 
     of_files: ClassVar[tuple[str, ...]] = (
-        "source", "size", "unit", "channel", "missing", "remove", "align", "direction", "degree",
-        "short", "long", "radius_classes",
+        "source", "size", "unit", "channel", "missing", "form_removal", "line_levelling",
+        "direction", "degree", "s_filter", "l_filter", "radius_classes",
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -126,7 +126,15 @@ class Roughness(Table):
         # Here, since few cases have files, and SciPy's filters take 0.2 s to import.
         from asperity.surfaces.preparation.prepare import Preparation
 
-        keys = ("missing", "remove", "align", "direction", "degree", "short", "long")
+        keys = (
+            "missing",
+            "form_removal",
+            "line_levelling",
+            "direction",
+            "degree",
+            "s_filter",
+            "l_filter",
+        )
         given = {key: getattr(self, key) for key in keys}
         return Preparation(**{key: value for key, value in given.items() if value is not None})
 

@@ -24,7 +24,7 @@ def check_rules(case: CaseTables) -> None:
         lambda: _film_between_ends(case),
         lambda: _elastic_somewhere(case),
         lambda: _bounded_liquid(case),
-        lambda: _late_liquid(case),
+        lambda: _delayed_liquid(case),
         lambda: _waves_beside(case),
         lambda: _creep_beside(case),
         lambda: _yielding_beside(case),
@@ -55,7 +55,7 @@ def _publication_beside(case: CaseTables) -> None:
         ("counterface.deformation", case.counterface.deformation, ("rigid",)),
         ("adhesion.model", case.adhesion.model, ("dmt", "none")),
         ("capillary.model", case.capillary.model, ("equilibrium", "none")),
-        ("capillary.formation", case.capillary.formation, ("contact",)),
+        ("capillary.formation", case.capillary.formation, ("on-contact",)),
         ("capillary.formation_time", case.capillary.formation_time, (None,)),
         ("capillary.adsorbed_film_thickness", case.capillary.adsorbed_film_thickness, (None,)),
     )
@@ -106,7 +106,7 @@ def _waves_beside(case: CaseTables) -> None:
 
 
 def _creep_beside(case: CaseTables) -> None:
-    """Refuse what a creeping bulk cannot stand beside."""
+    """Refuse what cannot stand beside a viscoelastic bulk."""
     table = case.viscoelasticity
     if table is None or table.model == "none":
         return
@@ -176,7 +176,7 @@ def _yielding_beside(case: CaseTables) -> None:
     )
 
 
-def _late_liquid(case: CaseTables) -> None:
+def _delayed_liquid(case: CaseTables) -> None:
     """Refuse menisci that take time on a rough half-space beside gas."""
     time, rough = case.capillary.formation_time, case.roughness is not None
     if not time or case.capillary.model == "none" or case.publication is not None:

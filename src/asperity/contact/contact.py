@@ -30,7 +30,7 @@ class State(NamedTuple):
         Number of bonds per hysteretic law, shape (laws,).
     parts
         The force by mechanism [N], in the order of :attr:`Contact.components`.
-    touching
+    contacting
         Expected number of asperities in contact.
     error
         Estimated relative error of the force: 1e-16 where it is a closed form.
@@ -47,15 +47,15 @@ class State(NamedTuple):
     central: jax.Array
     bonds: jax.Array
     parts: jax.Array
-    touching: jax.Array
+    contacting: jax.Array
     error: jax.Array
     size: jax.Array
     elastic: jax.Array
     field: jax.Array
 
 
-class Way(NamedTuple):
-    """The way from a reversal to the outermost branch, solved at some places.
+class ScanningCurve(NamedTuple):
+    """The way from a reversal to the major branch, solved at some places.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Held(NamedTuple):
     Attributes
     ----------
     outer
-        Whether on an outermost branch, else still on the way to it.
+        Whether on a major branch, else still on the way to it.
     unloading
         Whether the phase led outwards.
     size, field
@@ -113,7 +113,7 @@ class Contact(eqx.Module):
         return False
 
     @property
-    def datum(self) -> jax.Array | None:
+    def reference(self) -> jax.Array | None:
         """Separation [m] from which rebounds count; None for the static equilibrium."""
         return None
 
@@ -124,7 +124,7 @@ class Contact(eqx.Module):
         return parts[self.components.index("elastic")]
 
     @property
-    def blur(self) -> float:
+    def error_floor(self) -> float:
         """Relative error of its curves below which nothing is gained. Without values."""
         return 0.0
 
@@ -133,12 +133,12 @@ class Contact(eqx.Module):
         """The same contact with ``factor`` times as many panels on its curves."""
 
     @abc.abstractmethod
-    def fresh(self) -> Memory:
+    def initial_memory(self) -> Memory:
         """Memory of bodies that never touched."""
 
     @abc.abstractmethod
     def extreme(self, bonded: tuple[bool, ...]) -> Memory:
-        """Memory on an outermost branch: for each law, all bonds kept or none made."""
+        """Memory on a major branch: for each law, all bonds kept or none made."""
 
     @property
     def yields(self) -> bool:
@@ -146,7 +146,7 @@ class Contact(eqx.Module):
         return False
 
     @property
-    def resting(self) -> int:
+    def rest_branch(self) -> int:
         """Index of the branch on which it comes to rest: of approach, once it has yielded."""
         return int(self.yields)
 
@@ -159,7 +159,7 @@ class Contact(eqx.Module):
         return self
 
     def branches(self) -> tuple[Memory, ...]:
-        """Memories of the outermost branches.
+        """Memories of the major branches.
 
         On a smooth body all combinations of bonds. Else the first has no bonds and the last has
         all. A contact that yields has that of its first approach alone, and the others once it
@@ -173,7 +173,7 @@ class Contact(eqx.Module):
         return tuple(self.extreme(bonded) for bonded in ends)
 
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
-        """Index of the outermost branch that a body with ``memory`` reaches."""
+        """Index of the major branch that a body with ``memory`` reaches."""
         laws = len(self.mechanisms)
         if self.discrete:
             weights = 2 ** np.arange(laws)
@@ -185,7 +185,7 @@ class Contact(eqx.Module):
         """The contact at a rigid separation, reached monotonically from ``memory``."""
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
-        """The contact on the outermost branch of ``memory``, at ascending places [m].
+        """The contact on the major branch of ``memory``, at ascending places [m].
 
         Shape (panels, places), on panels with the given ``ends``.
         """
@@ -200,10 +200,10 @@ class Contact(eqx.Module):
         states = self.branch(ends, places, memories[0])
         return jax.tree_util.tree_map(lambda leaf: leaf[None], states)
 
-    def way(
+    def scanning_curve(
         self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
-    ) -> Way | None:
-        """The way from a reversal at ``start`` to the outermost branch, ``within`` bounds [m].
+    ) -> ScanningCurve | None:
+        """The way from a reversal at ``start`` to the major branch, ``within`` bounds [m].
 
         None for a contact that is always on a branch.
         """
@@ -217,7 +217,9 @@ class Contact(eqx.Module):
     @property
     def scale(self) -> jax.Array:
         """Length [m] over which forces fall off, by which ranges of reversals are cut."""
-        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
+        raise TypeError(
+            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
+        )
 
     @property
     def lagging(self) -> int:
@@ -226,32 +228,36 @@ class Contact(eqx.Module):
 
     @property
     def passed(self) -> tuple[int, int]:
-        """Pieces of a :class:`Way`, and places on each."""
-        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
+        """Pieces of a :class:`ScanningCurve`, and places on each."""
+        raise TypeError(
+            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
+        )
 
     def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """Whether few ways stand for those from all reversals between two separations [m]."""
         return jnp.zeros(jnp.shape(low), bool)
 
-    def way_from(
+    def scanning_curve_from(
         self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
-    ) -> Way:
-        """The way from a reversal on an outermost branch, that came there as ``held`` says.
+    ) -> ScanningCurve:
+        """The way from a reversal on a major branch, that came there as ``held`` says.
 
         Size and field of ``held`` need not be those of the branch. Nothing is solved where it is
         not ``wanted``. Only of contacts whose :attr:`reversals` are more than 0.
         """
-        raise TypeError(f"{type(self).__name__} has no ways back to tabulate: its `reversals` is 0")
+        raise TypeError(
+            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
+        )
 
     def on_branch(self, memory: Memory) -> jax.Array:
-        """Whether the last reversal was on an outermost branch, for :meth:`way_from`."""
+        """Whether the last reversal was on a major branch, for :meth:`scanning_curve_from`."""
         return jnp.asarray(False)
 
     @abc.abstractmethod
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """Memory after a monotone motion from ``memory`` to ``separation``."""
 
-    def turned(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
+    def update_memory(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
         """The same, where the state at ``separation`` is known already."""
         return self.remember(memory, separation)
 
@@ -264,7 +270,7 @@ class Contact(eqx.Module):
         """Energy [J] lost when one bond forms and when it breaks, per hysteretic law."""
 
     @abc.abstractmethod
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         """A separation [m] that a body cannot reach.
 
         It leaves ``release`` [m] with ``kinetic`` [J], ``weight`` [N] and no bonds.
@@ -276,7 +282,7 @@ class Contact(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Separation [m] beyond which bodies that never touched feel nothing.
 
         The force there is below 1e-6 of the largest pull.

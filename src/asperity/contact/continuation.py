@@ -8,9 +8,17 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface.interface import Memory as Thresholds
-from .equilibrium import Rest, Rough, asked_size, beyond, rates, rise_of, settle
+from .equilibrium import (
+    RingEquilibrium,
+    Rough,
+    asked_size,
+    beyond,
+    profile_of,
+    rates,
+    solve_equilibrium,
+)
 from .resolution import Resolution, fills_by_contact
-from .scanning_curve import pieces_to, way_points
+from .scanning_curve import piece_points, pieces_to
 
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
@@ -27,7 +35,7 @@ class Deforming(Rough, Protocol):
 
     @property
     def passed(self) -> tuple[int, int]:
-        """Pieces of a way back, and places on each."""
+        """Pieces of a scanning curve, and separations on each."""
 
 
 class Bound(Protocol):
@@ -42,23 +50,23 @@ class Bound(Protocol):
         """Length of the mesh [m]."""
 
     @property
-    def lift(self) -> jax.Array:
+    def displacement(self) -> jax.Array:
         """Displacement of the rings at the reversal [m]."""
 
 
-class Trail(NamedTuple):
+class ContinuationPath(NamedTuple):
     """The last few places and displacements of the rings there, newest first."""
 
     places: jax.Array
-    lifts: jax.Array
+    displacements: jax.Array
 
     @classmethod
     def straight(
-        cls, place: jax.Array, lift: jax.Array, rate: jax.Array, step: jax.Array | float
-    ) -> Trail:
+        cls, place: jax.Array, displacement: jax.Array, rate: jax.Array, step: jax.Array | float
+    ) -> ContinuationPath:
         """Rings that came by ``rate`` in steps of ``step`` [m]."""
         back = -step * np.arange(float(_TRAIL))
-        return cls(place + back, lift + back[:, None] * rate)
+        return cls(place + back, displacement + back[:, None] * rate)
 
     def guess(self, place: jax.Array) -> jax.Array:
         """The polynomial through them, at a place further on."""
@@ -67,13 +75,13 @@ class Trail(NamedTuple):
         known = jnp.all(apart != 0.0)
         ratios = (place - self.places) * (1.0 - one) + one
         weights = jnp.prod(ratios / jnp.where(known, apart, 1.0), axis=1)
-        return jnp.where(known, weights @ self.lifts, self.lifts[0])
+        return jnp.where(known, weights @ self.displacements, self.displacements[0])
 
-    def append(self, place: jax.Array, lift: jax.Array) -> Trail:
+    def append(self, place: jax.Array, displacement: jax.Array) -> ContinuationPath:
         """With one more, the oldest dropped."""
-        return Trail(
+        return ContinuationPath(
             jnp.concatenate([place[None], self.places[:-1]]),
-            jnp.concatenate([lift[None], self.lifts[:-1]]),
+            jnp.concatenate([displacement[None], self.displacements[:-1]]),
         )
 
 
@@ -91,7 +99,7 @@ def _marks(
     unloading: jax.Array,
     rates: jax.Array,
 ) -> jax.Array:
-    """Ends of the pieces of the way back, for each law.
+    """Ends of the pieces of the scanning curve, for each law.
 
     Even ones until the fastest ring has passed from one branch to the other, and one more
     until the slowest has.
@@ -115,17 +123,17 @@ def fitted(
     place: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
-    lift: jax.Array,
+    displacement: jax.Array,
     free: jax.Array,
-) -> tuple[jax.Array, Rest]:
+) -> tuple[jax.Array, RingEquilibrium]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
     rings, fills = contact.rings, fills_by_contact(contact.interface.hysteretic)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
         size, ratio, rest, passes = now
         size = size * ratio
-        rest = settle(contact, place, thresholds, size, rest.lift, rings)
-        end = place + rise_of(contact, size, rings)[-1]
+        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, rings)
+        end = place + profile_of(contact, size, rings)[-1]
         more = beyond(contact, size, end) if fills else 0.0
         asked = asked_size(rest, rings, more)
         return size, jnp.where(free, asked, 1.0), rest, passes + 1
@@ -134,7 +142,7 @@ def fitted(
         off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[-1] < _PASSES)
         return jnp.logical_or(now[-1] == 0, off)
 
-    blank = Rest(lift, jnp.zeros_like(lift[:-1]), jnp.zeros(()))
+    blank = RingEquilibrium(displacement, jnp.zeros_like(displacement[:-1]), jnp.zeros(()))
     begin = size, jnp.ones(()), blank, 0
     size, _, rest, _ = jax.lax.while_loop(unfit, again, begin)
     return size, rest
@@ -142,18 +150,18 @@ def fitted(
 
 def descend(
     contact: Deforming, corners: jax.Array, places: jax.Array, thresholds: Thresholds
-) -> tuple[jax.Array, Rest]:
+) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
     count = corners.shape[0]
     sigma = contact.interface.heights.rms
     flat = jnp.zeros(contact.rings + 1)
-    above = Trail.straight(corners[0] + sigma, flat, flat, -sigma)
+    above = ContinuationPath.straight(corners[0] + sigma, flat, flat, -sigma)
 
     def step(carry: tuple[Any, ...], job: tuple[jax.Array, jax.Array]) -> Any:
-        trail, factor, sizes = carry
+        path, factor, sizes = carry
         k, place = job
         corner = k < count
-        trail = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, trail)
+        path = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, path)
         light = first_size(contact, place)
         between = jnp.interp(place, corners[::-1], sizes[::-1])
         size, rest = fitted(
@@ -161,11 +169,11 @@ def descend(
             place,
             thresholds,
             jnp.where(corner, light * factor, between),
-            jnp.where(corner, trail.lifts[0], trail.guess(place)),
+            jnp.where(corner, path.displacements[0], path.guess(place)),
             corner,
         )
         sizes = jnp.where(jnp.arange(count) == k, size, sizes)
-        return (trail.append(place, rest.lift), size / light, sizes), (size, rest)
+        return (path.append(place, rest.displacement), size / light, sizes), (size, rest)
 
     begin = above, jnp.ones(()), jnp.ones(count)
     jobs = jnp.concatenate([corners, places])
@@ -181,23 +189,23 @@ def retrace(
     size: jax.Array,
     unloading: jax.Array,
     within: tuple[Any, Any],
-) -> tuple[jax.Array, jax.Array, jax.Array, Rest]:
-    """Pieces of the way back, places on them and the rings there; first of all at the start."""
+) -> tuple[jax.Array, jax.Array, jax.Array, RingEquilibrium]:
+    """Pieces of the scanning curve, separations on them and the rings there, from the start on."""
     pieces, nodes = contact.passed
-    steps = way_points(nodes)
+    steps = piece_points(nodes)
     sigma = contact.interface.heights.rms
     held = memory.thresholds, size
-    pace = rates(contact, start, *held, memory.lift, contact.rings)
+    pace = rates(contact, start, *held, memory.displacement, contact.rings)
     marks = _marks(contact, memory, start, unloading, pace)
     enter, leave = pieces_to(marks, start, unloading, within)
     back = jnp.where(unloading, sigma, -sigma) * 1e-2
-    trail = Trail.straight(start, memory.lift, pace - 1.0, back)
+    path = ContinuationPath.straight(start, memory.displacement, pace - 1.0, back)
 
-    def step(trail: Trail, place: jax.Array) -> Any:
-        rest = settle(contact, place, *held, trail.guess(place), contact.rings)
-        return trail.append(place, rest.lift), rest
+    def step(path: ContinuationPath, place: jax.Array) -> Any:
+        rest = solve_equilibrium(contact, place, *held, path.guess(place), contact.rings)
+        return path.append(place, rest.displacement), rest
 
     places = enter[:, None] + (leave - enter)[:, None] * jnp.asarray(steps)
-    _, found = jax.lax.scan(step, trail, places.ravel())
+    _, found = jax.lax.scan(step, path, places.ravel())
     rests = jax.tree_util.tree_map(lambda leaf: leaf.reshape(pieces, nodes, *leaf.shape[1:]), found)
     return enter, leave, places, rests

@@ -26,15 +26,15 @@ LATE = "capillary"
 _HIGHEST = 1.0  # m: no asperity is higher
 
 
-class Told(Law):
-    """A law whose bonds form when they are told to, at any gap.
+class PrescribedBonds(Law):
+    """A law whose bonds are prescribed: they form when asked, at any gap.
 
     Parameters
     ----------
     law
         The law. Where a meniscus of it is missing there is no force, overlap or not.
     holds
-        Whether its bonds also break only when told (static).
+        Whether its bonds also break only when asked (static).
     """
 
     law: Law
@@ -73,8 +73,8 @@ class Told(Law):
         return self.law.kinks
 
     @property
-    def reach(self) -> jax.Array:
-        return self.law.reach
+    def interaction_range(self) -> jax.Array:
+        return self.law.interaction_range
 
     @property
     def length(self) -> jax.Array | float:
@@ -118,7 +118,7 @@ def _within(term: TruncatedPower, end: jax.Array) -> Powers:
     )
 
 
-class LateContact(eqx.Module):
+class DelayedContact(eqx.Module):
     """A contact whose menisci take time to form.
 
     Parameters
@@ -138,9 +138,9 @@ class LateContact(eqx.Module):
     ``contact``.
     """
 
-    told: Contact
+    base: Contact
     laws: tuple[Law, ...]
-    late: int = eqx.field(static=True)
+    delayed: int = eqx.field(static=True)
     time: Real = quantity()
 
     def __init__(self, contact: RigidContact | ElasticContact | SmoothContact, time: Real) -> None:
@@ -150,14 +150,14 @@ class LateContact(eqx.Module):
             if isinstance(contact, SmoothContact)
             else contact.interface.hysteretic
         )
-        self.told = _told_smooth(contact) if smooth else _told_rough(contact)
-        self.late = contact.mechanisms.index(LATE)
+        self.base = _base_of_smooth(contact) if smooth else _base_of_rough(contact)
+        self.delayed = contact.mechanisms.index(LATE)
         self.time = jnp.asarray(time, dtype=jnp.float64)
 
     @property
     def law(self) -> Law:
         """The law of the menisci."""
-        return self.laws[self.late]
+        return self.laws[self.delayed]
 
     def state(self, separation: jax.Array, memory: Memory, threshold: jax.Array) -> State:
         """The contact at a separation [m], with a threshold [m] of the menisci.
@@ -165,13 +165,13 @@ class LateContact(eqx.Module):
         ``memory`` is that of the other bonds after the last reversal; of a smooth body, which
         bonds there are, of menisci too.
         """
-        return self.told.state(separation, self.with_threshold(memory, threshold))
+        return self.base.state(separation, self.with_threshold(memory, threshold))
 
     def with_threshold(self, memory: Memory, threshold: jax.Array) -> Memory:
         """The memory of all bonds."""
-        if self.told.discrete:
+        if self.base.discrete:
             return memory
-        k = self.late
+        k = self.delayed
         return (*memory[:k], threshold, *memory[k + 1 :])
 
     @property
@@ -181,7 +181,7 @@ class LateContact(eqx.Module):
         Nothing of menisci that form: :meth:`loss` tells that.
         """
         formed = [jnp.asarray(law.formation_loss) for law in self.laws]
-        formed[self.late] = jnp.zeros(())
+        formed[self.delayed] = jnp.zeros(())
         return jnp.stack(formed), jnp.stack([jnp.asarray(law.rupture_loss) for law in self.laws])
 
     def loss(self, gap: jax.Array) -> jax.Array:
@@ -193,28 +193,28 @@ _UNUSED = Resolution(panels=1, nodes=8, pieces=1)
 """No curves are made of a contact that is told: one program serves, however its forces reach."""
 
 
-def _told_smooth(contact: Any) -> SmoothContact:
+def _base_of_smooth(contact: Any) -> SmoothContact:
     law = _replaced(contact.law, lambda law: law.hysteretic, holds=True)
     return dataclasses.replace(contact, law=law)
 
 
-def _told_rough(contact: Any) -> RigidContact | ElasticContact:
-    told = _told_surfaces(contact.interface)
+def _base_of_rough(contact: Any) -> RigidContact | ElasticContact:
+    base = _base_of_surfaces(contact.interface)
     answer: RigidContact | ElasticContact = dataclasses.replace(
-        contact, interface=told, resolved=_UNUSED
+        contact, interface=base, resolved=_UNUSED
     )
     return answer
 
 
-def _told_surfaces(surfaces: Surfaces) -> Surfaces:
+def _base_of_surfaces(surfaces: Surfaces) -> Surfaces:
     if isinstance(surfaces, Layers):
-        return Layers([_told_part(part) for part in surfaces.parts])
-    return _told_part(surfaces)
+        return Layers([_base_of_part(part) for part in surfaces.parts])
+    return _base_of_part(surfaces)
 
 
-def _told_part(part: Layer) -> Layer:
+def _base_of_part(part: Layer) -> Layer:
     if isinstance(part, Interface):
-        return _told_interface(part)
+        return _base_of_interface(part)
     if part.yields:
         raise InputError(
             "`formation_time` must be absent where asperities yield: which of them have a meniscus "
@@ -230,14 +230,14 @@ def _told_part(part: Layer) -> Layer:
     return part
 
 
-def _told_interface(interface: Interface) -> Interface:
-    def is_late(law: Law) -> bool:
+def _base_of_interface(interface: Interface) -> Interface:
+    def is_delayed(law: Law) -> bool:
         return law.hysteretic and law.mechanism == LATE
 
-    return dataclasses.replace(interface, law=_replaced(interface.law, is_late, holds=False))
+    return dataclasses.replace(interface, law=_replaced(interface.law, is_delayed, holds=False))
 
 
 def _replaced(law: Law, chosen: Callable[[Law], bool], *, holds: bool) -> Law:
     """The law with those of its parts that are ``chosen`` told."""
-    parts = [Told(part, holds) if chosen(part) else part for part in terms(law)]
+    parts = [PrescribedBonds(part, holds) if chosen(part) else part for part in terms(law)]
     return parts[0] if len(parts) == 1 else Sum(parts)

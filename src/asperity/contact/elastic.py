@@ -14,9 +14,9 @@ from ..interface.interface import Memory as Thresholds
 from ..interface.layers import Surfaces
 from ..laws.law import Real, quantity
 from ..numerics.compilation import kept
-from .contact import Contact, Held, State, Way
+from .contact import Contact, Held, ScanningCurve, State
 from .continuation import descend, first_size, fitted, retrace
-from .equilibrium import Rest, resting, rise_of, settle
+from .equilibrium import RingEquilibrium, equilibrium_displacement, profile_of, solve_equilibrium
 from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
@@ -34,15 +34,15 @@ class RingMemory(NamedTuple):
         One array a hysteretic law, shape (rings + 1,); the last belongs to the mesh's end.
     size
         Length [m] of the mesh; 0 where all thresholds are infinite and the mesh is free.
-    lift
+    displacement
         Displacement [m] of the rings at the last reversal, shape (rings + 1,).
     outer
-        Whether that was on an outermost branch.
+        Whether that was on a major branch.
     """
 
     thresholds: Thresholds
     size: jax.Array
-    lift: jax.Array
+    displacement: jax.Array
     outer: jax.Array
 
 
@@ -105,15 +105,15 @@ class ElasticContact(Contact):
         return RigidContact(self.interface, self.shape, self.resolved)
 
     @property
-    def blur(self) -> float:
-        return self.interface.blur
+    def error_floor(self) -> float:
+        return self.interface.error_floor
 
     def refined(self, factor: int) -> ElasticContact:
         now = self.resolved
         finer = now._replace(panels=factor * now.panels, reversals=factor * now.reversals)
         return dataclasses.replace(self, resolved=finer)
 
-    def fresh(self) -> RingMemory:
+    def initial_memory(self) -> RingMemory:
         return self.extreme((False,) * len(self.mechanisms))
 
     def extreme(self, bonded: tuple[bool, ...]) -> RingMemory:
@@ -127,12 +127,12 @@ class ElasticContact(Contact):
         return self._measured(separation, memory.thresholds, size, rest)
 
     def _measured(
-        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: Rest
+        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: RingEquilibrium
     ) -> State:
         mesh = ring_mesh(self.rings)
-        h = separation + rise_of(self, size, self.rings) + rest.lift
+        h = separation + profile_of(self, size, self.rings) + rest.displacement
         inside = self.interface.measure(h, thresholds)
-        outside = self.interface.measure(h[-1:], _last(thresholds), lift=1)
+        outside = self.interface.measure(h[-1:], _last(thresholds), integrated=1)
         area = mesh.area * size**2
         around = 2.0 * pi * self.shape.radius
 
@@ -141,39 +141,43 @@ class ElasticContact(Contact):
 
         parts = whole(inside.parts, outside.parts)
         pressure = jnp.sum(inside.parts, axis=0)[:-1]
-        bulk = 0.5 * area @ (pressure * rest.lift[:-1])
+        bulk = 0.5 * area @ (pressure * rest.displacement[:-1])
         return State(
             force=jnp.sum(parts),
             stored=whole(inside.energy, outside.energy) + bulk,
             central=jnp.asarray(mesh.axis) @ h[:-1],
             bonds=whole(inside.bonds, outside.bonds),
             parts=parts,
-            touching=whole(inside.touching, outside.touching),
+            contacting=whole(inside.contacting, outside.contacting),
             error=rest.error,
             size=size,
             elastic=self.elastic_part(parts),
-            field=rest.lift,
+            field=rest.displacement,
         )
 
     def _rest(
-        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: Rest
-    ) -> Rest:
+        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: RingEquilibrium
+    ) -> RingEquilibrium:
         """Rings that settled, with the derivatives of where they lie."""
-        held = jax.lax.stop_gradient((size, rest.lift))
-        return rest._replace(lift=resting(self, separation, thresholds, *held, rings=self.rings))
+        held = jax.lax.stop_gradient((size, rest.displacement))
+        return rest._replace(
+            displacement=equilibrium_displacement(
+                self, separation, thresholds, *held, rings=self.rings
+            )
+        )
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
         """From outside in, each solution the first guess of the next.
 
         The ends of the panels come first: there the size of the mesh is found, which is linear
-        in between. Beyond the reach of the forces the body is as good as rigid.
+        in between. Beyond the interaction range the body is as good as rigid.
         """
         near = places.shape[0] - self.rigid.far
         down = places[:near].ravel()[::-1]
         frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
         sizes, rests = descend(*frozen)
 
-        def one(place: jax.Array, size: jax.Array, rest: Rest) -> State:
+        def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
             rest = self._rest(place, memory.thresholds, size, rest)
             return self._measured(place, memory.thresholds, size, rest)
 
@@ -187,9 +191,9 @@ class ElasticContact(Contact):
         outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
 
-    def way(
+    def scanning_curve(
         self, memory: RingMemory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
-    ) -> Way | None:
+    ) -> ScanningCurve | None:
         """On the mesh of the reversal, from its displacement, step by step.
 
         Nowhere for a body that turned where no bond reaches.
@@ -198,24 +202,24 @@ class ElasticContact(Contact):
             return None
         size = jax.lax.stop_gradient(memory.size)
 
-        def one(place: jax.Array, rest: Rest) -> State:
+        def one(place: jax.Array, rest: RingEquilibrium) -> State:
             rest = self._rest(place, memory.thresholds, size, rest)
             return self._measured(place, memory.thresholds, size, rest)
 
         @jax.jit  # traced once, for its shapes and for itself
-        def back() -> Way:
+        def back() -> ScanningCurve:
             frozen = jax.lax.stop_gradient((self, memory, start))
             enter, leave, places, rests = retrace(*frozen, size, unloading, within)
-            return Way(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
+            return ScanningCurve(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)
 
-        def nowhere() -> Way:
+        def nowhere() -> ScanningCurve:
             blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
             still = jnp.broadcast_to(start, shapes.enter.shape)
-            return Way(still, still, blank.states)
+            return ScanningCurve(still, still, blank.states)
 
-        bound = jnp.logical_and(memory.size > 0.0, start < self.reach)
+        bound = jnp.logical_and(memory.size > 0.0, start < self.interaction_range)
         return jax.lax.cond(bound, back, nowhere)
 
     @property
@@ -240,26 +244,26 @@ class ElasticContact(Contact):
         rms = self.interface.heights.rms
         apart = high - low
         short = apart * jnp.max(jnp.stack(widths)) < rms**2
-        return short & (apart < _ALIKE * rms) & (high <= self.reach * (1.0 + 1e-12))
+        return short & (apart < _ALIKE * rms) & (high <= self.interaction_range * (1.0 + 1e-12))
 
-    def way_from(
+    def scanning_curve_from(
         self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
-    ) -> Way:
+    ) -> ScanningCurve:
         size = jax.lax.stop_gradient(held.size)
         old, flat = self._swept(held), jnp.zeros(self.rings + 1)
         frozen = jax.lax.stop_gradient((self, start, old, size, held.field))
         rest = jax.lax.cond(
             wanted,
-            lambda: settle(*frozen, self.rings),
-            lambda: Rest(flat, flat[:-1], jnp.zeros(())),
+            lambda: solve_equilibrium(*frozen, self.rings),
+            lambda: RingEquilibrium(flat, flat[:-1], jnp.zeros(())),
         )
         rest = self._rest(start, old, size, rest)
-        before = RingMemory(old, size, rest.lift, held.outer)
-        memory = self.turned(before, start, held._replace(field=rest.lift))
+        before = RingMemory(old, size, rest.displacement, held.outer)
+        memory = self.update_memory(before, start, held._replace(field=rest.displacement))
         memory = memory._replace(size=jnp.where(wanted, size, 0.0))
-        way = self.way(memory, start, ~held.unloading, within)
-        assert way is not None
-        return way
+        curve = self.scanning_curve(memory, start, ~held.unloading, within)
+        assert curve is not None
+        return curve
 
     def on_branch(self, memory: RingMemory) -> jax.Array:
         return memory.outer
@@ -269,25 +273,29 @@ class ElasticContact(Contact):
         whole = jnp.where(held.unloading, -jnp.inf, jnp.full(self.rings + 1, jnp.inf))
         return (whole,) * len(self.mechanisms)
 
-    def _alone(self, separation: jax.Array, memory: RingMemory) -> tuple[jax.Array, Rest]:
+    def _alone(
+        self, separation: jax.Array, memory: RingMemory
+    ) -> tuple[jax.Array, RingEquilibrium]:
         """Size of the mesh and the rings at one separation, from nothing."""
         frozen, place, old = jax.lax.stop_gradient((self, separation, memory))
         bound = old.size > 0.0
         first = jnp.where(bound, old.size, first_size(frozen, place))
-        size, rest = fitted(frozen, place, old.thresholds, first, old.lift, jnp.logical_not(bound))
+        size, rest = fitted(
+            frozen, place, old.thresholds, first, old.displacement, jnp.logical_not(bound)
+        )
         return size, self._rest(separation, memory.thresholds, size, rest)
 
     def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
         size, rest = self._alone(separation, memory)
-        h = separation + rise_of(self, size, self.rings) + rest.lift
+        h = separation + profile_of(self, size, self.rings) + rest.displacement
         thresholds = self.interface.remember(memory.thresholds, h)
-        return RingMemory(thresholds, size, rest.lift, jnp.asarray(False))
+        return RingMemory(thresholds, size, rest.displacement, jnp.asarray(False))
 
-    def turned(self, memory: RingMemory, separation: jax.Array, held: Held) -> RingMemory:
+    def update_memory(self, memory: RingMemory, separation: jax.Array, held: Held) -> RingMemory:
         """From the displacement that the curves give there."""
         size = jax.lax.stop_gradient(held.size)
-        h = separation + rise_of(self, size, self.rings) + held.field
-        # On an outermost branch no ring holds to what it remembered on its former mesh.
+        h = separation + profile_of(self, size, self.rings) + held.field
+        # On a major branch no ring holds to what it remembered on its former mesh.
         pairs = zip(self._swept(held), memory.thresholds, strict=True)
         old = tuple(jnp.where(held.outer, swept, b) for swept, b in pairs)
         return RingMemory(self.interface.remember(old, h), size, held.field, held.outer)
@@ -298,9 +306,9 @@ class ElasticContact(Contact):
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         """The rigid contact's, less the depth at which Hertz stores the energy alone."""
-        lowest = self.rigid.floor(release, kinetic, weight)
+        lowest = self.rigid.lower_bound(release, kinetic, weight)
         fall = kinetic + weight * (release - lowest)
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         # The deeper fall through that depth feeds it once more.
@@ -312,8 +320,8 @@ class ElasticContact(Contact):
         return rough_panels(self.rigid, low, high, self.resolved.panels)
 
     @property
-    def reach(self) -> jax.Array:
-        return self.rigid.reach
+    def interaction_range(self) -> jax.Array:
+        return self.rigid.interaction_range
 
 
 def _last(thresholds: Thresholds) -> Thresholds:

@@ -37,12 +37,12 @@ class Rough(Protocol):
     modulus: Any
 
 
-class Rest(NamedTuple):
+class RingEquilibrium(NamedTuple):
     """Rings at rest.
 
     Attributes
     ----------
-    lift
+    displacement
         Displacement u of the rings and of the mesh's end [m], shape (rings + 1,).
     pressure
         Pressure on the rings [Pa], approximately.
@@ -50,7 +50,7 @@ class Rest(NamedTuple):
         Estimated relative error of the force.
     """
 
-    lift: jax.Array
+    displacement: jax.Array
     pressure: jax.Array
     error: jax.Array
 
@@ -69,10 +69,10 @@ class _Step(NamedTuple):
         return self.change * jnp.minimum(self.rate, 1.0) < _ENOUGH
 
 
-def rise_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
+def profile_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
     """Rise of the body's surface at the rings and at the mesh's end [m]."""
     mesh = ring_mesh(rings)
-    return contact.shape.rise(size * np.append(mesh.radius, mesh.end))
+    return contact.shape.profile(size * np.append(mesh.radius, mesh.end))
 
 
 @cache
@@ -99,25 +99,27 @@ def pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.A
     return jax.jvp(pressure, (h,), (jnp.ones_like(h),))
 
 
-def settle(
+def solve_equilibrium(
     contact: Rough,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
-    lift: jax.Array,
+    displacement: jax.Array,
     rings: int,
-) -> Rest:
-    """Rings in equilibrium at a rigid separation, from a first guess of their ``lift``.
+) -> RingEquilibrium:
+    """Rings in equilibrium at a rigid separation, from a first guess of their ``displacement``.
 
-    Without derivatives; :func:`resting` gives them. Too small a separation is the safe side to
-    start from: pressure falls and is convex in h, so that a step never leaves that side far
-    behind. A guess that does not converge is given up for that side.
+    Without derivatives; :func:`equilibrium_displacement` gives them. Too small a separation is
+    the safe side to start from: pressure falls and is convex in h, so that a step never leaves
+    that side far behind. A guess that does not converge is given up for that side.
     """
-    safe = separation + rise_of(contact, size, rings)
+    safe = separation + profile_of(contact, size, rings)
     area = np.append(ring_mesh(rings).area, 0.0)
     rms = contact.interface.heights.rms
     one = jnp.ones(())
-    guess = _Step(safe + lift, jnp.zeros_like(safe), one, one, jnp.zeros(()), jnp.asarray(0))
+    guess = _Step(
+        safe + displacement, jnp.zeros_like(safe), one, one, jnp.zeros(()), jnp.asarray(0)
+    )
 
     def go_on(now: _Step) -> jax.Array:
         return jnp.logical_not(now.enough) & (now.steps < _STEPS)
@@ -137,7 +139,7 @@ def settle(
         return jax.tree_util.tree_map(lambda a, b: jnp.where(lost, a, b), begun, after)
 
     end = jax.lax.while_loop(go_on, step, guess)
-    return Rest(end.h - safe, end.pressure[:-1], end.off)
+    return RingEquilibrium(end.h - safe, end.pressure[:-1], end.off)
 
 
 def rates(
@@ -145,11 +147,11 @@ def rates(
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
-    lift: jax.Array,
+    displacement: jax.Array,
     rings: int,
 ) -> jax.Array:
     """Rate of the separation of rings that have settled per rigid separation, approximately."""
-    h = separation + rise_of(contact, size, rings) + lift
+    h = separation + profile_of(contact, size, rings) + displacement
     slope = pressed(contact, thresholds, h)[1]
     return dense_solve(_matrix(contact, size, slope, rings), jnp.ones_like(h))
 
@@ -160,31 +162,31 @@ def _matrix(contact: Rough, size: jax.Array, slope: jax.Array, rings: int) -> ja
 
 
 @eqx.filter_custom_jvp
-def resting(
+def equilibrium_displacement(
     contact: Rough,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
-    lift: jax.Array,
+    displacement: jax.Array,
     *,
     rings: int,
 ) -> jax.Array:
-    """The displacement ``lift`` of rings that have settled, with its derivatives.
+    """The displacement ``displacement`` of rings that have settled, with its derivatives.
 
     With respect to contact, separation and thresholds, on a mesh that is held.
     """
-    return lift
+    return displacement
 
 
-@resting.def_jvp
+@equilibrium_displacement.def_jvp
 def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array, jax.Array]:
-    contact, separation, thresholds, size, lift = primals
-    h = separation + rise_of(contact, size, rings) + lift
+    contact, separation, thresholds, size, displacement = primals
+    h = separation + profile_of(contact, size, rings) + displacement
     _, slope = pressed(contact, thresholds, h)
     matrix = _matrix(contact, size, slope, rings)
 
     def pushed(contact: Rough, separation: jax.Array, thresholds: Thresholds) -> jax.Array:
-        held = separation + rise_of(contact, size, rings) + lift
+        held = separation + profile_of(contact, size, rings) + displacement
         pressure = contact.interface.pressure(held, thresholds)
         return _displacement(contact, size, pressure, rings)
 
@@ -195,10 +197,10 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
         lambda _, right: dense_solve(matrix, right),
         lambda _, right: dense_solve(matrix.T, right),
     )
-    return lift, change
+    return displacement, change
 
 
-def asked_size(rest: Rest, rings: int, beyond: jax.Array | float = 0.0) -> jax.Array:
+def asked_size(rest: RingEquilibrium, rings: int, beyond: jax.Array | float = 0.0) -> jax.Array:
     """Size of the mesh that a pressure asks for, sqrt(2.5 <r^2>), over the present one.
 
     The mean is weighted with the pressure's magnitude: the radius of a Hertz contact, and
@@ -222,7 +224,7 @@ def beyond(contact: Rough, size: jax.Array, end: jax.Array) -> jax.Array:
 
     Of all that can hold there: a mesh is kept while a body parts.
     """
-    torn, fresh = contact.interface.torn(end), contact.interface.fresh(end)
-    force = contact.interface.pressure(end, torn, lift=1)
-    force = force - contact.interface.pressure(end, fresh, lift=1)
+    torn, fresh = contact.interface.saturated_memory(end), contact.interface.initial_memory(end)
+    force = contact.interface.pressure(end, torn, integrated=1)
+    force = force - contact.interface.pressure(end, fresh, integrated=1)
     return 2.0 * pi * contact.shape.radius * jnp.abs(force) / size**2

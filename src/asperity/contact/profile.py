@@ -19,6 +19,6 @@ class Sphere(eqx.Module):
 
     radius: Real = quantity()
 
-    def rise(self, place: jax.Array) -> jax.Array:
+    def profile(self, place: jax.Array) -> jax.Array:
         """Height [m] of the surface at the distance ``place`` [m] from the axis."""
         return place**2 / (2.0 * self.radius)

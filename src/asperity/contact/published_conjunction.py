@@ -77,14 +77,14 @@ class PublishedContact(Contact):
         return ("elastic", *self.mechanisms)
 
     @property
-    def datum(self) -> jax.Array:
+    def reference(self) -> jax.Array:
         """The edge of the conjunction."""
         return self.pressure.end
 
     def refined(self, factor: int) -> PublishedContact:
         return dataclasses.replace(self, count=factor * self.count)
 
-    def fresh(self) -> jax.Array:
+    def initial_memory(self) -> jax.Array:
         return jnp.zeros(())
 
     def extreme(self, bonded: tuple[bool, ...]) -> jax.Array:
@@ -107,7 +107,7 @@ class PublishedContact(Contact):
             central=separation,
             bonds=lost * energy[1:3],
             parts=parts,
-            touching=force[3],
+            contacting=force[3],
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=force[0],
@@ -129,8 +129,8 @@ class PublishedContact(Contact):
         beyond = _beyond(force[..., -1])
         # What acts beyond a panel does its work over the way to there.
         energy_beyond = _beyond(energy[..., -1] + beyond * width)
-        way = (marks[1:, None] - nodes)[None]
-        energy = energy[..., :-1] + beyond[..., None] * way + energy_beyond[..., None]
+        distance = (marks[1:, None] - nodes)[None]
+        energy = energy[..., :-1] + beyond[..., None] * distance + energy_beyond[..., None]
         force = force[..., :-1] + beyond[..., None]
         force, energy = force[:, :-1], energy[:, :-1]
         at_place = jax.vmap(jax.vmap(self._state, (0, None, 1, 1)), (0, None, 1, 1))
@@ -146,7 +146,7 @@ class PublishedContact(Contact):
         )
 
     def _integrals(self, separation: jax.Array) -> tuple[jax.Array, jax.Array]:
-        """Force [N] and energy [J] of each pressure from here to the edge; touching last."""
+        """Force [N] and energy [J] of each pressure from here to the edge; contacting last."""
         p = self.pressure
         start = jnp.minimum(separation, p.end)
         marks = jnp.sort(jnp.clip(jnp.stack([start, *p.kinks, p.end]), start, p.end))
@@ -159,7 +159,7 @@ class PublishedContact(Contact):
     def remember(self, memory: jax.Array, separation: jax.Array) -> jax.Array:
         return memory
 
-    def turned(self, memory: jax.Array, separation: jax.Array, held: Held) -> jax.Array:
+    def update_memory(self, memory: jax.Array, separation: jax.Array, held: Held) -> jax.Array:
         return jnp.where(held.unloading, 0.0, 1.0)
 
     def bonded(self, memory: jax.Array) -> jax.Array:
@@ -169,7 +169,7 @@ class PublishedContact(Contact):
         """A joule of work undone costs nothing, a joule done is lost."""
         return jnp.zeros(len(self.mechanisms)), jnp.ones(len(self.mechanisms))
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         p = self.pressure
         ladder = jnp.asarray(_LADDER) * p.end
         width = p.end * -np.diff(_LADDER, prepend=1.0)[:, None]
@@ -182,7 +182,7 @@ class PublishedContact(Contact):
         force = jnp.cumsum(steps) - steps
         own = jnp.sum(weights * pressure * (places - ladder[:, None]), axis=1)
         stored = jnp.cumsum(own + force * width[:, 0])
-        # Three places between two rungs know the energy to 1e-4.
+        # Three separations between two steps of the search give the energy to 1e-4.
         level = weight * release + kinetic
         level = level + 1e-3 * jnp.abs(level)
         return first_out_of_reach(stored + weight * ladder, level, ladder, release)
@@ -195,7 +195,7 @@ class PublishedContact(Contact):
         return jnp.concatenate([near, jnp.stack([marks[-1], high])])
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         return self.pressure.end
 
 

@@ -28,15 +28,15 @@ class Resolution(NamedTuple):
     Attributes
     ----------
     panels
-        Panels of the curves within the reach of the forces.
+        Panels of the curves within the interaction range.
     nodes
-        Solutions on a piece of the way from a reversal to the outermost branch.
+        Solutions on a piece of the way from a reversal to the major branch.
     pieces
         Number of these pieces, for each law.
     shared
         Even pieces of the quadratures that the places of one panel share.
     reversals
-        Ways back from reversals that are solved for each direction, where they stand for all.
+        Scanning curves that are solved for each direction, where they stand for all.
     """
 
     panels: int
@@ -49,11 +49,11 @@ class Resolution(NamedTuple):
 def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.
 
-    By the reach of the forces and of the bonds, over the rms height; where these are traced,
+    By the interaction range of forces and bonds over the rms height; where these are traced,
     enough for a few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
-        finer = interface.fineness.grain**-0.5
+        finer = interface.panel_lengths.grain**-0.5
         return Resolution(ceil(10 * finer), 16, ceil(2 * finer))
     lengths = tuple(float(length) for length in _lengths(interface))
     return resolution_of(interface, lengths, deforms=deforms)
@@ -61,23 +61,23 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
 
 def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: bool) -> Resolution:
     """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
-    fineness = interface.fineness
-    share, kinked, reach, bends = lengths
-    nodes, pieces = fineness.along(share)
+    panel_lengths = interface.panel_lengths
+    share, kinked, interaction_range, bends = lengths
+    nodes, pieces = panel_lengths.along(share)
     if bends > 1.5:
         nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
     if interface.yields:  # what is left of the heights is steeper than they were
         nodes, pieces = 16, max(pieces, 2)
     # What is smooth counts as the panels do, which widen with the separation.
-    smooth = LINEAR * (asinh(reach / LINEAR) - asinh(kinked / LINEAR))
+    smooth = LINEAR * (asinh(interaction_range / LINEAR) - asinh(kinked / LINEAR))
     length = max(kinked + max(smooth, 0.0), _SHORTEST)
     if not deforms:
         # One more where a law bends (Maugis and Dugdale's), which else misses 1e-8 at first.
-        panels = ceil(length / fineness.panel) + (bends > 0.0)
-        return Resolution(panels, max(nodes, 8), pieces, _shared(reach, panels))
+        panels = ceil(length / panel_lengths.panel) + (bends > 0.0)
+        return Resolution(panels, max(nodes, 8), pieces, _shared(interaction_range, panels))
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
     fills = fills_by_contact(interface.hysteretic)
-    panels = ceil(length / (1.7 * fineness.grain))
+    panels = ceil(length / (1.7 * panel_lengths.grain))
     return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
 
 
@@ -111,10 +111,10 @@ def in_steps(resolved: Resolution, *, deforms: bool) -> Resolution:
     )
 
 
-def _shared(reach: float, panels: int) -> int:
+def _shared(interaction_range: float, panels: int) -> int:
     """Even pieces of quadratures that the places of the outermost panel share."""
-    step = (asinh(reach / LINEAR) + asinh(_DEEP / LINEAR)) / panels
-    return max(EVEN, ceil((step * hypot(reach, LINEAR) + _HEIGHTS) / _PIECE))
+    step = (asinh(interaction_range / LINEAR) + asinh(_DEEP / LINEAR)) / panels
+    return max(EVEN, ceil((step * hypot(interaction_range, LINEAR) + _HEIGHTS) / _PIECE))
 
 
 def lengths_in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
@@ -128,8 +128,10 @@ def lengths_in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array
     bends = [width / law.length for width, law in zip(widths, interface.hysteretic, strict=True)]
     most = jnp.max(jnp.stack([jnp.zeros(()), *bends]))
     kinked = (interface.heights.top + interface.last_kink) / rms
-    reach = (interface.heights.top + jnp.maximum(interface.reach, 0.0)) / rms
-    return widest / rms, kinked, reach, most
+    interaction_range = (
+        interface.heights.top + jnp.maximum(interface.interaction_range, 0.0)
+    ) / rms
+    return widest / rms, kinked, interaction_range, most
 
 
 _lengths = Program(lengths_in_rms, AT_ONCE)

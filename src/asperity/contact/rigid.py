@@ -15,16 +15,16 @@ from ..interface.interface import Means
 from ..interface.interface import Memory as Thresholds
 from ..interface.layers import Layers, Surfaces
 from ..interface.plastic_interface import PlasticInterface
-from .contact import Contact, State, Way
+from .contact import Contact, ScanningCurve, State
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
-from .scanning_curve import first_out_of_reach, pieces_to, way_points
+from .scanning_curve import first_out_of_reach, piece_points, pieces_to
 
 Left = tuple[Thresholds, jax.Array, Any]
 
 Yielding = PlasticInterface | Layers
 
-_FAR = 2  # panels beyond the reach of the forces, in geometric progression
+_FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
 
 
@@ -80,8 +80,8 @@ class RigidContact(Contact):
         return jnp.asarray(2.0 * pi * self.shape.radius)
 
     @property
-    def blur(self) -> float:
-        return self.interface.blur
+    def error_floor(self) -> float:
+        return self.interface.error_floor
 
     def refined(self, factor: int) -> RigidContact:
         now = self.resolved
@@ -90,11 +90,11 @@ class RigidContact(Contact):
 
     @property
     def far(self) -> int:
-        """Panels beyond the reach of the forces. Without values."""
+        """Panels beyond the interaction range. Without values."""
         return _FAR if self.interface.only_bonded else _FAR_TAIL
 
-    def fresh(self) -> Thresholds:
-        return self.interface.fresh()
+    def initial_memory(self) -> Thresholds:
+        return self.interface.initial_memory()
 
     def extreme(self, bonded: tuple[bool, ...]) -> Thresholds:
         return tuple(jnp.asarray(-jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded)
@@ -115,7 +115,7 @@ class RigidContact(Contact):
         if not self.yields:
             return super().branches()
         if self.left is None:
-            return (self.fresh(),)
+            return (self.initial_memory(),)
         ways = (False, True) if self.interface.hysteretic else (False,)
         return tuple(self.interface.swept(self.left[0], way) for way in ways)
 
@@ -123,10 +123,10 @@ class RigidContact(Contact):
         if not self.yields:
             return super().branch_of(memory, unloading)
         apart = jnp.where(unloading, min(len(self.interface.hysteretic), 1), 0)
-        return jnp.where(self.interface.touched(memory), 1 + apart, 0)
+        return jnp.where(self.interface.has_yielded(memory), 1 + apart, 0)
 
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
-        return self._state(separation, self.interface.measure(separation, memory, lift=1))
+        return self._state(separation, self.interface.measure(separation, memory, integrated=1))
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
         """Places of one panel share their quadrature; far out only where all forces have ended."""
@@ -157,7 +157,7 @@ class RigidContact(Contact):
             central=separation,
             bonds=self._measure * means.bonds,
             parts=parts,
-            touching=self._measure * means.touching,
+            contacting=self._measure * means.contacting,
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=self.elastic_part(parts),
@@ -170,18 +170,18 @@ class RigidContact(Contact):
     def bonded(self, memory: Thresholds) -> jax.Array:
         return jnp.zeros(len(self.mechanisms), bool)
 
-    def way(
+    def scanning_curve(
         self, memory: Thresholds, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
-    ) -> Way | None:
+    ) -> ScanningCurve | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
         if not self.interface.hysteretic or (self.yields and self.left is None):
             return None  # a first approach comes from no reversal
         ends = self.interface.merging(memory, unloading)
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
-        places = enter[:, None] + (leave - enter)[:, None] * way_points(self.resolved.nodes)
+        places = enter[:, None] + (leave - enter)[:, None] * piece_points(self.resolved.nodes)
         near = Near(level=False, nodes=self.resolved.nodes * self.resolved.pieces)
-        return Way(enter, leave, self._states(near, places, memory))
+        return ScanningCurve(enter, leave, self._states(near, places, memory))
 
     def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
         """Ends of pieces on the way; they narrow towards where asperities were pressed flat."""
@@ -190,15 +190,15 @@ class RigidContact(Contact):
             return start + (end - start) * steps
         assert isinstance(self.interface, Yielding)
         low, high = jnp.minimum(start, end), jnp.maximum(start, end)
-        rungs = self.left[1] + self.interface.rungs
-        return jnp.append(jnp.clip(rungs, low, high), end)
+        panels = self.left[1] + self.interface.unloading_panels
+        return jnp.append(jnp.clip(panels, low, high), end)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         ladder = jnp.append(release, _LADDER * self.interface.heights.rms)
-        stored = self._measure * self.interface.work_of_approach(ladder, lift=1)
+        stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
         energy = stored + weight * ladder
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
@@ -218,14 +218,14 @@ class RigidContact(Contact):
         # Not at the turn itself, where rounding would make a body turn that has just turned, and
         # where a panel so narrow would have no derivatives but those of rounding.
         below = turn - 1e-9 * self.interface.heights.rms
-        rungs = self.interface.rungs
-        marks = jnp.concatenate([(starts[:, None] + rungs).ravel(), starts[1:], below[None]])
+        panels = self.interface.unloading_panels
+        marks = jnp.concatenate([(starts[:, None] + panels).ravel(), starts[1:], below[None]])
         marks = jnp.where(jnp.abs(marks - turn) <= turn - below, below, marks)
         return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
 
     @property
-    def reach(self) -> jax.Array:
-        return self.interface.heights.top + self.interface.reach
+    def interaction_range(self) -> jax.Array:
+        return self.interface.heights.top + self.interface.interaction_range
 
 
 _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 50.0)])
@@ -237,7 +237,7 @@ def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: 
     Even over a few rms around 0 and in proportion to |d| far from it.
     """
     scale = LINEAR * contact.interface.heights.rms
-    top = jnp.clip(contact.reach, low, high)
+    top = jnp.clip(contact.interaction_range, low, high)
     ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(top / scale), count + 1)
     near = (scale * jnp.sinh(ends)).at[0].set(low).at[-1].set(top)
     ratio = jnp.maximum(high / jnp.where(top > 0.0, top, high), 1.0)

@@ -11,7 +11,9 @@ from .elastic import ElasticContact
 from .equilibrium import pressed
 
 
-def ring_error(contact: ElasticContact, separation: float, size: float, lift: np.ndarray) -> float:
+def ring_error(
+    contact: ElasticContact, separation: float, size: float, displacement: np.ndarray
+) -> float:
     """Estimated relative error that the number of rings makes in the force.
 
     The pressure on each panel is a polynomial through its rings. On a mesh with two rings more on
@@ -27,7 +29,7 @@ def ring_error(contact: ElasticContact, separation: float, size: float, lift: np
         Rigid separation [m], on a first approach.
     size
         Length [m] of the mesh.
-    lift
+    displacement
         Displacement [m] of its rings and of its end in equilibrium, shape (rings + 1,).
 
     Returns
@@ -39,7 +41,7 @@ def ring_error(contact: ElasticContact, separation: float, size: float, lift: np
     fine, between = ring_mesh(more), finer_rings(contact.rings, more)
     if not size > 0.0:
         return 0.0
-    pressure, _ = _at(contact, separation, size * mesh.radius, lift[:-1])
+    pressure, _ = _at(contact, separation, size * mesh.radius, displacement[:-1])
     known = between @ pressure
     compliance = size / modulus * fine.compliance
     found, slope = _at(contact, separation, size * fine.radius, compliance @ known)
@@ -51,11 +53,11 @@ def ring_error(contact: ElasticContact, separation: float, size: float, lift: np
 
 
 def _at(
-    contact: ElasticContact, separation: float, radius: np.ndarray, lift: np.ndarray
+    contact: ElasticContact, separation: float, radius: np.ndarray, displacement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pressure [Pa] and its slope [Pa/m] on rings that never touched before."""
-    h = separation + np.asarray(contact.shape.rise(jnp.asarray(radius))) + lift
-    thresholds = contact.interface.fresh(jnp.asarray(h))
+    h = separation + np.asarray(contact.shape.profile(jnp.asarray(radius))) + displacement
+    thresholds = contact.interface.initial_memory(jnp.asarray(h))
     pressure, slope = _pressure(contact, thresholds, jnp.asarray(h))
     return np.asarray(pressure), np.asarray(slope)
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from .._jax import jax, jnp
 
-_RUNGS = 36  # panels on each side of a kink
+_STEPS = 36  # panels on each side of a kink
 _RATIO = 3.0  # of their lengths
 _NARROWEST = 1e-13  # of the separation: a thousand times its rounding
 
 
-def way_points(nodes: int) -> np.ndarray:
+def piece_points(nodes: int) -> np.ndarray:
     """Chebyshev points on a piece, as fractions of the way along it."""
     points: np.ndarray = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(nodes))
     return points
@@ -51,9 +51,9 @@ def panels_around(
     separations in a narrower one are rounded by more than its width, and its polynomial would be
     read far outside.
     """
-    rungs = np.arange(0.0, _RUNGS * refinement)
-    ladder = jnp.maximum(high, -low) * _RATIO ** (-rungs / refinement)
-    steps = jnp.concatenate([(kinks[:, None] + way * ladder).ravel() for way in (-1.0, 1.0)])
+    powers = np.arange(0.0, _STEPS * refinement)
+    ladder = jnp.maximum(high, -low) * _RATIO ** (-powers / refinement)
+    steps = jnp.concatenate([(kinks[:, None] + sign * ladder).ravel() for sign in (-1.0, 1.0)])
     outer = jnp.stack([low, high])
     inner = _apart(jnp.concatenate([kinks, *(end[None] for end in ends)]), outer)
     given = jnp.concatenate([inner, outer])

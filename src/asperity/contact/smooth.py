@@ -54,7 +54,7 @@ class SmoothContact(Contact):
     def refined(self, factor: int) -> SmoothContact:
         return dataclasses.replace(self, refinement=factor)
 
-    def fresh(self) -> Flags:
+    def initial_memory(self) -> Flags:
         return jnp.zeros(len(self.mechanisms))
 
     def extreme(self, bonded: tuple[bool, ...]) -> Flags:
@@ -80,7 +80,7 @@ class SmoothContact(Contact):
             central=separation,
             bonds=flags,
             parts=parts,
-            touching=jnp.where(separation < 0.0, 1.0, 0.0),
+            contacting=jnp.where(separation < 0.0, 1.0, 0.0),
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=self.elastic_part(parts),
@@ -105,9 +105,9 @@ class SmoothContact(Contact):
         formed, broken = zip(*rows, strict=True)
         return jnp.stack(formed), jnp.stack(broken)
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
-        stored = jax.vmap(lambda d: self.state(d, self.fresh()).stored)(ladder)
+        stored = jax.vmap(lambda d: self.state(d, self.initial_memory()).stored)(ladder)
         energy = stored + weight * ladder
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
@@ -127,8 +127,8 @@ class SmoothContact(Contact):
         return (law.forming_gap, law.breaking_gap) if law.hysteretic else ()
 
     @property
-    def reach(self) -> jax.Array:
-        return reduce(jnp.maximum, [law.reach for law in terms(self.law)])
+    def interaction_range(self) -> jax.Array:
+        return reduce(jnp.maximum, [law.interaction_range for law in terms(self.law)])
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has

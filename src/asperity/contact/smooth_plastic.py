@@ -106,12 +106,12 @@ class SmoothPlasticContact(Contact):
     def refined(self, factor: int) -> SmoothPlasticContact:
         return dataclasses.replace(self, refinement=factor)
 
-    def fresh(self) -> Pressed:
+    def initial_memory(self) -> Pressed:
         return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)
 
     def extreme(self, bonded: tuple[bool, ...]) -> Pressed:
         """Memory with all of some bonds, the body being as the first impact left it."""
-        lowest = self.fresh()[0] if self.left is None else self.left[0][0]
+        lowest = self.initial_memory()[0] if self.left is None else self.left[0][0]
         return lowest, jnp.asarray(bonded[1:], dtype=float)
 
     def left_by(self, memory: Pressed, separation: jax.Array) -> tuple[Pressed, jax.Array]:
@@ -123,7 +123,7 @@ class SmoothPlasticContact(Contact):
     def branches(self) -> tuple[Pressed, ...]:
         """That of a body that never touched; after that, all combinations of bonds."""
         if self.left is None:
-            return (self.fresh(),)
+            return (self.initial_memory(),)
         combinations = product((False, True), repeat=len(self.mechanisms) - 1)
         return tuple(self.extreme((True, *reversed(bits))) for bits in combinations)
 
@@ -169,7 +169,7 @@ class SmoothPlasticContact(Contact):
             central=separation,
             bonds=jnp.stack([kept, *counts]),
             parts=parts,
-            touching=jnp.where(gap < 0.0, 1.0, 0.0),
+            contacting=jnp.where(gap < 0.0, 1.0, 0.0),
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
             elastic=self.elastic_part(parts),
@@ -196,9 +196,9 @@ class SmoothPlasticContact(Contact):
         formed, broken = zip((jnp.ones(()), -jnp.ones(())), *rows, strict=True)
         return jnp.stack(formed), jnp.stack(broken)
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
-        states = jax.vmap(lambda d: self.state(d, self.fresh()))(ladder)
+        states = jax.vmap(lambda d: self.state(d, self.initial_memory()))(ladder)
         energy = states.stored + states.bonds @ self.losses()[0] + weight * ladder
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
@@ -209,9 +209,9 @@ class SmoothPlasticContact(Contact):
         return panels_around(self._kinks(), low, high, self.refinement, (turn,))
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         laws = (*self._bonds(jnp.zeros(())), *terms(self.law))
-        return jnp.max(jnp.stack([jnp.zeros(()), *(law.reach for law in laws)]))
+        return jnp.max(jnp.stack([jnp.zeros(()), *(law.interaction_range for law in laws)]))
 
     def _tip(self, deepest: jax.Array) -> Jkr:
         """The elastic contact of an adhesive tip that was pressed flat."""

@@ -10,8 +10,8 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..laws import Hertz
 from ..laws.law import Real, quantity
-from .contact import Contact, Held, Memory, State, Way
-from .delayed_formation import LateContact
+from .contact import Contact, Held, Memory, ScanningCurve, State
+from .delayed_formation import DelayedContact
 from .elastic import ElasticContact
 from .smooth import SmoothContact
 
@@ -19,7 +19,7 @@ VISCOUS = "viscous"
 """Mechanism of the energy that the bulk takes by its creep."""
 
 
-class Creep(eqx.Module):
+class Relaxation(eqx.Module):
     """A half-space whose modulus relaxes, E*(t)/E* = k + (1 - k) exp(-t/time).
 
     Parameters
@@ -31,37 +31,37 @@ class Creep(eqx.Module):
         Relaxed over instantaneous modulus k, in (0, 1].
     time
         Relaxation time [s]. Under a load it creeps with time/k.
-    late
+    delayed
         What the menisci of rings take time by, on a bulk that does not creep.
     """
 
     contact: Contact
     ratio: Real = quantity()
     time: Real = quantity()
-    late: LateContact | None = None
+    delayed: DelayedContact | None = None
 
     @classmethod
-    def none(cls, late: LateContact) -> Creep:
+    def none(cls, delayed: DelayedContact) -> Relaxation:
         """A bulk that does not creep, under menisci that take time."""
-        return cls(late.told, 1.0, 1.0, late)
+        return cls(delayed.base, 1.0, 1.0, delayed)
 
-    def relaxed(self) -> CreptContact:
+    def relaxed(self) -> RelaxedContact:
         """The contact after a long time, as what moves slowly meets it."""
-        told = self.contact
-        if isinstance(told, ElasticContact):
-            return CreptContact(dataclasses.replace(told, modulus=self.ratio * told.modulus))
-        assert isinstance(told, SmoothContact)
-        assert isinstance(told.law, Hertz)
-        law = dataclasses.replace(told.law, modulus=self.ratio * told.law.modulus)
-        return CreptContact(dataclasses.replace(told, law=law))
+        base = self.contact
+        if isinstance(base, ElasticContact):
+            return RelaxedContact(dataclasses.replace(base, modulus=self.ratio * base.modulus))
+        assert isinstance(base, SmoothContact)
+        assert isinstance(base.law, Hertz)
+        law = dataclasses.replace(base.law, modulus=self.ratio * base.law.modulus)
+        return RelaxedContact(dataclasses.replace(base, law=law))
 
 
-class CreptContact(Contact):
+class RelaxedContact(Contact):
     """A contact whose bulk has relaxed, with a name for what its creep takes.
 
     Parameters
     ----------
-    told
+    base
         The contact with the relaxed modulus.
 
     Notes
@@ -70,81 +70,81 @@ class CreptContact(Contact):
     as bonds of 1 J each.
     """
 
-    told: Contact
+    base: Contact
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
-        return (*self.told.mechanisms, VISCOUS)
+        return (*self.base.mechanisms, VISCOUS)
 
     @property
     def components(self) -> tuple[str, ...]:
-        return self.told.components
+        return self.base.components
 
     @property
     def discrete(self) -> bool:
-        return self.told.discrete
+        return self.base.discrete
 
     @property
-    def datum(self) -> jax.Array | None:
-        return self.told.datum
+    def reference(self) -> jax.Array | None:
+        return self.base.reference
 
     @property
     def lagging(self) -> int:
-        return self.told.lagging
+        return self.base.lagging
 
     @property
-    def blur(self) -> float:
-        return self.told.blur
+    def error_floor(self) -> float:
+        return self.base.error_floor
 
     @property
-    def reach(self) -> jax.Array:
-        return self.told.reach
+    def interaction_range(self) -> jax.Array:
+        return self.base.interaction_range
 
-    def refined(self, factor: int) -> CreptContact:
-        return CreptContact(self.told.refined(factor))
+    def refined(self, factor: int) -> RelaxedContact:
+        return RelaxedContact(self.base.refined(factor))
 
-    def fresh(self) -> Memory:
-        return self.told.fresh()
+    def initial_memory(self) -> Memory:
+        return self.base.initial_memory()
 
     def extreme(self, bonded: tuple[bool, ...]) -> Memory:
-        return self.told.extreme(bonded[:-1])
+        return self.base.extreme(bonded[:-1])
 
     def branches(self) -> tuple[Memory, ...]:
-        return self.told.branches()
+        return self.base.branches()
 
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
-        return self.told.branch_of(memory, unloading)
+        return self.base.branch_of(memory, unloading)
 
     def state(self, separation: jax.Array, memory: Memory) -> State:
-        return _with_viscous(self.told.state(separation, memory))
+        return _with_viscous(self.base.state(separation, memory))
 
     def branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
-        return _with_viscous(self.told.branch(ends, places, memory))
+        return _with_viscous(self.base.branch(ends, places, memory))
 
-    def way(
+    def scanning_curve(
         self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
-    ) -> Way | None:
-        way = self.told.way(memory, start, unloading, within)
-        return None if way is None else way._replace(states=_with_viscous(way.states))
+    ) -> ScanningCurve | None:
+        curve = self.base.scanning_curve(memory, start, unloading, within)
+        return None if curve is None else curve._replace(states=_with_viscous(curve.states))
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        return self.told.remember(memory, separation)
+        return self.base.remember(memory, separation)
 
-    def turned(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
-        return self.told.turned(memory, separation, held)
+    def update_memory(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
+        return self.base.update_memory(memory, separation, held)
 
     def bonded(self, memory: Memory) -> jax.Array:
-        return self.told.bonded(memory)
+        return self.base.bonded(memory)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        formed, broken = self.told.losses()
+        formed, broken = self.base.losses()
         return jnp.append(formed, 1.0), jnp.append(broken, 0.0)
 
-    def floor(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
-        return self.told.floor(release, kinetic, weight)
+    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+        return self.base.lower_bound(release, kinetic, weight)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        return self.told.panels(low, high)
+        return self.base.panels(low, high)
 
 
 def _with_viscous(state: State) -> State:

@@ -10,7 +10,7 @@ the same with gas (`gas_film`) or radiated waves (`wave_radiation`).
 """
 
 from .curve_table import Table, tabulate
-from .motion import fly, prepare, simulate, start
+from .motion import integrate_impacts, prepare, simulate, start
 from .record import Body, Impacts, Limits, Motion, Progress
 
 __all__ = [
@@ -20,7 +20,7 @@ __all__ = [
     "Motion",
     "Progress",
     "Table",
-    "fly",
+    "integrate_impacts",
     "prepare",
     "simulate",
     "start",

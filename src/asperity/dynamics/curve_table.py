@@ -1,7 +1,7 @@
 """Curves of a contact as Chebyshev polynomials on panels of the separation.
 
-A contact is solved once on the panels of its outermost branches, and again on the few
-pieces between a reversal and the outermost branch. In between everything is a polynomial,
+A contact is solved once on the panels of its major branches, and again on the few
+pieces between a reversal and the major branch. In between everything is a polynomial,
 so that no equation is solved inside the motion and work is integrated exactly.
 """
 
@@ -18,15 +18,15 @@ from ..contact.contact import Contact, Memory, State
 from ..numerics.compilation import kept
 from ..numerics.polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, from_points, local
 
-LOOKS = 24
-"""Places of a panel at which the kinetic energy is looked at, its ends among them."""
+ENERGY_SAMPLES = 24
+"""Points of a panel at which the kinetic energy is sampled, its ends among them."""
 
 _LEAST = 1e-6  # of the largest work: errors are not asked to be small against less
-_LOOKS = np.linspace(-1.0, 1.0, LOOKS)
+_ENERGY_SAMPLES = np.linspace(-1.0, 1.0, ENERGY_SAMPLES)
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(24)
 _Y = 0.5 * (_GAUSS + 1.0)
-RISE = np.sin(0.5 * np.pi * _Y) ** 2
-"""Places of a quadrature over a piece, as fractions of it: square-root ends become smooth."""
+TIME_NODES = np.sin(0.5 * np.pi * _Y) ** 2
+"""Nodes of a quadrature over a piece, as fractions of it: square-root ends become smooth."""
 RATE = 0.25 * np.pi * np.sin(np.pi * _Y) * _WEIGHT
 """Its weights, as fractions of the piece."""
 
@@ -34,7 +34,7 @@ RATE = 0.25 * np.pi * np.sin(np.pi * _Y) * _WEIGHT
 class Quantities(NamedTuple):
     """How the numbers of a :class:`State` lie in one row.
 
-    Force, its attractive parts, stored, central, touching, size, then the bonds, then the
+    Force, its attractive parts, stored, central, contacting, size, then the bonds, then the
     parts; after these, in a table alone, the field.
     """
 
@@ -57,8 +57,8 @@ class Quantities(NamedTuple):
         return slice(6 + self.laws + self.parts, None)
 
 
-FORCE, PULL, STORED, CENTRAL, TOUCHING, SIZE = range(6)
-DRIVE = slice(FORCE, PULL + 1)
+FORCE, ATTRACTION, STORED, CENTRAL, CONTACTING, SIZE = range(6)
+DRIVE = slice(FORCE, ATTRACTION + 1)
 """The columns that a motion integrates."""
 
 
@@ -72,9 +72,10 @@ class Works(NamedTuple):
         Chebyshev coefficients on each panel, shape (branches, panels, NODES + 1, 2): the
         work from the top to a place is their sum there.
     looks
-        Work of the force [J] at LOOKS places of each panel, (branches, panels, LOOKS).
+        Work of the force [J] at ENERGY_SAMPLES separations of each panel, shape (branches,
+        panels, ENERGY_SAMPLES).
     nodes
-        Likewise at the places RISE of each panel.
+        Likewise at the TIME_NODES of each panel.
     """
 
     integral: jax.Array
@@ -84,7 +85,7 @@ class Works(NamedTuple):
 
 @kept
 class Table(NamedTuple):
-    """Outermost branches of a contact.
+    """Major branches of a contact.
 
     Attributes
     ----------
@@ -103,7 +104,7 @@ class Table(NamedTuple):
     left
         What the first impact left of a contact that yields; empty without one.
     reversals
-        The ways back to the branches; empty where each is solved as it comes.
+        The scanning curves; empty where each is solved as it comes.
     """
 
     ends: jax.Array
@@ -116,15 +117,15 @@ class Table(NamedTuple):
 
     @property
     def looks(self) -> jax.Array:
-        """The places [m] of :attr:`Works.looks`, shape (panels, LOOKS)."""
+        """The places [m] of :attr:`Works.looks`, shape (panels, ENERGY_SAMPLES)."""
         low, high = self.ends[:-1, None], self.ends[1:, None]
-        return 0.5 * (low + high) + 0.5 * (high - low) * _LOOKS
+        return 0.5 * (low + high) + 0.5 * (high - low) * _ENERGY_SAMPLES
 
     @property
     def nodes(self) -> jax.Array:
         """The places [m] of :attr:`Works.nodes`."""
         low, high = self.ends[:-1, None], self.ends[1:, None]
-        return low + (high - low) * RISE
+        return low + (high - low) * TIME_NODES
 
     def panel_at(self, place: jax.Array) -> jax.Array:
         """Index of the panel of a place [m]; of two that meet there, the lower one."""
@@ -154,8 +155,10 @@ class Pieces(NamedTuple):
 
 def rows_of(state: State) -> jax.Array:
     """The numbers of a state in one row, its field last."""
-    pull = state.force - state.elastic
-    head = jnp.stack([state.force, pull, state.stored, state.central, state.touching, state.size])
+    attraction = state.force - state.elastic
+    head = jnp.stack(
+        [state.force, attraction, state.stored, state.central, state.contacting, state.size]
+    )
     return jnp.concatenate([head, state.bonds, state.parts, state.field])
 
 
@@ -165,7 +168,7 @@ def quantities(contact: Contact) -> Quantities:
 
 
 def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
-    """Solve a contact on its outermost branches between two separations [m]."""
+    """Solve a contact on its major branches between two separations [m]."""
     return _tabulated(contact, low, high, lambda ends, places, values: values)
 
 
@@ -234,7 +237,7 @@ def _works(ends: jax.Array, values: jax.Array) -> Works:
     above = jnp.cumsum(whole[:, ::-1], axis=1)[:, ::-1]  # from each panel's low end to the top
     at_low = jnp.einsum("bpkc,k->bpc", integral, signs)
     integral = integral.at[..., 0, :].add(-above - at_low)
-    look, node = (chebyshev.chebvander(x, NODES) for x in (_LOOKS, 2.0 * RISE - 1.0))
+    look, node = (chebyshev.chebvander(x, NODES) for x in (_ENERGY_SAMPLES, 2.0 * TIME_NODES - 1.0))
     force = integral[..., 0]
     return Works(integral, force @ look.T, force @ node.T)
 
@@ -270,7 +273,7 @@ def join(
 
 
 def outer_row(table: Table, branch: jax.Array | int, place: jax.Array) -> jax.Array:
-    """All quantities of an outermost branch at one separation [m]."""
+    """All quantities of a major branch at one separation [m]."""
     panel = table.panel_at(place)
     x = local(table.ends[panel], table.ends[panel + 1], place)
     return chebyshev_sum(table.values[branch, panel], x)

@@ -11,7 +11,7 @@ from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import Pieces
 from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
-from .phase import Turn, Work, time_along, work_along
+from .phase import TurningPoint, Work, time_along, work_along
 from .record import Body
 
 STILL = 1e-9
@@ -28,10 +28,10 @@ class Gone(NamedTuple):
 
     kinetic: jax.Array
     time: jax.Array
-    heat: jax.Array
+    dissipated: jax.Array
     going: jax.Array
     piece: jax.Array
-    fastest: jax.Array
+    maximum_kinetic: jax.Array
 
 
 @kept
@@ -49,7 +49,7 @@ class Passage(NamedTuple):
     kinetic, times, heats
         Kinetic energy [J], time since the start [s] and energy taken by each drag [J] where each
         piece is entered.
-    crept
+    at_rest
         Whether the body came so close to rest without a turn that the phase ends there.
     followed
         Whether it turned because it was pushed back: speeds that a drag changes within a
@@ -58,13 +58,13 @@ class Passage(NamedTuple):
         Whether the film alone stopped it: where nothing pushes it on or back.
     """
 
-    turn: Turn
+    turn: TurningPoint
     duration: jax.Array
     lost: jax.Array
     kinetic: jax.Array
     times: jax.Array
     heats: jax.Array
-    crept: jax.Array
+    at_rest: jax.Array
     followed: jax.Array
     stopped: jax.Array
 
@@ -126,15 +126,17 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     stopped = found & _left_alone(body, piece, stop)
     stop = jnp.where(stopped, _spent(body, piece, gone.kinetic, stop), stop)
     course = course_on(body, piece, gone.kinetic, stop)
-    turn = Turn(
+    turn = TurningPoint(
         piece=gone.piece,
         place=jnp.where(found, stop, pieces.leave[-1]),
         found=found,
-        fastest=jnp.maximum(gone.fastest, jnp.where(found, course.fastest, 0.0)),
+        maximum_kinetic=jnp.maximum(
+            gone.maximum_kinetic, jnp.where(found, course.maximum_kinetic, 0.0)
+        ),
         kinetic=jnp.where(found, 0.0, gone.kinetic),
     )
     duration = gone.time + jnp.where(found, course.duration, 0.0)
-    lost = gone.heat + jnp.where(found, course.lost, 0.0)
+    lost = gone.dissipated + jnp.where(found, course.lost, 0.0)
     followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.weight)
     return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
@@ -149,12 +151,14 @@ def _over(
     after = Gone(
         kinetic=jnp.where(on, course.kinetic, gone.kinetic),
         time=gone.time + jnp.where(on, course.duration, 0.0),
-        heat=gone.heat + jnp.where(on, course.lost, 0.0),
+        dissipated=gone.dissipated + jnp.where(on, course.lost, 0.0),
         going=on,
         piece=jnp.where(gone.going, k, gone.piece),
-        fastest=jnp.maximum(gone.fastest, jnp.where(on, course.fastest, 0.0)),
+        maximum_kinetic=jnp.maximum(
+            gone.maximum_kinetic, jnp.where(on, course.maximum_kinetic, 0.0)
+        ),
     )
-    return after, (gone.kinetic, gone.time, gone.heat)
+    return after, (gone.kinetic, gone.time, gone.dissipated)
 
 
 def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Array:
@@ -210,23 +214,27 @@ def fall_to_rest(
     turn = whole.turn
     here = jnp.argmax(pieces.leave <= goal)
     near = turn.place > resting - (goal - resting)
-    crept = turn.found & near & (turn.piece >= here) & (goal < pieces.enter[0])
-    place = jnp.where(crept, goal, pieces.leave[here])
+    at_rest = turn.found & near & (turn.piece >= here) & (goal < pieces.enter[0])
+    place = jnp.where(at_rest, goal, pieces.leave[here])
     work = work_along(pieces, kinetic, body.weight)
     course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
     # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
-    still = slow_at(body, course.kinetic, turn.fastest, (resting, goal))
-    crept = crept & (still | jnp.logical_not(whole.followed)) & jnp.logical_not(whole.stopped)
-    stop = Turn(here, goal, jnp.asarray(True), turn.fastest, jnp.zeros(()))
+    still = slow_at(body, course.kinetic, turn.maximum_kinetic, (resting, goal))
+    at_rest = at_rest & (still | jnp.logical_not(whole.followed)) & jnp.logical_not(whole.stopped)
+    stop = TurningPoint(here, goal, jnp.asarray(True), turn.maximum_kinetic, jnp.zeros(()))
     lost = whole.heats[here] + course.lost
     ends = (stop, whole.times[here] + course.duration, lost.at[0].add(course.kinetic))
     turned = (turn, whole.duration, whole.lost)
-    turn, duration, lost = jax.tree_util.tree_map(lambda a, b: jnp.where(crept, a, b), ends, turned)
-    followed = crept | whole.followed
-    return whole._replace(turn=turn, duration=duration, lost=lost, crept=crept, followed=followed)
+    turn, duration, lost = jax.tree_util.tree_map(
+        lambda a, b: jnp.where(at_rest, a, b), ends, turned
+    )
+    followed = at_rest | whole.followed
+    return whole._replace(
+        turn=turn, duration=duration, lost=lost, at_rest=at_rest, followed=followed
+    )
 
 
-def slow_at(body: Body, kinetic: Real, fastest: Real, rest: tuple[Real, Real]) -> jax.Array:
+def slow_at(body: Body, kinetic: Real, maximum_kinetic: Real, rest: tuple[Real, Real]) -> jax.Array:
     """Whether a body comes to ``rest[1]`` too slowly to rise far from its rest again.
 
     Parameters
@@ -240,7 +248,7 @@ def slow_at(body: Body, kinetic: Real, fastest: Real, rest: tuple[Real, Real]) -
     """
     height = rest[1] - rest[0]
     share = height / (body.release - rest[0])
-    return kinetic < jnp.maximum(body.weight * height, share * fastest)
+    return kinetic < jnp.maximum(body.weight * height, share * maximum_kinetic)
 
 
 def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, ...]:
@@ -262,7 +270,7 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
             places,
             jnp.append(course.time, course.duration),
             speeds,
-            jnp.column_stack([course.heat, course.lost]).T,
+            jnp.column_stack([course.dissipated, course.lost]).T,
             piece.drags(body, places, speeds).T,
         )
 

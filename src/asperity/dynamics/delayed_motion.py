@@ -14,15 +14,15 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.contact import Contact
-from ..contact.delayed_formation import LateContact
+from ..contact.delayed_formation import DelayedContact
 from ..errors import Outcome
 from ..numerics.polynomials import NODES
-from .curve_table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, quantities, read_row
+from .curve_table import CONTACTING, FORCE, STORED, Pieces, Quantities, Table, quantities, read_row
 from .motion import LEAST_LOSS
 from .record import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
-from .static_equilibrium import Datum
+from .static_equilibrium import Reference
 from .stepped_phase import (
-    CREPT,
+    AT_REST,
     FAILED,
     LEFT,
     STOPPED,
@@ -70,28 +70,28 @@ class _Impact(NamedTuple):
     end: Samples
 
 
-def fly(
+def integrate_delayed(
     contact: Contact,
-    late: LateContact,
+    delayed: DelayedContact,
     body: Body,
-    prepared: tuple[Table, Datum],
+    prepared: tuple[Table, Reference],
     limits: Limits,
-    tell: Callable[[int], None],
+    report: Callable[[int], None],
     stop: threading.Event | None = None,
 ) -> tuple[Motion, Trajectory, Outcome]:
     """Motion of a body from its release until it rests, escapes, reaches a limit or is stopped.
 
     Parameters
     ----------
-    contact, late
+    contact, delayed
         The contact with menisci that form at once, and with those that take time.
     body
         The body and its release, outside contact.
     prepared
-        Outermost branches of ``contact``, and the datum.
+        Major branches of ``contact``, and the reference separation.
     limits
         Ends of the motion.
-    tell
+    report
         Called with the number of impacts, after each.
     stop
         Set from another thread, it ends the motion at the last whole impact.
@@ -106,11 +106,11 @@ def fly(
         if stop is not None and stop.is_set():
             raise Ended
 
-    table, datum = prepared
-    frame = Frame.of(contact, late, body, table)
-    course = Course.of(contact, frame, datum, float(limits.rest), asked)
-    place, release = _released(contact, late, body, table)
-    still = float(datum.equilibrium)
+    table, reference = prepared
+    frame = Frame.of(contact, delayed, body, table)
+    course = Course.of(contact, frame, reference, float(limits.rest), asked)
+    place, release = _released(contact, delayed, body, table)
+    still = float(reference.equilibrium)
     stage = _Stage(course, quantities(contact), 0.0, still, limits)
     stage = stage._replace(origin=float(stage.energy(release)[0]))
     done: list[_Impact] = []
@@ -126,24 +126,24 @@ def fly(
         done.append(impact)
         place, last = impact.rise.place, impact.end
         outcome = _outcome(stage, done)
-        tell(len(done))
-    impacts = _stacked([_row(stage, impact, done[0].fall.fastest) for impact in done])
+        report(len(done))
+    impacts = _stacked([_row(stage, impact, done[0].fall.maximum_kinetic) for impact in done])
     end = _progress(stage, done, outcome)
-    motion = Motion(impacts, end, table, datum, jnp.asarray(stage.origin))
+    motion = Motion(impacts, end, table, reference, jnp.asarray(stage.origin))
     legs = [way for impact in done for way in (impact.fall, impact.rise)]
     return motion, Trajectory.of(body, release, legs), outcome
 
 
 def _released(
-    contact: Contact, late: LateContact, body: Body, table: Table
+    contact: Contact, delayed: DelayedContact, body: Body, table: Table
 ) -> tuple[Place, Samples]:
     """A body at its release, in equilibrium with the vapour, and its sample."""
     here = Here(
         separation=body.release,
         speed=-body.speed,
         acceleration=-body.gravity,
-        threshold=body.release - late.law.forming_gap,
-        memory=contact.fresh(),
+        threshold=body.release - delayed.law.forming_gap,
+        memory=contact.initial_memory(),
         forming=jnp.asarray(True),
     )
     here = jax.tree_util.tree_map(np.asarray, here)
@@ -179,41 +179,41 @@ def _outcome(stage: _Stage, done: list[_Impact]) -> Outcome | None:
     cycle = np.sum(last.rise.place.lost - last.start.lost)
     # Menisci that are still on their way will change the cycles to come.
     waits = float(last.start.here.threshold - last.rise.place.here.threshold)
-    late = last.rise.place.time >= limits.time
-    repeats = abs(waits) <= LEAST_LOSS * stage.course.frame.reach
+    delayed = last.rise.place.time >= limits.time
+    repeats = abs(waits) <= LEAST_LOSS * stage.course.frame.interaction_range
     rules = (
         (FAILED in (last.fall.fate, last.rise.fate), Outcome.FAILED),
-        (last.fall.fate == CREPT, Outcome.REST),
-        (STOPPED in (last.fall.fate, last.rise.fate) and not late, Outcome.STOPPED),
+        (last.fall.fate == AT_REST, Outcome.REST),
+        (STOPPED in (last.fall.fate, last.rise.fate) and not delayed, Outcome.STOPPED),
         (last.rise.fate == LEFT, Outcome.ESCAPED),
-        (late, Outcome.TIME_LIMIT),
+        (delayed, Outcome.TIME_LIMIT),
         (height < limits.rest * first, Outcome.REST),
-        (repeats and cycle < LEAST_LOSS * done[0].fall.fastest, Outcome.OSCILLATING),
+        (repeats and cycle < LEAST_LOSS * done[0].fall.maximum_kinetic, Outcome.OSCILLATING),
         (len(done) >= limits.impacts, Outcome.MAX_IMPACTS),
     )
     return next((outcome for holds, outcome in rules if holds), None)
 
 
-def _row(stage: _Stage, impact: _Impact, fastest: float) -> Impacts:
+def _row(stage: _Stage, impact: _Impact, maximum_kinetic: float) -> Impacts:
     fall, rise = impact.fall, impact.rise
     samples = Samples.joined([impact.begin, *fall.samples, *rise.samples])
     energy = stage.energy(samples) + np.sum(samples.lost, axis=1)
     deepest = impact.middle.rows[0]
     columns: dict[str, Any] = {
         "made": np.asarray(True),
-        "deepest": fall.place.here.separation,
+        "closest_approach": fall.place.here.separation,
         "apex": rise.place.here.separation,
-        "deepest_time": np.asarray(fall.place.time),
+        "closest_approach_time": np.asarray(fall.place.time),
         "apex_time": np.asarray(rise.place.time),
         "mechanical": stage.energy(impact.end)[0],
         "leaving": np.asarray(np.nan),
         "force": deepest[FORCE],
-        "touching": deepest[TOUCHING],
+        "contacting": deepest[CONTACTING],
         "bonds": deepest[stage.layout.bonds],
         "lost": rise.place.lost,
         "energy_balance_error": np.max(np.abs(energy - stage.origin)),
         "pull_work": np.asarray(-rise.pull_work),
-        "fastest": np.asarray(fastest),
+        "maximum_kinetic": np.asarray(maximum_kinetic),
         "fall": _phase(stage, impact.start, impact.begin, fall),
         "rise": _phase(stage, fall.place, impact.middle, rise),
     }
@@ -254,7 +254,7 @@ def _progress(stage: _Stage, done: list[_Impact], outcome: Outcome) -> Progress:
         "lost": last.rise.place.lost,
         "bonds": last.end.rows[0, stage.layout.bonds],
         "first": done[0].rise.place.here.separation - stage.resting,
-        "impact_energy": done[0].fall.fastest,
+        "impact_energy": done[0].fall.maximum_kinetic,
         "outcome": code,
         "made": len(done),
     }

@@ -69,18 +69,18 @@ class Course(NamedTuple):
         Kinetic energy at its end [J].
     passed
         Whether the body comes to its end.
-    fastest
+    maximum_kinetic
         Largest kinetic energy on it [J].
     """
 
     speed: jax.Array
     time: jax.Array
-    heat: jax.Array
+    dissipated: jax.Array
     duration: jax.Array
     lost: jax.Array
     kinetic: jax.Array
     passed: jax.Array
-    fastest: jax.Array
+    maximum_kinetic: jax.Array
 
 
 class Stretch(NamedTuple):
@@ -151,7 +151,7 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
     drags = 2.0 * piece.drags(body, places, free) * length / (body.mass * unit)
     # u^2 + (the integral of the drags u) = share, in u = speed / unit.
     u, solved = _reduced_speeds(share, jnp.sum(drags, axis=0))
-    heat = most * ((drags * u) @ _UNTIL.T)
+    dissipated = most * ((drags * u) @ _UNTIL.T)
     lost = most * ((drags * u) @ _WHOLE)
     left = last - jnp.sum(lost)
     pace = jnp.where(u > 0.0, length / (unit * jnp.where(u > 0.0, u, 1.0)), 0.0)
@@ -159,12 +159,12 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
     return Course(
         speed=unit * u,
         time=jnp.asarray(_UNTIL) @ pace,
-        heat=heat,
+        dissipated=dissipated,
         duration=_WHOLE @ pace + _missed_time(body, piece, (kinetic, left), most * u**2, stop),
         lost=jnp.where(empty, 0.0, lost),
         kinetic=jnp.where(empty, kinetic, left),
         passed=empty | (solved & (left > 0.0)),
-        fastest=jnp.where(empty, kinetic, jnp.max(_FINE @ (most * u**2))),
+        maximum_kinetic=jnp.where(empty, kinetic, jnp.max(_FINE @ (most * u**2))),
     )
 
 

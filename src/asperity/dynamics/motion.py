@@ -10,10 +10,10 @@ from .._jax import jax, jnp
 from ..contact.contact import Contact, Held
 from ..errors import Outcome, Tolerance
 from .curve_table import (
+    CONTACTING,
     FORCE,
     SIZE,
     STORED,
-    TOUCHING,
     Table,
     join,
     outer_row,
@@ -22,11 +22,19 @@ from .curve_table import (
     tabulate_again,
 )
 from .damped_phase import fall_to_rest, resolved
-from .phase import Turn, in_order, look_ahead, mechanical_at_end, pull_work, row_at, travel_time
-from .record import ENDS, FLYING, Body, Impacts, Limits, Motion, Phase, Progress
+from .phase import (
+    TurningPoint,
+    in_order,
+    look_ahead,
+    mechanical_at_end,
+    pull_work,
+    row_at,
+    travel_time,
+)
+from .record import ENDS, IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
 from .scanning_table import inner_pieces, solve_reversals
-from .static_equilibrium import Datum, find_datum
-from .turning_point import find_turn
+from .static_equilibrium import Reference, find_reference
+from .turning_point import find_turning_point
 
 LEAST_LOSS = 1e-9
 """Share of the impact energy: a cycle that loses less repeats for ever."""
@@ -39,13 +47,13 @@ FEW = 8
 """Impacts up to which each reversal is better solved as it comes."""
 
 
-def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Datum]:
-    """Tabulate a contact over all separations that a body can reach, and find its datum.
+def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Reference]:
+    """Tabulate a contact over all separations that a body can reach; find its static equilibrium.
 
-    With the ways back from reversals where ``many`` impacts follow (static): fewer are flown
-    sooner without.
+    With the scanning curves where ``many`` impacts follow (static): a few are integrated sooner
+    without.
     """
-    low = jax.lax.stop_gradient(contact.floor(body.release, body.kinetic, body.weight))
+    low = jax.lax.stop_gradient(contact.lower_bound(body.release, body.kinetic, body.weight))
     falls = body.weight > 0.0
     rise = body.kinetic / jnp.where(falls, body.weight, 1.0)
     top = body.release + jnp.where(falls, rise, 0.0)
@@ -53,27 +61,29 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Da
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
     if contact.yields:
-        table = _worn_table(contact, body, low, high)
+        table = _yielded_table(contact, body, low, high)
     else:
         table = tabulate(contact, low, high)
-    if contact.datum is None:
-        datum = find_datum(table, body.weight, contact.resting)
+    if contact.reference is None:
+        reference = find_reference(table, body.weight, contact.rest_branch)
     else:
-        datum = Datum(contact.datum, jnp.zeros(()), jnp.asarray(True))
+        reference = Reference(contact.reference, jnp.zeros(()), jnp.asarray(True))
     if many and not contact.yields:
-        table = solve_reversals(contact, body, table, datum)
-    return table, datum
+        table = solve_reversals(contact, body, table, reference)
+    return table, reference
 
 
-def _worn_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
+def _yielded_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
     """The curves of a contact that yields, before its first impact and as that leaves it.
 
     Nothing that follows goes deeper than the first impact: it has lost energy since.
     """
     before = tabulate(contact, low, high)
     progress, _origin = start(contact, body, before)
-    rest = find_datum(before, body.weight, 0).equilibrium
-    after, _fall = _leg(contact, body, before, (rest, rest), progress, jnp.asarray(False))
+    rest = find_reference(before, body.weight, 0).equilibrium
+    after, _fall = _phase_of_impact(
+        contact, body, before, (rest, rest), progress, jnp.asarray(False)
+    )
     return tabulate_again(contact, before, after.memory, after.place)
 
 
@@ -82,7 +92,7 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
     zero = jnp.zeros(())
     row = outer_row(table, 0, body.release)
     progress = Progress(
-        memory=contact.fresh(),
+        memory=contact.initial_memory(),
         place=body.release,
         kinetic=body.kinetic,
         time=zero,
@@ -90,17 +100,17 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
         bonds=row[quantities(contact).bonds],
         first=zero,
         impact_energy=zero,
-        outcome=jnp.asarray(FLYING),
+        outcome=jnp.asarray(IN_MOTION),
         made=jnp.asarray(0),
     )
     return progress, row[STORED] + body.kinetic + body.weight * body.release
 
 
-def fly(
+def integrate_impacts(
     contact: Contact,
     body: Body,
     table: Table,
-    datum: Datum,
+    reference: Reference,
     origin: jax.Array,
     progress: Progress,
     limits: Limits,
@@ -110,7 +120,7 @@ def fly(
 
     @jax.jit  # traced once, for its shapes and for itself
     def one(progress: Progress, _: None) -> tuple[Progress, Impacts]:
-        return _impact(contact, body, table, datum, origin, progress, limits)
+        return _impact(contact, body, table, reference, origin, progress, limits)
 
     shapes = jax.eval_shape(one, progress, None)[1]
 
@@ -119,7 +129,7 @@ def fly(
         return progress, empty
 
     def step(progress: Progress, _: None) -> tuple[Progress, Impacts]:
-        active = progress.outcome == FLYING
+        active = progress.outcome == IN_MOTION
         after, row = jax.lax.cond(unvmap_any(active), one, none, progress, None)
         keep = lambda new, old: jnp.where(active, new, old)  # noqa: E731
         return (
@@ -147,29 +157,36 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
     """
     tolerance = tolerance or Tolerance()
-    table, datum = prepare(contact, body, tolerance.max_impacts > FEW)
+    table, reference = prepare(contact, body, tolerance.max_impacts > FEW)
     progress, origin = start(contact, body, table)
-    end, impacts = fly(
-        contact, body, table, datum, origin, progress, Limits.of(tolerance), tolerance.max_impacts
+    end, impacts = integrate_impacts(
+        contact,
+        body,
+        table,
+        reference,
+        origin,
+        progress,
+        Limits.of(tolerance),
+        tolerance.max_impacts,
     )
-    return Motion(impacts, end, table, datum, origin)
+    return Motion(impacts, end, table, reference, origin)
 
 
 class _Leg(NamedTuple):
-    turn: Turn
+    turn: TurningPoint
     phase: Phase
     row: jax.Array
     lost: jax.Array
     time: jax.Array
     bonds: jax.Array
     pull_work: jax.Array
-    crept: jax.Array
+    at_rest: jax.Array
     followed: jax.Array
     stopped: jax.Array
     leaving: jax.Array
 
 
-def _leg(
+def _phase_of_impact(
     contact: Contact,
     body: Body,
     table: Table,
@@ -189,15 +206,15 @@ def _leg(
     )
     if not body.damped:
         wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(unloading))
-        turn, heat = find_turn(ahead, wanted), jnp.zeros(0)
+        turn, dissipated = find_turning_point(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
         way, part = resolved(body, join(table, branch, inner, progress.place, unloading))
         goal = jnp.where(unloading, jnp.inf, rest[1])
         passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
         turn = passage.turn._replace(piece=part[passage.turn.piece])
-        turn, heat = in_order(ahead, turn), passage.lost
-        fate = passage.crept, passage.followed, passage.stopped
+        turn, dissipated = in_order(ahead, turn), passage.lost
+        fate = passage.at_rest, passage.followed, passage.stopped
         time = progress.time + passage.duration
     row = row_at(ahead, turn)
     layout = quantities(contact)
@@ -205,7 +222,7 @@ def _leg(
     formed = jnp.maximum(bonds - progress.bonds, 0.0)
     broken = jnp.maximum(progress.bonds - bonds, 0.0)
     at_forming, at_breaking = contact.losses()
-    lost = jnp.concatenate([formed * at_forming + broken * at_breaking, heat]) + progress.lost
+    lost = jnp.concatenate([formed * at_forming + broken * at_breaking, dissipated]) + progress.lost
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
         progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
@@ -213,7 +230,7 @@ def _leg(
     )  # fmt: skip
     held = Held(turn.piece >= ahead.pieces, unloading, row[SIZE], row[layout.field])
     after = progress._replace(
-        memory=contact.turned(progress.memory, turn.place, held), place=turn.place,
+        memory=contact.update_memory(progress.memory, turn.place, held), place=turn.place,
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
     leg = _Leg(
@@ -239,17 +256,17 @@ def _impact(
     contact: Contact,
     body: Body,
     table: Table,
-    datum: Datum,
+    reference: Reference,
     origin: jax.Array,
     progress: Progress,
     limits: Limits,
 ) -> tuple[Progress, Impacts]:
     """Down to the deepest point and up to the next apex."""
-    resting = datum.equilibrium
+    resting = reference.equilibrium
     rest = resting, resting + limits.rest * (body.release - resting)
 
     def leg(progress: Progress, unloading: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
-        after, way = _leg(contact, body, table, rest, progress, unloading)
+        after, way = _phase_of_impact(contact, body, table, rest, progress, unloading)
         return after, (after, way)
 
     # One body of code for both directions: half to compile.
@@ -260,16 +277,16 @@ def _impact(
     legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
     mechanical = legs.turn.kinetic + body.weight * legs.turn.place + legs.row[:, STORED]
     energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
-    height = end.place - datum.equilibrium
+    height = end.place - reference.equilibrium
     first = jnp.where(progress.made == 0, height, progress.first)
-    energy = jnp.where(progress.made == 0, fall.turn.fastest, progress.impact_energy)
+    energy = jnp.where(progress.made == 0, fall.turn.maximum_kinetic, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
     risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
     sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
     outcome = _outcome(
         (
             (jnp.logical_not(sound), Outcome.FAILED),
-            (fall.crept, Outcome.REST),
+            (fall.at_rest, Outcome.REST),
             ((fall.stopped | rise.stopped) & (rise.time < limits.time), Outcome.STOPPED),
             # Flattened tips may pull at once by more than what they press.
             (jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen), Outcome.REST),
@@ -283,15 +300,15 @@ def _impact(
     after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
     row = Impacts(
         jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
-        rise.leaving, fall.row[FORCE], fall.row[TOUCHING], fall.bonds, rise.lost,
+        rise.leaving, fall.row[FORCE], fall.row[CONTACTING], fall.bonds, rise.lost,
         energy_balance_error, rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row
 
 
 def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
-    """Code of the first rule that holds, or FLYING."""
-    code = jnp.asarray(FLYING)
+    """Code of the first rule that holds, or IN_MOTION."""
+    code = jnp.asarray(IN_MOTION)
     for holds, outcome in reversed(rules):
         code = jnp.where(holds, ENDS.index(outcome), code)
     return code

@@ -10,12 +10,12 @@ from typing import Any
 from .._jax import jax, jnp
 from ..contact.contact import Contact
 from ..numerics.polynomials import NODES
-from .curve_table import DRIVE, LOOKS, RISE, Table, Works, quantities
+from .curve_table import DRIVE, ENERGY_SAMPLES, TIME_NODES, Table, Works, quantities
 from .scanning_table import RANGES, Reversals
-from .static_equilibrium import Datum
+from .static_equilibrium import Reference
 
 
-def foreseen(contact: Contact, many: bool = False) -> tuple[Table, Datum] | None:
+def shapes_of_curves(contact: Contact, many: bool = False) -> tuple[Table, Reference] | None:
     """Shapes of the answer of :func:`.motion.prepare`.
 
     Parameters
@@ -31,22 +31,26 @@ def foreseen(contact: Contact, many: bool = False) -> tuple[Table, Datum] | None
     shape = len(jax.eval_shape(contact.branches)), ends.shape[0] - 1
     numbers = quantities(contact).field.start + contact.lagging
     drives = len(range(numbers)[DRIVE])
-    works = Works(_real(*shape, NODES + 1, drives), _real(*shape, LOOKS), _real(*shape, RISE.size))
+    works = Works(
+        _real(*shape, NODES + 1, drives),
+        _real(*shape, ENERGY_SAMPLES),
+        _real(*shape, TIME_NODES.size),
+    )
     table = Table(_real(*ends.shape), _real(*shape, NODES, numbers), works, _real(), _real())
     if many and contact.reversals:
-        ways, (pieces, places) = contact.reversals, contact.passed
-        of_pieces = RANGES, ways, pieces
+        curves, (pieces, places) = contact.reversals, contact.passed
+        of_pieces = RANGES, curves, pieces
         table = table._replace(
             reversals=Reversals(
                 low=_real(RANGES),
                 high=_real(RANGES),
                 length=_real(*of_pieces),
-                touching=_real(*of_pieces, places),
+                contacting=_real(*of_pieces, places),
                 rows=_real(*of_pieces, places, numbers),
                 error=_real(RANGES),
             )
         )
-    return table, Datum(_real(), _real(), _of(bool))
+    return table, Reference(_real(), _real(), _of(bool))
 
 
 def _real(*shape: int) -> Any:

@@ -2,7 +2,7 @@
 
 Where the force depends on the separation alone, turning points are roots of the kinetic
 energy K(d), and the time between two places is the integral of dd / v, v = sqrt(2 K / m).
-A phase runs over the pieces of the way from its reversal to the outermost branch, then
+A phase runs over the pieces of the way from its reversal to the major branch, then
 over the panels of that branch, whose work is tabulated once for all phases.
 """
 
@@ -15,10 +15,10 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import NODES, antiderivative, chebyshev_sum, local
-from .curve_table import DRIVE, FORCE, RISE, STORED, Pieces, Table
+from .curve_table import DRIVE, FORCE, STORED, TIME_NODES, Pieces, Table
 from .phase_time import Ends, time_over
 
-_RISE_TOO = np.concatenate([[0.0], RISE, [1.0]])  # with both ends
+_TIME_NODES_AND_ENDS = np.concatenate([[0.0], TIME_NODES, [1.0]])  # with both ends
 _BOTH = np.array([0, -1])
 _ALTERNATE = (-1.0) ** np.arange(NODES)  # Chebyshev polynomials at the lower end
 
@@ -51,7 +51,7 @@ class Ahead(NamedTuple):
     Attributes
     ----------
     table
-        The outermost branches.
+        The major branches.
     branch
         Index of the one that it reaches.
     inner
@@ -88,12 +88,12 @@ class Ahead(NamedTuple):
         """Kinetic energy [J] at places of the branch where the ``work`` from the top is known."""
         return self.gained(work, places - self.begin)
 
-    def gained(self, work: jax.Array, way: jax.Array) -> jax.Array:
+    def gained(self, work: jax.Array, distance: jax.Array) -> jax.Array:
         """The same, by the way [m] from where the branch begins."""
-        return self.inner.kinetic[-1] + (work - self.before[0] - self.inner.weight * way)
+        return self.inner.kinetic[-1] + (work - self.before[0] - self.inner.weight * distance)
 
 
-class Turn(NamedTuple):
+class TurningPoint(NamedTuple):
     """End of a phase: the piece and place where the body turns, or the end of the table.
 
     Pieces are counted along the way to the branch, then by the panels of the table. The largest
@@ -103,11 +103,11 @@ class Turn(NamedTuple):
     piece: jax.Array
     place: jax.Array
     found: jax.Array
-    fastest: jax.Array
+    maximum_kinetic: jax.Array
     kinetic: jax.Array
 
 
-def in_order(ahead: Ahead, turn: Turn) -> Turn:
+def in_order(ahead: Ahead, turn: TurningPoint) -> TurningPoint:
     """A turn whose piece counts along the joined way, with panels counted as the table does."""
     panels = ahead.table.ends.shape[0] - 1
     step = turn.piece - ahead.pieces
@@ -162,18 +162,18 @@ def _work_at(table: Table, branch: jax.Array, panel: jax.Array, place: jax.Array
     return chebyshev_sum(table.works.integral[branch, panel], x)
 
 
-def travel_time(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+def travel_time(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Array:
     """Time [s] from the start of a phase to its turn."""
     total = _time_of_whole(ahead, turn, mass) + _time_of_parts(ahead, turn, mass)
     return total + _time_before(ahead, turn, mass) if ahead.pieces else total
 
 
-def _until(ahead: Ahead, turn: Turn, place: jax.Array) -> jax.Array:
+def _until(ahead: Ahead, turn: TurningPoint, place: jax.Array) -> jax.Array:
     near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
     return jnp.where(ahead.unloading, near, far)
 
 
-def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+def _time_of_whole(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Array:
     """On panels passed as a whole, whose work is known at all places of the quadrature."""
     table, panel = ahead.table, turn.piece - ahead.pieces
     index = np.arange(table.ends.shape[0] - 1)
@@ -191,7 +191,7 @@ def _time_of_whole(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     return time_over(jnp.diff(table.ends), whole, energies, mass, ends)
 
 
-def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+def _time_of_parts(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Array:
     """On the panel in which the branch begins, and on the one in which the body turns."""
     table, panel = ahead.table, turn.piece - ahead.pieces
     panels = jnp.stack([ahead.panel, panel])
@@ -205,9 +205,9 @@ def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     span = last - first
     integral = table.works.integral[ahead.branch, panels, :, 0]
     start = local(low, high, first)[:, None]
-    x = start + (local(low, high, last)[:, None] - start) * _RISE_TOO
-    way = (first - ahead.begin)[:, None] + span[:, None] * _RISE_TOO
-    energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), way)
+    x = start + (local(low, high, last)[:, None] - start) * _TIME_NODES_AND_ENDS
+    distance = (first - ahead.begin)[:, None] + span[:, None] * _TIME_NODES_AND_ENDS
+    energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), distance)
     energies = _resting(turn, last, energies.at[0, 0].set(ahead.inner.kinetic[-1]))
     force = table.values[ahead.branch, panels, :, FORCE]
     ends = Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
@@ -215,7 +215,7 @@ def _time_of_parts(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
     return time_over(span, used, energies[:, 1:-1], mass, ends)
 
 
-def _time_before(ahead: Ahead, turn: Turn, mass: jax.Array) -> jax.Array:
+def _time_before(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Array:
     """On the pieces before the branch."""
     p = ahead.inner.pieces
     ends = _until(ahead, turn, p.enter), _until(ahead, turn, p.leave)
@@ -243,7 +243,7 @@ def time_along(
     """
     p, (enter, leave) = work.pieces, ends
     span = leave - enter
-    places = enter[:, None] + span[:, None] * _RISE_TOO
+    places = enter[:, None] + span[:, None] * _TIME_NODES_AND_ENDS
     energies = resting(leave, kinetic_along(work, places))
     x = local(p.low[:, None], p.high[:, None], places[:, _BOTH])
     force = chebyshev_sum(p.values[..., FORCE].T[:, :, None], x)
@@ -251,25 +251,25 @@ def time_along(
     return time_over(span, span != 0.0, energies[:, 1:-1], mass, at_ends)
 
 
-def _resting(turn: Turn, last: jax.Array, energies: jax.Array) -> jax.Array:
+def _resting(turn: TurningPoint, last: jax.Array, energies: jax.Array) -> jax.Array:
     """The energies of pieces, the last of each 0 where the body turns there: not its rounding."""
     still = turn.found & (last == turn.place)
     return energies.at[:, -1].set(jnp.where(still, 0.0, energies[:, -1]))
 
 
-def pull_work(ahead: Ahead, turn: Turn) -> jax.Array:
+def pull_work(ahead: Ahead, turn: TurningPoint) -> jax.Array:
     """Work of the adhesive and capillary forces over a phase [J]."""
     panel = jnp.maximum(turn.piece - ahead.pieces, 0)
     at_end = _work_at(ahead.table, ahead.branch, panel, turn.place)[1]
     total = jnp.where(turn.piece >= ahead.pieces, at_end - ahead.before[1], 0.0)
     if not ahead.pieces:
         return total
-    p, pull = ahead.inner.pieces, ahead.inner.integral[..., 1]
+    p, attraction = ahead.inner.pieces, ahead.inner.integral[..., 1]
 
     def until(place: jax.Array) -> jax.Array:
         near, far = jnp.minimum(place, turn.place), jnp.maximum(place, turn.place)
         inside = jnp.where(ahead.unloading, near, far)
-        return chebyshev_sum(pull, local(p.low, p.high, inside))
+        return chebyshev_sum(attraction, local(p.low, p.high, inside))
 
     return total + jnp.sum(until(p.leave) - until(p.enter))
 
@@ -283,7 +283,7 @@ def mechanical_at_end(ahead: Ahead) -> jax.Array:
     return kinetic + weight * place + stored
 
 
-def row_at(ahead: Ahead, turn: Turn) -> jax.Array:
+def row_at(ahead: Ahead, turn: TurningPoint) -> jax.Array:
     """All quantities of the contact where a phase ends."""
     table = ahead.table
     panel = jnp.maximum(turn.piece - ahead.pieces, 0)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from .curve_table import RATE, RISE
+from .curve_table import RATE, TIME_NODES
 
 NEAR = 3
 """Node of a quadrature up to which the energy must grow as at the end: 0.1 % of a piece on."""
@@ -38,7 +38,7 @@ class Ends(NamedTuple):
 def time_over(
     span: jax.Array, used: jax.Array, energies: jax.Array, mass: jax.Array, ends: Ends
 ) -> jax.Array:
-    """Time [s] over pieces with kinetic energies [J] at the places RISE of each.
+    """Time [s] over pieces with kinetic energies [J] at the places TIME_NODES of each.
 
     With what the quadrature misses where the body is at rest just before a piece, or just after.
     """
@@ -46,7 +46,7 @@ def time_over(
     slowness = jnp.sum(RATE * jax.lax.rsqrt(squares), axis=1)
     near = energies[:, NEAR], energies[:, -1 - NEAR]
     for energy, gain, beside in zip((ends.first, ends.last), ends.gains(span), near, strict=True):
-        grown = energy + gain * RISE[NEAR]
+        grown = energy + gain * TIME_NODES[NEAR]
         missed = jnp.where(jnp.abs(beside - grown) < 0.1 * grown, missed_time(energy, gain), 0.0)
         slowness = slowness + missed * jnp.sqrt(0.5 * mass)
     return jnp.sum(jnp.where(used, slowness * jnp.abs(span), 0.0))
@@ -55,7 +55,7 @@ def time_over(
 def missed_time(
     energy: jax.Array,
     gain: jax.Array,
-    places: np.ndarray = RISE,
+    places: np.ndarray = TIME_NODES,
     weights: np.ndarray = RATE,
 ) -> jax.Array:
     """What a quadrature misses of the integral of (energy + gain y)^-1/2 over y from 0 to 1."""

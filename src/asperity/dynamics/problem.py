@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..contact import Contact
-from ..contact.delayed_formation import LateContact
-from ..contact.viscoelastic import Creep
+from ..contact.delayed_formation import DelayedContact
+from ..contact.viscoelastic import Relaxation
 from ..laws.adhesion_choice import AdhesionChoice
 from .record import Body
 
 CLEARANCE = 1e-9
-"""Gap [m] added to the reach of the forces where a case gives a speed but no release gap.
+"""Gap [m] added to the interaction range where a case gives a speed but no release gap.
 
 A first place: a force that goes on beyond its reach has the body released further out.
 """
@@ -32,11 +32,11 @@ class Problem(NamedTuple):
         Radius [m] of one asperity, or of the smooth body.
     adhesion
         The law of adhesion in use, and why where the program chose it.
-    late
+    delayed
         The contact with menisci that take time to form; None where they form at once.
     class_error
         Relative error that classes of tip radius make in the work of bonds; 0 without classes.
-    creep
+    relaxation
         How the bulk creeps; ``contact`` is then that of the relaxed bulk. None where it does not.
     """
 
@@ -45,6 +45,6 @@ class Problem(NamedTuple):
     modulus: float
     tip_radius: float
     adhesion: AdhesionChoice
-    late: LateContact | None = None
+    delayed: DelayedContact | None = None
     class_error: float = 0.0
-    creep: Creep | None = None
+    relaxation: Relaxation | None = None

@@ -24,7 +24,9 @@ class _Piece(NamedTuple):
     values: np.ndarray
 
 
-def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, Any], float]:
+def quasi_static_curve(
+    contact: Contact, table: Table, impacts: Impacts
+) -> tuple[dict[str, Any], float]:
     """Both branches from where the forces begin to the depth of the first impact.
 
     Parameters
@@ -41,9 +43,9 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, A
     The arrays and numbers of :class:`asperity.results.result.Curve`, and the expected number of
     asperities that hold at pull-off.
     """
-    deepest, pulled = float(impacts.deepest[0]), first_unloading(table, impacts)
-    reach = float(contact.reach)
-    top = min(float(impacts.fall.start[0]), reach + 0.2 * (reach - deepest))
+    deepest, pulled = float(impacts.closest_approach[0]), first_unloading(table, impacts)
+    interaction_range = float(contact.interaction_range)
+    top = min(float(impacts.fall.start[0]), interaction_range + 0.2 * (interaction_range - deepest))
     inward, outward = _branch(table, 0), _way_out(table, impacts)
     places = _places([*inward, *outward], deepest, top)
     approach, unloading = _read(inward, places), _read(outward, places)
@@ -57,7 +59,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, A
         "force_unloading": out,
         "components_loading": dict(zip(names, approach[:, layout.components].T, strict=True)),
         "components_unloading": dict(zip(names, unloading[:, layout.components].T, strict=True)),
-        "deepest": deepest,
+        "minimum_separation": deepest,
         "preload": float(impacts.force[0]) if pulled.depends else None,
         "pull_off": float(pulled.pull_off),
         "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
@@ -68,7 +70,7 @@ def trace(contact: Contact, table: Table, impacts: Impacts) -> tuple[dict[str, A
 
 
 def _branch(table: Table, branch: int) -> list[_Piece]:
-    """The panels of an outermost branch that are not empty, ascending."""
+    """The panels of a major branch that are not empty, ascending."""
     values = np.asarray(table.values)[branch]
     ends = np.asarray(table.ends)
     pairs = zip(ends[:-1], ends[1:], values, strict=True)

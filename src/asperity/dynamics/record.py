@@ -14,10 +14,10 @@ from ..laws.law import Real, as_float64, quantity
 from ..numerics.compilation import kept
 from .curve_table import Pieces, Table
 from .gas_film import SqueezeFilm
-from .static_equilibrium import Datum
+from .static_equilibrium import Reference
 from .wave_radiation import WaveRadiation
 
-FLYING = -1
+IN_MOTION = -1
 ENDS = (
     Outcome.REST,
     Outcome.OSCILLATING,
@@ -133,10 +133,10 @@ class Impacts(NamedTuple):
     ----------
     made
         Whether the impact took place.
-    deepest, apex
+    closest_approach, apex
         Rigid separations [m] of the turning points; the apex of a body that escapes is
         the end of the table.
-    deepest_time, apex_time
+    closest_approach_time, apex_time
         Times [s].
     mechanical
         Kinetic, potential and stored energy at the apex [J].
@@ -146,7 +146,7 @@ class Impacts(NamedTuple):
         and for motions stepped in time, which tell it of no body that is captured.
     force
         Contact force at the deepest point [N].
-    touching, bonds
+    contacting, bonds
         Expected asperities in contact, and bonds by law, at the deepest point.
     lost
         Energy lost until the apex, since the release [J]: by law, then by drag.
@@ -154,26 +154,26 @@ class Impacts(NamedTuple):
         Largest change of the sum of all energies since the release [J].
     pull_work
         Work of the attractive parts on the way out [J], as in the publication's eq. 23.
-    fastest
+    maximum_kinetic
         Largest kinetic energy on the first way in [J], the same in all rows.
     fall, rise
         The two phases.
     """
 
     made: jax.Array
-    deepest: jax.Array
+    closest_approach: jax.Array
     apex: jax.Array
-    deepest_time: jax.Array
+    closest_approach_time: jax.Array
     apex_time: jax.Array
     mechanical: jax.Array
     leaving: jax.Array
     force: jax.Array
-    touching: jax.Array
+    contacting: jax.Array
     bonds: jax.Array
     lost: jax.Array
     energy_balance_error: jax.Array
     pull_work: jax.Array
-    fastest: jax.Array
+    maximum_kinetic: jax.Array
     fall: Phase
     rise: Phase
 
@@ -188,8 +188,8 @@ class Motion(NamedTuple):
     end
         Where it ended.
     table
-        The contact's outermost branches.
-    datum
+        The contact's major branches.
+    reference
         Static equilibrium and the end of contact.
     release
         Mechanical energy at the release [J].
@@ -198,5 +198,5 @@ class Motion(NamedTuple):
     impacts: Impacts
     end: Progress
     table: Table
-    datum: Datum
+    reference: Reference
     release: jax.Array

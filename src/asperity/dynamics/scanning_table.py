@@ -1,6 +1,6 @@
-"""The ways back to the outermost branches, tabulated by the place of the reversal.
+"""Scanning curves, tabulated by the separation of their reversal.
 
-What holds a body that turns on an outermost branch depends on where it turned and on nothing
+What holds a body that turns on a major branch depends on where it turned and on nothing
 else. The turning points of a motion lie close together, and everything along the ways that lead
 back from them is a smooth function of their place: a polynomial, through a few ways that are
 solved before the motion begins. All but lengths are divided by the number of asperities that touch
@@ -21,9 +21,9 @@ from ..numerics.compilation import kept
 from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local
 from .curve_table import (
     CENTRAL,
+    CONTACTING,
     FORCE,
     SIZE,
-    TOUCHING,
     Pieces,
     Table,
     all_rows,
@@ -32,7 +32,7 @@ from .curve_table import (
     quantities,
 )
 from .record import Body
-from .static_equilibrium import Datum
+from .static_equilibrium import Reference
 
 CLOSE = 1e-8
 """Error of the work along a way, over the impact energy, up to which the polynomial serves."""
@@ -42,14 +42,14 @@ RANGES = 1 + _FAR
 """Ranges of reversals: one where a body parts, the others outside."""
 
 _WIDE = 1.7  # rms heights that one of them spans, where that is enough
-_NONE = 1e-120  # touching asperities: their logarithm and its derivatives are finite
+_NONE = 1e-120  # contacting asperities: their logarithm and its derivatives are finite
 _FALL = 0.1  # of the coefficients over the place of the reversal, from one to the next, at least
 _BEND = 2  # degree of the size of the mesh over that place
 
 
 @kept
 class Reversals(NamedTuple):
-    """Ways back from reversals within ranges: the first where a body parts, the others outside.
+    """Scanning curves by ranges of reversals: the first in retraction, the others in approach.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Reversals(NamedTuple):
     length
         Chebyshev coefficients over each of the ends of the pieces, from the reversal in the
         direction of motion [m], shape (ranges, ways, pieces).
-    touching
+    contacting
         Likewise those of the logarithm of the number of asperities that touch at the places of
         each piece, shape (ranges, ways, pieces, places).
     rows
@@ -71,7 +71,7 @@ class Reversals(NamedTuple):
     low: jax.Array
     high: jax.Array
     length: jax.Array
-    touching: jax.Array
+    contacting: jax.Array
     rows: jax.Array
     error: jax.Array
 
@@ -86,52 +86,56 @@ class Reversals(NamedTuple):
         return jnp.logical_and(inside, self.error[k] <= CLOSE)
 
     def pieces(self, start: jax.Array, unloading: jax.Array) -> Pieces:
-        """The way back from ``start`` [m]."""
+        """The scanning curve from ``start`` [m]."""
         k = self._range(start, unloading)
         x = local(self.low[k], self.high[k], start)
         leave = start + jnp.where(unloading, 1.0, -1.0) * chebyshev_sum(self.length[k], x[None])
         enter = jnp.concatenate([start[None], leave[:-1]])
-        touching = jnp.exp(chebyshev_sum(self.touching[k], x[None, None]))
+        contacting = jnp.exp(chebyshev_sum(self.contacting[k], x[None, None]))
         rows = chebyshev_sum(self.rows[k], x[None, None, None])
-        rows = rows * _scales(touching, rows.shape[-1])
+        rows = rows * _scales(contacting, rows.shape[-1])
         return _along(enter, leave, fit(rows), unloading)
 
 
-def solve_reversals(contact: Contact, body: Body, table: Table, datum: Datum) -> Table:
-    """A table with the ways back from where a body can turn on its outermost branches.
+def solve_reversals(contact: Contact, body: Body, table: Table, reference: Reference) -> Table:
+    """A table with the scanning curves from where a body can turn on its major branches.
 
     It turns between its deepest point and the static equilibrium on the way in, and between that
     and its highest point, or where forces end, on the way out. Without weight it does not return.
     """
-    ways = contact.reversals
-    if not ways:
+    curves = contact.reversals
+    if not curves:
         return table
-    frozen, body, rest = jax.lax.stop_gradient((table, body, datum.equilibrium))
+    frozen, body, rest = jax.lax.stop_gradient((table, body, reference.equilibrium))
     within = frozen.ends[0], frozen.ends[-1]
     deepest, energy = _first_fall(frozen, body)
-    reach = jax.lax.stop_gradient(contact.reach)
-    ends = _ends(rest, jnp.minimum(within[1], reach), jax.lax.stop_gradient(contact.scale))
+    interaction_range = jax.lax.stop_gradient(contact.interaction_range)
+    ends = _ends(
+        rest, jnp.minimum(within[1], interaction_range), jax.lax.stop_gradient(contact.scale)
+    )
     low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
     wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
-    nodes, parted = chebyshev.chebpts1(ways), np.arange(RANGES) > 0
+    nodes, parted = chebyshev.chebpts1(curves), np.arange(RANGES) > 0
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
     rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
     held = Held(
-        outer=jnp.ones((RANGES, ways), bool),
-        unloading=jnp.broadcast_to(parted[:, None], (RANGES, ways)),
+        outer=jnp.ones((RANGES, curves), bool),
+        unloading=jnp.broadcast_to(parted[:, None], (RANGES, curves)),
         size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
         field=rows[..., quantities(contact).field],
     )
-    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, ways))
+    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, curves))
     jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), jobs)
-    solved = jax.lax.map(lambda job: contact.way_from(job[0], job[1], job[2], within), jobs)
+    solved = jax.lax.map(
+        lambda job: contact.scanning_curve_from(job[0], job[1], job[2], within), jobs
+    )
     rows = jax.vmap(all_rows)(solved.states)
-    touching = jnp.where(rows[..., TOUCHING] > _NONE, rows[..., TOUCHING], _NONE)
-    rows = rows / _scales(touching, rows.shape[-1])
+    contacting = jnp.where(rows[..., CONTACTING] > _NONE, rows[..., CONTACTING], _NONE)
+    rows = rows / _scales(contacting, rows.shape[-1])
     length = jnp.abs(solved.leave - jobs[0][:, None])
-    each = length, jnp.log(touching), rows
+    each = length, jnp.log(contacting), rows
     length, numbers, rows = (_over_places(x, nodes) for x in each)
-    most = jnp.max(touching.reshape(RANGES, -1), axis=1)
+    most = jnp.max(contacting.reshape(RANGES, -1), axis=1)
     error = most * _error(length, numbers, rows) / jnp.where(energy > 0.0, energy, 1.0)
     error = jnp.where(wanted, error, jnp.inf)
     return table._replace(reversals=Reversals(low, high, length, numbers, rows, error))
@@ -146,9 +150,9 @@ def _ends(low: jax.Array, high: jax.Array, rms: jax.Array) -> jax.Array:
     return jnp.where((number > 0.0) & (number >= count), high, low + width * number)
 
 
-def _scales(touching: jax.Array, count: int) -> jax.Array:
+def _scales(contacting: jax.Array, count: int) -> jax.Array:
     """What so many quantities are divided by: all but lengths fall off as the number does."""
-    return jnp.where(np.isin(np.arange(count), (CENTRAL, SIZE)), 1.0, touching[..., None])
+    return jnp.where(np.isin(np.arange(count), (CENTRAL, SIZE)), 1.0, contacting[..., None])
 
 
 def _rows(table: Table, direction: int, places: jax.Array) -> jax.Array:
@@ -183,10 +187,10 @@ def _over_places(values: jax.Array, nodes: np.ndarray) -> jax.Array:
     return jnp.einsum("kn,bn...->bk...", from_points(len(nodes)), each)
 
 
-def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array:
-    """Estimated error of the work along the ways [J] over the touching, shape (ranges,)."""
+def _error(length: jax.Array, contacting: jax.Array, rows: jax.Array) -> jax.Array:
+    """Estimated error of the work along the ways [J] over the contacting, shape (ranges,)."""
     force = jnp.abs(rows[..., FORCE])
-    last = force[:, 2:] + force[:, :1] * jnp.abs(touching[:, 2:])
+    last = force[:, 2:] + force[:, :1] * jnp.abs(contacting[:, 2:])
     off = jnp.maximum(last[:, -1], _FALL * last[:, -2])
     span = jnp.diff(length[:, 0], axis=1, prepend=0.0)
     return jnp.sum(jnp.max(off, axis=2) * span, axis=1)
@@ -195,7 +199,7 @@ def _error(length: jax.Array, touching: jax.Array, rows: jax.Array) -> jax.Array
 def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
-    """The pieces between a reversal at ``start`` and the outermost branch, some for each law."""
+    """The pieces between a reversal at ``start`` and the major branch, some for each law."""
     if not table.reversals:
         return _solved(contact, table, memory, start, unloading)
     known = contact.on_branch(memory) & table.reversals.cover(start, unloading)
@@ -210,11 +214,11 @@ def _solved(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
     now = contact.after(table.left) if table.left else contact
-    way = now.way(memory, start, unloading, (table.ends[0], table.ends[-1]))
-    if way is None:
+    curve = now.scanning_curve(memory, start, unloading, (table.ends[0], table.ends[-1]))
+    if curve is None:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))
-    return _along(way.enter, way.leave, fit(all_rows(way.states)), unloading)
+    return _along(curve.enter, curve.leave, fit(all_rows(curve.states)), unloading)
 
 
 def _along(enter: jax.Array, leave: jax.Array, values: jax.Array, unloading: jax.Array) -> Pieces:

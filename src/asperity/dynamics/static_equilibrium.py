@@ -19,7 +19,7 @@ _CLOSE = 1e-15  # of a panel: the step that follows one so short is lost in roun
 
 
 @kept
-class Datum(NamedTuple):
+class Reference(NamedTuple):
     """Separations from which a motion is measured.
 
     Attributes
@@ -38,7 +38,7 @@ class Datum(NamedTuple):
     rests: jax.Array
 
 
-def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
+def find_reference(table: Table, weight: jax.Array, branch: int) -> Reference:
     """Static equilibrium on a branch of approach."""
     values, still = table.values[branch], jax.lax.stop_gradient(weight)
     place, panel, found = _outermost(
@@ -49,7 +49,7 @@ def find_datum(table: Table, weight: jax.Array, branch: int) -> Datum:
     place = _carrying(place, excess, _slope(values[panel, :, FORCE], x, table.ends, panel))
     x = local(table.ends[panel], table.ends[panel + 1], place)
     stored = chebyshev_sum(values[panel, :, STORED], x)
-    return Datum(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
+    return Reference(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
 
 
 def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:

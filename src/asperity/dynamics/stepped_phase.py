@@ -9,15 +9,15 @@ import numpy as np
 
 from .._jax import jax
 from ..contact.contact import Contact
-from ..contact.delayed_formation import LateContact
+from ..contact.delayed_formation import DelayedContact
 from ..numerics.compilation import Program
 from .curve_table import FORCE, quantities
 from .damped_phase import STILL, slow_at
-from .static_equilibrium import Datum
+from .static_equilibrium import Reference
 from .time_collocation import NODES_IN_TIME, Here
 from .time_stepping import BOND, MARK, SWITCH, TURN, Frame, Taken, take
 
-TURNED, LEFT, CREPT, FAILED = "turned", "left", "crept", "failed"
+TURNED, LEFT, AT_REST, FAILED = "turned", "left", "at rest", "failed"
 STOPPED = "stopped"
 """How a leg ends: by a turn, at the end of the table, at rest without a turn, not at all, or where
 the film alone stops the body."""
@@ -27,13 +27,13 @@ _SLOW = 1e-7  # of the speed at the release: the film has stopped a body that is
 _SPENT = 1e-9  # of the energy with which a body came close to rest: with less it creeps
 
 
-def _remembered(contact: LateContact, here: Here) -> Any:
+def _remembered(contact: DelayedContact, here: Here) -> Any:
     held = contact.with_threshold(here.memory, here.threshold)
-    return contact.told.remember(held, here.separation)
+    return contact.base.remember(held, here.separation)
 
 
 _remember = Program(_remembered)
-_bond_loss = Program(LateContact.loss)
+_bond_loss = Program(DelayedContact.loss)
 
 
 class Ended(Exception):
@@ -82,8 +82,8 @@ class Leg(NamedTuple):
     place
         Its end.
     fate
-        TURNED, LEFT, CREPT, FAILED or STOPPED.
-    fastest
+        TURNED, LEFT, AT_REST, FAILED or STOPPED.
+    maximum_kinetic
         Largest kinetic energy [J].
     pull_work
         Work of the attractive forces [J].
@@ -93,7 +93,7 @@ class Leg(NamedTuple):
 
     place: Place
     fate: str
-    fastest: float
+    maximum_kinetic: float
     pull_work: float
     samples: list[Samples]
 
@@ -123,13 +123,13 @@ class Course(NamedTuple):
         cls,
         contact: Contact,
         frame: Frame,
-        datum: Datum,
+        reference: Reference,
         rest: float,
         asked: Callable[[], None],
     ) -> Course:
         """The course on a contact; ``rest`` as in a tolerance."""
         formed, broken = (np.asarray(x) for x in contact.losses())
-        still, release = float(datum.equilibrium), float(frame.body.release)
+        still, release = float(reference.equilibrium), float(frame.body.release)
         goal = still + rest * (release - still)
         if frame.body.film is not None and np.isfinite(goal):
             frame = frame._replace(marks=np.append(frame.marks, goal))
@@ -144,15 +144,15 @@ def leg(course: Course, place: Place, sign: int) -> Leg:
     near: Leg | None = None
     while not way.fate:
         course.asked()
-        taken = take(frame, way.place.here, sign, way.place.span, way.fastest)
+        taken = take(frame, way.place.here, sign, way.place.span, way.maximum_kinetic)
         if taken is None or len(way.samples) >= _MOST_STEPS:
             return way._replace(fate=FAILED)
-        fastest = 0.5 * mass * float(np.max(taken.step.speed**2))
+        maximum_kinetic = 0.5 * mass * float(np.max(taken.step.speed**2))
         way = Leg(
             _after(course, way.place, taken, sign),
             _fate(frame, taken, sign),
-            max(way.fastest, fastest),
-            way.pull_work + float(taken.step.pull[-1]),
+            max(way.maximum_kinetic, maximum_kinetic),
+            way.pull_work + float(taken.step.attraction[-1]),
             [*way.samples, _drawn(course, way.place, taken)],
         )
         if taken.event == MARK and taken.mark == course.rest[1] and sign < 0 and not near:
@@ -184,20 +184,20 @@ def _drawn(course: Course, place: Place, taken: Taken) -> Samples:
 
 def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
     """Energy lost within a step, by name [J]."""
-    late, done = course.frame.contact.late, taken.step
+    delayed, done = course.frame.contact.delayed, taken.step
     formed, broken = course.losses
-    bonds = done.rows[:, quantities(course.frame.contact.told).bonds]
+    bonds = done.rows[:, quantities(course.frame.contact.base).bonds]
     gone = np.maximum(bonds[0] - bonds, 0.0) * broken
     by_law = np.maximum(bonds - bonds[0], 0.0) * formed + gone
-    by_law[:, late] = done.late if here.forming else gone[:, late]
-    gas = [done.heat[:, None]] if course.frame.body.film is not None else []
+    by_law[:, delayed] = done.delayed if here.forming else gone[:, delayed]
+    gas = [done.dissipated[:, None]] if course.frame.body.film is not None else []
     return np.concatenate([by_law, *gas], axis=1)
 
 
 def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
     """Where a step leaves a body, with the bonds that its end makes and breaks."""
     frame, done = course.frame, taken.step
-    goal = frame.forming[frame.contact.late]
+    goal = frame.forming[frame.contact.delayed]
     here = place.here._replace(
         separation=done.separation[-1],
         speed=done.speed[-1],
@@ -213,18 +213,18 @@ def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
         here = here._replace(separation=np.asarray(taken.mark))
         if sign < 0 and here.separation <= here.threshold + goal + frame.close:
             here = here._replace(forming=np.asarray(True))
-    if frame.contact.told.discrete and taken.event in (MARK, BOND):
+    if frame.contact.base.discrete and taken.event in (MARK, BOND):
         here, gone = _snapped(course, here, taken.event, sign)
         lost = lost + gone
-    return Place(here, place.time + taken.span, taken.wish, lost)
+    return Place(here, place.time + taken.span, taken.next_span, lost)
 
 
 def _turned(frame: Frame, here: Here, sign: int) -> Here:
     """The memory after a turn."""
     contact = frame.contact
     memory = jax.tree_util.tree_map(np.asarray, _remember(contact, here))
-    goal = here.separation - frame.forming[contact.late]
-    breaking = here.separation - frame.breaking[contact.late]
+    goal = here.separation - frame.forming[contact.delayed]
+    breaking = here.separation - frame.breaking[contact.delayed]
     # At the deepest point a threshold that follows at once is there already.
     behind = here.forming & ((sign > 0) | (here.threshold > goal + frame.close))
     threshold = np.maximum(here.threshold, breaking)
@@ -233,15 +233,15 @@ def _turned(frame: Frame, here: Here, sign: int) -> Here:
 
 def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, np.ndarray]:
     """A smooth body's bonds made or broken at a place, and the energy lost by name [J]."""
-    frame, late = course.frame, course.frame.contact.late
+    frame, delayed = course.frame, course.frame.contact.delayed
     formed, broken = course.losses
     place, held = here.separation, here.memory > 0.5
     made = ~held & (place <= frame.forming + frame.close) & (sign < 0)
     gone = held & (place >= frame.breaking - frame.close) & (sign > 0)
-    made[late] = event == BOND
+    made[delayed] = event == BOND
     lost = np.where(made, formed, 0.0) + np.where(gone, broken, 0.0)
-    if made[late]:
-        lost[late] = float(_bond_loss(frame.contact, place))
+    if made[delayed]:
+        lost[delayed] = float(_bond_loss(frame.contact, place))
         here = here._replace(threshold=np.zeros(()))
     memory = np.where(made, 1.0, np.where(gone, 0.0, here.memory))
     rest = np.zeros(len(frame.body.mechanisms))
@@ -268,7 +268,7 @@ def _creeps(course: Course, near: Leg, way: Leg) -> bool:
     place = float(way.place.here.separation)
     kinetic = _kinetic(course.frame, near.place)
     if way.fate == TURNED:
-        slow = bool(slow_at(course.frame.body, kinetic, way.fastest, course.rest))
+        slow = bool(slow_at(course.frame.body, kinetic, way.maximum_kinetic, course.rest))
         return slow and place > still - (goal - still)
     slow = _kinetic(course.frame, way.place) < _SPENT * kinetic
     return slow and place > still
@@ -284,4 +284,4 @@ def _at_rest(course: Course, near: Leg) -> Leg:
     speed[-1], losses[-1] = 0.0, lost
     place = place._replace(here=place.here._replace(speed=np.zeros(())), lost=lost)
     samples = [*near.samples[:-1], last._replace(speed=speed, lost=losses)]
-    return near._replace(place=place, fate=CREPT, samples=samples)
+    return near._replace(place=place, fate=AT_REST, samples=samples)

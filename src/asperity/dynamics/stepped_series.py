@@ -9,7 +9,7 @@ from numpy.polynomial.legendre import legval
 
 from .._jax import jnp
 from ..laws.law import as_float64
-from .curve_table import CENTRAL, FORCE, TOUCHING
+from .curve_table import CENTRAL, CONTACTING, FORCE
 from .record import Body
 from .stepped_phase import Leg, Samples
 from .time_collocation import STAGES
@@ -115,7 +115,7 @@ class Trajectory(NamedTuple):
         place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
         work = float(np.max(power(begins)) - power(time[-1]))
         rows = self.series.rows[points[np.argmin(np.abs(time - lowest))]]
-        held = float(max(rows[TOUCHING], np.max(rows[bonds], initial=0.0)))
+        held = float(max(rows[CONTACTING], np.max(rows[bonds], initial=0.0)))
         return _unloading(-float(along(lowest)), float(place), work, held, True)
 
     def _kinetic(self, k: int, place: float, mass: float) -> float:

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 
 from .._jax import jax, jnp
 from ..contact.contact import Memory
-from ..contact.delayed_formation import LateContact
+from ..contact.delayed_formation import DelayedContact
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import rows_of
@@ -100,14 +100,14 @@ class Step(NamedTuple):
     threshold: Real
     rate: Real
     rows: Real
-    late: Real
-    heat: Real
-    pull: Real
+    delayed: Real
+    dissipated: Real
+    attraction: Real
     defect: Real
     solved: Real
 
 
-def step(contact: LateContact, body: Body, here: Here, span: Real) -> Step:
+def step(contact: DelayedContact, body: Body, here: Here, span: Real) -> Step:
     """Go on for ``span`` [s] in which no bond is made or broken at one stroke."""
     pace = jnp.where(here.forming, span / contact.time, 0.0)
     behind = jnp.linalg.inv(jnp.eye(STAGES) + pace * _UNTIL)
@@ -166,12 +166,12 @@ class _Look(NamedTuple):
     by_threshold: jax.Array
     bonds_by_threshold: jax.Array
     drag: jax.Array
-    pull: jax.Array
+    attraction: jax.Array
     rows: jax.Array
 
 
 def _look(
-    contact: LateContact,
+    contact: DelayedContact,
     body: Body,
     memory: Memory,
     separation: jax.Array,
@@ -180,7 +180,7 @@ def _look(
 ) -> _Look:
     def contacts(place: jax.Array) -> tuple[jax.Array, tuple[jax.Array, jax.Array]]:
         state = contact.state(place[0], memory, place[1])
-        bonds = state.bonds[contact.late]
+        bonds = state.bonds[contact.delayed]
         return jnp.stack([state.force, bonds]), (
             jnp.stack([state.force, state.elastic]),
             rows_of(state),
@@ -200,13 +200,13 @@ def _look(
         by_threshold=slopes[:, 0, 1] / body.mass,
         bonds_by_threshold=slopes[:, 1, 1],
         drag=drag,
-        pull=forces[:, 0] - forces[:, 1],
+        attraction=forces[:, 0] - forces[:, 1],
         rows=rows,
     )
 
 
 def _finished(
-    contact: LateContact,
+    contact: DelayedContact,
     here: Here,
     span: jax.Array,
     course: _Course,
@@ -217,9 +217,13 @@ def _finished(
     separation, speed, acceleration, threshold = course
     goal = separation - contact.law.forming_gap
     rate = jnp.where(here.forming, (goal - threshold) / contact.time, 0.0)
-    late = look.bonds_by_threshold * rate * contact.loss(separation - threshold)
-    heat, pull = look.drag * speed**2, look.pull * speed
-    until = [jnp.append(0.0, span * (_UNTIL @ power[1:])) for power in (late, heat, pull)]
-    missed = [jnp.abs(p[0] - _AT_START @ p[1:]) * span for p in (acceleration, late + heat)]
-    made, heat, pull = until
-    return Step(*course, rate, look.rows, made, heat, pull, jnp.stack(missed), solved)
+    delayed = look.bonds_by_threshold * rate * contact.loss(separation - threshold)
+    dissipated, attraction = look.drag * speed**2, look.attraction * speed
+    until = [
+        jnp.append(0.0, span * (_UNTIL @ power[1:])) for power in (delayed, dissipated, attraction)
+    ]
+    missed = [
+        jnp.abs(p[0] - _AT_START @ p[1:]) * span for p in (acceleration, delayed + dissipated)
+    ]
+    made, dissipated, attraction = until
+    return Step(*course, rate, look.rows, made, dissipated, attraction, jnp.stack(missed), solved)

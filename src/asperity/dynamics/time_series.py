@@ -10,7 +10,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.compilation import Program
 from ..numerics.polynomials import chebyshev_sum, local
-from .curve_table import CENTRAL, RATE, RISE, Pieces, Table, join, read_row
+from .curve_table import CENTRAL, RATE, TIME_NODES, Pieces, Table, join, read_row
 from .damped_phase import cut, follow, resolved
 from .phase import Work, kinetic_along, work_along
 from .record import Body, Impacts, Phase
@@ -41,7 +41,7 @@ class Series(NamedTuple):
     separation: np.ndarray
     speed: np.ndarray
     rows: np.ndarray
-    heat: np.ndarray
+    dissipated: np.ndarray
     drag: np.ndarray
     phase: np.ndarray
 
@@ -57,7 +57,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
         drawn = [
             _draw(body, table, phase, ended, jax.device_put(np.asarray(unloading)), places)
             for phase, ended, unloading in (
-                (rows.fall, rows.deepest_time, False),
+                (rows.fall, rows.closest_approach_time, False),
                 (rows.rise, rows.apex_time, True),
             )
         ]
@@ -67,14 +67,14 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     phase = np.broadcast_to(np.arange(2 * made).reshape(made, 2, 1), joined[0].shape)
     time, separation, speed = (a.ravel() for a in joined[:3])
     time = _onwards(body, time, joined[6].ravel().astype(bool))
-    values, heat, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
+    values, dissipated, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
     still, acting = np.zeros((2, len(body.mechanisms)))
     if body.film is not None:
         acting[0] = body.film.drag(row[CENTRAL])  # waves need contact
     release = (0.0, body.release, -np.asarray(body.speed), row, still, acting, 0)
-    rest = (time, separation, speed, values, heat, drag, phase.ravel())
+    rest = (time, separation, speed, values, dissipated, drag, phase.ravel())
     return Series(
         *(
             np.concatenate([np.asarray(a)[None], b[keep]])
@@ -99,7 +99,7 @@ def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
     """Compile what :func:`sample` needs, for arguments or their shapes, in a thread."""
     phase, ended = jax.tree_util.tree_map(
         lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype),
-        (impacts.fall, impacts.deepest_time),
+        (impacts.fall, impacts.closest_approach_time),
     )
     _draw.ahead(body, table, phase, ended, np.asarray(False), _places(table))
 
@@ -152,7 +152,7 @@ def _draw_one(
         jnp.append(work.kinetic[index], 0.0),
         work.weight,
     )
-    energy = kinetic_along(here, ends[:-1, None] + spans[:, None] * RISE)
+    energy = kinetic_along(here, ends[:-1, None] + spans[:, None] * TIME_NODES)
     moving = jnp.logical_and(energy > 0.0, (spans != 0.0)[:, None])
     speed = jnp.sqrt(jnp.where(moving, 2.0 * energy / body.mass, 1.0))
     taken = jnp.sum(jnp.where(moving, RATE / speed, 0.0), axis=1) * jnp.abs(spans)

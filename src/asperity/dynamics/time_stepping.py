@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 
 from .._jax import jax
 from ..contact.contact import Contact
-from ..contact.delayed_formation import LateContact
+from ..contact.delayed_formation import DelayedContact
 from ..contact.smooth import SmoothContact
 from ..laws.law import terms
 from ..numerics.compilation import Program
@@ -45,52 +45,53 @@ class Frame(NamedTuple):
     ends
         Separations that bound the motion [m].
     marks
-        Separations at which steps end: where smooth bodies have kinks, and the reach [m].
+        Separations at which steps end [m]: where smooth bodies have kinks, and the interaction
+        range.
     forming, breaking
         Gaps by law [m].
-    reach
+    interaction_range
         Separation beyond which nothing is felt [m].
     """
 
-    contact: LateContact
+    contact: DelayedContact
     body: Body
     ends: tuple[float, float]
     marks: np.ndarray
     forming: np.ndarray
     breaking: np.ndarray
-    reach: float
+    interaction_range: float
 
     @property
     def close(self) -> float:
         """Separations as near as this are the same [m]."""
-        return _CLOSE * self.reach
+        return _CLOSE * self.interaction_range
 
     @classmethod
-    def of(cls, contact: Contact, late: LateContact, body: Body, table: Table) -> Frame:
-        """The frame of a contact whose outermost branches are tabulated."""
+    def of(cls, contact: Contact, delayed: DelayedContact, body: Body, table: Table) -> Frame:
+        """The frame of a contact whose major branches are tabulated."""
         ends = float(table.ends[0]), float(table.ends[-1])
-        reach = float(contact.reach)
+        interaction_range = float(contact.interaction_range)
         forming, breaking = (
             np.array([float(gap) for gap in gaps])
             for gaps in zip(
-                *((law.forming_gap, law.breaking_gap) for law in late.laws), strict=True
+                *((law.forming_gap, law.breaking_gap) for law in delayed.laws), strict=True
             )
         )
-        marks = [*ends, reach]
+        marks = [*ends, interaction_range]
         if isinstance(contact, SmoothContact):
             kinks = [float(gap) for law in terms(contact.law) for gap in law.kinks]
             marks += [*forming, *breaking, *kinks]
-        return cls(late, body, ends, np.unique(marks), forming, breaking, reach)
+        return cls(delayed, body, ends, np.unique(marks), forming, breaking, interaction_range)
 
     def next_mark(self, here: Here, sign: int) -> float:
         """The next separation [m] at which the force changes its law."""
-        place, late = float(here.separation), self.contact.late
-        rough = not self.contact.told.discrete
+        place, delayed = float(here.separation), self.contact.delayed
+        rough = not self.contact.base.discrete
         gaps = self.forming if sign < 0 else self.breaking
         held = [float(b) for b in here.memory] if rough else [np.nan] * len(gaps)
-        held[late] = float(here.threshold)
+        held[delayed] = float(here.threshold)
         if here.forming:
-            held[late] = np.nan
+            held[delayed] = np.nan
         marks = np.concatenate([self.marks, np.array(held) + gaps])
         ahead = marks[sign * (marks - place) > self.close]
         return float(sign * np.min(sign * ahead)) if ahead.size else sign * np.inf
@@ -105,7 +106,7 @@ class Taken(NamedTuple):
         The step, as NumPy's arrays.
     span
         Its length [s].
-    wish
+    next_span
         How long the next one may be [s].
     event
         What ended it; empty where nothing did.
@@ -115,7 +116,7 @@ class Taken(NamedTuple):
 
     step: Step
     span: float
-    wish: float
+    next_span: float
     event: str
     mark: float
 
@@ -129,15 +130,15 @@ def go(frame: Frame, here: Here, span: float) -> Step:
     return answer
 
 
-def take(frame: Frame, here: Here, sign: int, span: float, fastest: float) -> Taken | None:
+def take(frame: Frame, here: Here, sign: int, span: float, maximum_kinetic: float) -> Taken | None:
     """The next step of a leg, at most ``span`` [s] long; None where there is none.
 
-    ``fastest`` is the largest kinetic energy of the leg so far [J].
+    ``maximum_kinetic`` is the largest kinetic energy of the leg so far [J].
     """
     least = _LEAST * span
     while span > least:
         done = go(frame, here, span)
-        error = _error(frame, done, fastest)
+        error = _error(frame, done, maximum_kinetic)
         factor = 0.9 * max(error, 1e-12) ** (-1.0 / STAGES) if np.isfinite(error) else 0.1
         if error <= 1.0:
             mark = frame.next_mark(here, sign)
@@ -153,12 +154,12 @@ def take(frame: Frame, here: Here, sign: int, span: float, fastest: float) -> Ta
     return None
 
 
-def _error(frame: Frame, done: Step, fastest: float) -> float:
+def _error(frame: Frame, done: Step, maximum_kinetic: float) -> float:
     """Error of a step over what is allowed; infinite where it is not solved."""
     if not done.solved or not np.all(np.isfinite(done.rows)):
         return np.inf
     mass = float(frame.body.mass)
-    energy = max(fastest, 0.5 * mass * float(np.max(done.speed**2)))
+    energy = max(maximum_kinetic, 0.5 * mass * float(np.max(done.speed**2)))
     scale = np.array([np.sqrt(2.0 * energy / mass), energy])
     return float(np.max(done.defect / scale)) / _TOLERANCE
 
@@ -167,14 +168,14 @@ def _functions(
     frame: Frame, here: Here, sign: int, mark: float
 ) -> dict[str, Callable[..., np.ndarray]]:
     """What rises to 0 at each event, of separation, speed and threshold."""
-    goal = frame.forming[frame.contact.late]
+    goal = frame.forming[frame.contact.delayed]
     events: dict[str, Callable[..., np.ndarray]] = {
         TURN: lambda d, v, b: -sign * v,
         MARK: lambda d, v, b: sign * (d - mark),
     }
     if here.forming and sign > 0:
         events[SWITCH] = lambda d, v, b: d - goal - b
-    if frame.contact.told.discrete and here.forming and not here.memory[frame.contact.late]:
+    if frame.contact.base.discrete and here.forming and not here.memory[frame.contact.delayed]:
         events[BOND] = lambda d, v, b: -b
     return events
 

@@ -9,10 +9,10 @@ from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
-from .curve_table import LOOKS
-from .phase import Ahead, Turn, kinetic_along
+from .curve_table import ENERGY_SAMPLES
+from .phase import Ahead, TurningPoint, kinetic_along
 
-_SHARES = np.linspace(0.0, 1.0, LOOKS)[1:]
+_SHARES = np.linspace(0.0, 1.0, ENERGY_SAMPLES)[1:]
 _POLISH = 60  # halvings and Newton steps of a turning point, at most
 _CLOSE = 4e-14  # relative: the step that follows one so short is lost in rounding
 _INWARDS = 0.1  # of a bracket
@@ -107,12 +107,12 @@ def _look_on_branch(ahead: Ahead) -> _Looks:
     before = jnp.clip(first - jnp.where(ahead.unloading, 1, -1), 0, count - 1)
     inner = jnp.where(beyond[before], places[before], ahead.begin)
     left = jnp.where(beyond[before], energies[before], ahead.inner.kinetic[-1])
-    piece = ahead.pieces + first // LOOKS
+    piece = ahead.pieces + first // ENERGY_SAMPLES
     bracket = _Bracket(inner, places[first], left, energies[first])
     return _Looks(places, energies, beyond, spent[first], piece, bracket)
 
 
-def _look_on_way(ahead: Ahead) -> _Looks:
+def _look_along_curve(ahead: Ahead) -> _Looks:
     """On the pieces before the branch."""
     p = ahead.inner.pieces
     places = p.enter[:, None] + (p.leave - p.enter)[:, None] * _SHARES
@@ -130,13 +130,13 @@ def _look_on_way(ahead: Ahead) -> _Looks:
     return _Looks(places.ravel(), energies, passed, spent[first], piece, bracket)
 
 
-def find_turn(ahead: Ahead, wanted: jax.Array) -> Turn:
+def find_turning_point(ahead: Ahead, wanted: jax.Array) -> TurningPoint:
     """The first place where the kinetic energy is spent; its largest before where ``wanted``."""
     table, looks = ahead.table, _look_on_branch(ahead)
     piece, found, bracket = looks.piece, looks.found, looks.bracket
     places, energies, passed = looks.places, looks.energies, looks.passed
     if ahead.pieces:
-        near = _look_on_way(ahead)
+        near = _look_along_curve(ahead)
         soon = near.found
         piece = jnp.where(soon, near.piece, piece)
         pairs = zip(near.bracket, bracket, strict=True)
@@ -155,8 +155,10 @@ def find_turn(ahead: Ahead, wanted: jax.Array) -> Turn:
         before = jnp.logical_and(passed, ahead.sign * (place - places) >= 0.0)
         return _fastest(ahead, places, jnp.where(before, energies, 0.0))
 
-    fastest = jax.lax.cond(unvmap_any(wanted), largest, lambda: jnp.zeros(()))
-    return Turn(piece, place, found, fastest, jnp.where(found, 0.0, here.energy(place)))
+    maximum_kinetic = jax.lax.cond(unvmap_any(wanted), largest, lambda: jnp.zeros(()))
+    return TurningPoint(
+        piece, place, found, maximum_kinetic, jnp.where(found, 0.0, here.energy(place))
+    )
 
 
 def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
@@ -167,7 +169,9 @@ def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
     """
     best = jnp.argmax(energies)
     on_way = ahead.pieces * _SHARES.size
-    piece = jnp.where(best < on_way, best // _SHARES.size, ahead.pieces + (best - on_way) // LOOKS)
+    piece = jnp.where(
+        best < on_way, best // _SHARES.size, ahead.pieces + (best - on_way) // ENERGY_SAMPLES
+    )
 
     def climbed(piece: jax.Array) -> jax.Array:
         here = _piece(ahead, piece)

@@ -9,7 +9,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.compilation import kept
 from ..numerics.polynomials import ANTIDERIVATIVE, DERIVATIVE, chebyshev_sum, local
-from .curve_table import FORCE, STORED, TOUCHING, Pieces, Quantities, Table, join
+from .curve_table import CONTACTING, FORCE, STORED, Pieces, Quantities, Table, join
 from .record import Phase
 
 _SHARES = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 25)))
@@ -153,7 +153,7 @@ class _Curve(NamedTuple):
         x = local(pieces.low[k], pieces.high[k], places[k])
         row = chebyshev_sum(pieces.values[k], x[None])
         bonds = jnp.max(row[layout.bonds], initial=0.0)
-        return jnp.maximum(row[TOUCHING], bonds)
+        return jnp.maximum(row[CONTACTING], bonds)
 
     def _values(self, value: jax.Array, places: jax.Array) -> jax.Array:
         return jnp.where(self.used, chebyshev_sum(value, self._local(places)), jnp.inf)

@@ -26,7 +26,7 @@ _TO_POWERS = np.stack(
 _COARSEST = pi / 6.0  # of an angle's panels
 
 
-class Dent:
+class ResidualIndentation:
     """Extension z(x) of the Maxwell springs with its integrals, from the axis to an outer radius.
 
     All in units of one length.

@@ -1,9 +1,10 @@
 """A paraboloid on a viscoelastic half-space, exactly, for any history of its approach.
 
-Abel's transform takes the half-space to a row of springs that do not know of each other (Popov and
-Hess 2015): a spring at x carries q = E* phi * dw/dt, is pressed to w = delta - x^2/R within the
-contact radius a, and is free beyond it, and the contact ends where q is 0. Each is a standard
-linear solid: a spring k E* beside a Maxwell element (1 - k) E*, whose own spring is extended by z.
+By the method of dimensionality reduction, Abel's transform takes the half-space to a row of
+independent springs, a one-dimensional Winkler foundation (Popov and Hess 2015). A spring at x
+carries q = E* phi * dw/dt, is pressed to w = delta - x^2/R within the contact radius a, and is free
+beyond it; the contact ends where q is 0. Each is a standard linear solid: a spring k E* beside a
+Maxwell element (1 - k) E*, whose own spring is extended by z.
 
 Units: one length for delta, z and x^2/R; energies and forces over E* and the units' powers.
 """
@@ -15,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .residual_indentation import Dent
+from .residual_indentation import ResidualIndentation
 
 ADVANCES, RECEDES = 1, -1
 """Whether the edge of contact moves outwards or inwards."""
@@ -57,7 +58,7 @@ class Pressed(NamedTuple):
     squared: float
 
 
-STRENGTH = 15.0 / 8.0
+MODULUS_SCALE = 15.0 / 8.0
 """Twice E* over the units' force: an elastic impact at unit speed then goes to depth 1."""
 
 
@@ -68,18 +69,31 @@ class Phase:
     ----------
     solid
         The solid.
-    way
+    direction
         ADVANCES or RECEDES.
     begun
         When it began.
-    dent
+    indentation
         Extension of all springs then.
     edge
         Radius of contact at its start.
     """
 
-    def __init__(self, solid: Solid, way: int, begun: float, dent: Dent, edge: float = 0.0) -> None:
-        self.solid, self.way, self.begun, self.dent, self.edge = solid, way, begun, dent, edge
+    def __init__(
+        self,
+        solid: Solid,
+        direction: int,
+        begun: float,
+        indentation: ResidualIndentation,
+        edge: float = 0.0,
+    ) -> None:
+        self.solid, self.direction, self.begun, self.indentation, self.edge = (
+            solid,
+            direction,
+            begun,
+            indentation,
+            edge,
+        )
         self._near = 0.0
         self._followed: list[Any] = []
         self._until: list[float] = []
@@ -93,8 +107,8 @@ class Phase:
         """Pressure of a spring at x, and its slope, over E*, if the edge were there."""
         k = self.solid.ratio
         held, free = self.faded(time)
-        z, slope = self.dent.at(x)
-        share, more = (free, 0.0) if self.way == ADVANCES else (held, pulled)
+        z, slope = self.indentation.at(x)
+        share, more = (free, 0.0) if self.direction == ADVANCES else (held, pulled)
         return (
             k * (depth - x * x) + (1.0 - k) * (share * z + more),
             -2.0 * k * x + (1.0 - k) * share * slope,
@@ -102,8 +116,8 @@ class Phase:
 
     def radius(self, time: float, depth: float, pulled: float) -> float:
         """Radius of contact: where the springs' pressure, which falls outwards, ends."""
-        outer = self.dent.outer
-        if self.way == ADVANCES and depth >= outer * outer:
+        outer = self.indentation.outer
+        if self.direction == ADVANCES and depth >= outer * outer:
             return sqrt(depth)
         if self.at_edge(time, depth, pulled, 0.0)[0] <= 0.0:
             return 0.0
@@ -114,7 +128,7 @@ class Phase:
             value, slope = self.at_edge(time, depth, pulled, x)
             low, high = (x, high) if value > 0.0 else (low, x)
             after = x - value / slope if slope < 0.0 else -1.0
-            # Where the edge once turned a dent is so steep that Newton's steps lead nowhere.
+            # Where the edge once turned, the surface is so steep that Newton's steps lead nowhere.
             halved = not low <= after <= high or abs(value) > 0.5 * before
             if halved:
                 after = 0.5 * (low + high)
@@ -130,16 +144,16 @@ class Phase:
         k = self.solid.ratio
         depth, pulled = float(state[DEPTH]), float(state[PULLED])
         a = self.radius(time, depth, pulled)
-        once, twice = self.dent.integrals(a)
+        once, twice = self.indentation.integrals(a)
         held, free = self.faded(time)
-        if self.way == ADVANCES:
-            all_once, all_twice = self.dent.whole
+        if self.direction == ADVANCES:
+            all_once, all_twice = self.indentation.whole
             extension = float(state[EXTENSION]) - free * (all_once - once)
             squared = float(state[SQUARED]) - free**2 * (all_twice - twice)
         else:
             extension = held * once + pulled * a
             squared = held**2 * twice + 2.0 * held * pulled * once + pulled**2 * a
-        force = STRENGTH * (k * (depth * a - a**3 / 3.0) + (1.0 - k) * extension)
+        force = MODULUS_SCALE * (k * (depth * a - a**3 / 3.0) + (1.0 - k) * extension)
         return Pressed(a, force, extension, squared)
 
     def rates(self, time: float, state: np.ndarray) -> list[float]:
@@ -155,7 +169,7 @@ class Phase:
             speed * now.radius - faded / tau,
             2.0 * (speed * now.extension - (now.squared + k * (squared - now.squared)) / tau),
             speed - float(state[PULLED]) / tau,
-            STRENGTH * (1.0 - k) * squared / tau,
+            MODULUS_SCALE * (1.0 - k) * squared / tau,
         ]
 
     def stored(self, time: float, state: np.ndarray) -> tuple[float, float]:
@@ -164,13 +178,13 @@ class Phase:
         now = self.pressed(time, state)
         a, depth = now.radius, float(state[DEPTH])
         bent = depth**2 * a - 2.0 * depth * a**3 / 3.0 + a**5 / 5.0
-        pressed = 0.5 * STRENGTH * (k * bent + (1.0 - k) * now.squared)
+        pressed = 0.5 * MODULUS_SCALE * (k * bent + (1.0 - k) * now.squared)
         return pressed, self.springs(float(state[SQUARED]) - now.squared)
 
     def springs(self, squared: Any) -> Any:
         """Energy in free springs whose z^2 has a given integral."""
         k = self.solid.ratio
-        return 0.5 * STRENGTH * (1.0 - k) / k * squared
+        return 0.5 * MODULUS_SCALE * (1.0 - k) / k * squared
 
     def turning(self, time: float, state: np.ndarray) -> float:
         """Speed at which the edge moves outwards, times something positive."""
@@ -188,7 +202,7 @@ class Phase:
         self._followed.append(path)
         self._until.append(end)
 
-    def left_behind(self, end: float, last: float) -> Dent:
+    def left_behind(self, end: float, last: float) -> ResidualIndentation:
         """The extension of all springs at the phase's end, where the contact's radius is last."""
         held, free = self.faded(end)
         state = self._along(np.array([end]))[:, 0]
@@ -197,13 +211,13 @@ class Phase:
         radii = self._radii(inner, outer, held, free)
 
         def extension(x: np.ndarray) -> np.ndarray:
-            old = self.dent.over(x)
+            old = self.indentation.over(x)
             z = np.where(x < inner, held * old + pulled, free * old)
             there = (inner <= x) & (x <= outer)
             z[there] = self._swept(x[there], old[there], end, pulled)
             return z
 
-        return Dent(radii, 0.5 * min(self.solid.time, 1.0), extension)
+        return ResidualIndentation(radii, 0.5 * min(self.solid.time, 1.0), extension)
 
     def _swept(self, x: np.ndarray, old: np.ndarray, end: float, pulled: float) -> np.ndarray:
         """Extension of springs that the edge passed, by their age."""
@@ -211,7 +225,7 @@ class Phase:
         passed = self._passed(x, old, end)
         then = self._along(passed)[PULLED]
         ages, before = (end - passed) / tau, (passed - self.begun) / tau
-        if self.way == ADVANCES:
+        if self.direction == ADVANCES:
             return (old * np.exp(-k * before) - then) * np.exp(-ages) + pulled
         return (old * np.exp(-before) + then) * np.exp(-k * ages)
 
@@ -219,7 +233,7 @@ class Phase:
         """Radii between which the extension is smooth at the end; forgotten ones are dropped."""
         near = 1e-9 * outer
         kept = [0.0, inner, outer]
-        for x in self.dent.radii[1:]:
+        for x in self.indentation.radii[1:]:
             share = held if x < inner else free
             if share > _FORGOTTEN and min(abs(x - y) for y in kept) > near:
                 kept.append(x)
@@ -238,19 +252,19 @@ class Phase:
     def _passed(self, x: np.ndarray, z: np.ndarray, end: float) -> np.ndarray:
         """Times at which the edge of contact passed radii x."""
         k, tau = self.solid.ratio, self.solid.time
-        rate = k if self.way == ADVANCES else 1.0
+        rate = k if self.direction == ADVANCES else 1.0
         low, high = np.full(x.size, self._start), np.full(x.size, end)
         time = 0.5 * (low + high)
         for _ in range(_STEPS):
             state = self._along(time)
             old = z * np.exp(-rate * (time - self.begun) / tau)
-            pulled = state[PULLED] * (self.way == RECEDES)
+            pulled = state[PULLED] * (self.direction == RECEDES)
             value = k * (state[DEPTH] - x**2) + (1.0 - k) * (old + pulled)
             drift = -rate * old / tau
-            if self.way == RECEDES:
+            if self.direction == RECEDES:
                 drift = drift + state[SPEED] - state[PULLED] / tau
             slope = k * state[SPEED] + (1.0 - k) * drift
-            late = self.way * value > 0.0
+            late = self.direction * value > 0.0
             low, high = np.where(late, low, time), np.where(late, time, high)
             after = time - value / np.where(slope == 0.0, 1.0, slope)
             outside = ~((low < after) & (after < high)) | (slope == 0.0)
@@ -263,5 +277,5 @@ class Phase:
 
     @property
     def _start(self) -> float:
-        """When the phase was first followed; its dent may be older."""
+        """When the phase was first followed; its indentation may be older."""
         return float(self._followed[0].t_min)

@@ -43,12 +43,12 @@ class Asked(NamedTuple):
     ----------
     names
         "energy", "force", or mechanisms of its force.
-    lift
+    integrated
         0 for a plane, 1 for a rigid paraboloid.
     """
 
     names: tuple[str, ...]
-    lift: int
+    integrated: int
 
 
 def means(
@@ -95,32 +95,32 @@ def means_near(
     lowest = low - heights.highest_beside(within)
     # Up to here places differ in how many asperities are higher; beyond, all of them are.
     uneven = high - heights.bottom
-    end = _end(law, uneven, edge, asked.lift)
+    end = _end(law, uneven, edge, asked.integrated)
     pieces = near.pieces * heights.cuts
     even = lowest + (jnp.minimum(uneven, end) - lowest) * np.linspace(0.0, 1.0, pieces + 1)
     kinks = jnp.append(_kinks(law), edge)
     bounds = _pieces((lowest, end), kinks, even, _shortest(law, heights), law)
     gap, weight = points(bounds)
     values = weight * _values(law, gap, gap < edge, asked.names)
-    shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
+    shares = heights.tail(asked.integrated, separations[:, None, None] - gap, law.radius_power)
     found = jnp.stack([jnp.einsum("ij,pij->p", row, shares) for row in values])
     if law.hysteretic and not near.level:
         found = found + between(law, heights, edge, edges, separations, asked)
-    if asked.lift == 0 or law.only_bonded:
+    if asked.integrated == 0 or law.only_bonded:
         return found
     whole = heights.tail(1, jnp.asarray(heights.bottom), law.radius_power)
     beyond = [_beyond(law, end, _shortest(law, heights), name) for name in asked.names]
     return found + whole * jnp.stack(beyond)[:, None]
 
 
-def _end(law: Law, uneven: jax.Array, edge: jax.Array, lift: int) -> jax.Array:
+def _end(law: Law, uneven: jax.Array, edge: jax.Array, integrated: int) -> jax.Array:
     """Gap [m] up to which a law is integrated piece by piece.
 
     A paraboloid may be so deep that all asperities beside its apex are well within the law.
     """
     if law.only_bonded:
-        return edge if lift else jnp.minimum(uneven, edge)
-    return jnp.maximum(uneven, jnp.max(_kinks(law))) if lift else uneven
+        return edge if integrated else jnp.minimum(uneven, edge)
+    return jnp.maximum(uneven, jnp.max(_kinks(law))) if integrated else uneven
 
 
 def _kinks(law: Law) -> jax.Array:
@@ -145,7 +145,7 @@ def between(
     gap, weight = jax.vmap(points)(edge + (edges - edge)[:, None] * steps)
     bonded = _values(law, gap, jnp.ones(gap.shape, bool), asked.names)
     free = _values(law, gap, jnp.zeros(gap.shape, bool), asked.names)
-    shares = heights.tail(asked.lift, separations[:, None, None] - gap, law.radius_power)
+    shares = heights.tail(asked.integrated, separations[:, None, None] - gap, law.radius_power)
     return jnp.sum((bonded - free) * weight * shares, axis=(-2, -1))
 
 
@@ -182,12 +182,12 @@ def _pieces(
     """
     lowest, highest = between
     kink = jnp.sort(jnp.clip(kinks, lowest, highest))
-    reach = highest - lowest
-    first = jnp.minimum(0.25 * shortest, reach)
-    ratio = jnp.where(first > 0.0, reach / jnp.where(first > 0.0, first, 1.0), 1.0)
+    interaction_range = highest - lowest
+    first = jnp.minimum(0.25 * shortest, interaction_range)
+    ratio = jnp.where(first > 0.0, interaction_range / jnp.where(first > 0.0, first, 1.0), 1.0)
     ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
-    rungs = [kink[0] - ladder] if law.only_bonded else [kink[0] - ladder, kink[-1] + ladder]
-    return jnp.sort(jnp.clip(jnp.concatenate([even, kink, *rungs]), lowest, highest))
+    steps = [kink[0] - ladder] if law.only_bonded else [kink[0] - ladder, kink[-1] + ladder]
+    return jnp.sort(jnp.clip(jnp.concatenate([even, kink, *steps]), lowest, highest))
 
 
 def points(bounds: jax.Array, nodes: int = 16) -> tuple[jax.Array, jax.Array]:

@@ -10,7 +10,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..laws.law import Law, Powers, Real, TruncatedPower, quantity, terms
 from ..surfaces.heights.distribution import Heights
-from ..surfaces.heights.panel_length import Fineness
+from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Asked, Near, means, means_near
 
 Memory = tuple[jax.Array, ...]
@@ -18,7 +18,7 @@ Memory = tuple[jax.Array, ...]
 
 
 class Means(NamedTuple):
-    """Means over the heights, per area (``lift`` 1: per 2 pi R).
+    """Means over the heights, per area (``integrated`` 1: per 2 pi R).
 
     Attributes
     ----------
@@ -28,14 +28,14 @@ class Means(NamedTuple):
         Stored energy [J/m^2].
     bonds
         Bonds by law [1/m^2]; where tip radii differ, in bonds of the law's own radius.
-    touching
+    contacting
         Asperities with a negative gap [1/m^2].
     """
 
     parts: jax.Array
     energy: jax.Array
     bonds: jax.Array
-    touching: jax.Array
+    contacting: jax.Array
 
 
 class Interface(eqx.Module):
@@ -57,9 +57,9 @@ class Interface(eqx.Module):
     those above a threshold b, which follows b <- clamp(b, h - g_break, h - g_form): a play
     operator, exact for any sequence of reversals (Visintin 1994; ``docs/theory``).
 
-    ``lift`` 0 gives means over the plane (pressure [Pa], energy per area [J/m^2]); ``lift``
-    1 integrates them once more over the separation from h to infinity, which times
-    2 pi R is the force and energy of a rigid paraboloid of radius R whose apex is at h.
+    ``integrated`` 0 gives means over the plane (pressure [Pa], energy per area [J/m^2]);
+    ``integrated`` 1 integrates them once more over the separation from h to infinity, which
+    times 2 pi R is the force and energy of a rigid paraboloid of radius R whose apex is at h.
     """
 
     law: Law
@@ -83,30 +83,30 @@ class Interface(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
-    def fineness(self) -> Fineness:
+    def panel_lengths(self) -> PanelLengths:
         """How finely its curves are cut. Without values."""
-        return self.heights.fineness
+        return self.heights.panel_lengths
 
     @property
-    def blur(self) -> float:
+    def error_floor(self) -> float:
         """Relative error of curves below which nothing is gained. Without values."""
-        return self.heights.blur
+        return self.heights.error_floor
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return reduce(jnp.maximum, [law.reach for law in terms(self.law)])
+        return reduce(jnp.maximum, [law.interaction_range for law in terms(self.law)])
 
     @property
     def last_kink(self) -> jax.Array:
         """Gap [m] beyond which all laws are smooth."""
         return reduce(jnp.maximum, [law.last_kink for law in terms(self.law)])
 
-    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""
         return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.hysteretic)
 
-    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Saturated memory, on the major unloading branch: all bonds that can hold do."""
         return tuple(jnp.full(jnp.shape(place), -jnp.inf) for _ in self.hysteretic)
 
@@ -124,24 +124,24 @@ class Interface(eqx.Module):
         """Whether what was pressed once stays changed. Without values."""
         return False
 
-    def touched(self, memory: Memory) -> jax.Array:
+    def has_yielded(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
         return jnp.asarray(False)
 
     def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on an outermost branch: no bond is left of what it was, or all hold."""
+        """The memory on a major branch: no bond is left of what it was, or all hold."""
         return tuple(jnp.where(unloading, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
 
     def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        """Separations [m] at which the bonds of each law reach the major branch."""
         return [
             b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
             for law, b in zip(self.hysteretic, memory, strict=True)
         ]
 
-    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+    def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
-        return self.energy(separation, self.fresh(), lift)
+        return self.energy(separation, self.initial_memory(), integrated)
 
     @property
     def only_bonded(self) -> bool:
@@ -150,7 +150,7 @@ class Interface(eqx.Module):
         return all(law.only_bonded or law.powers(edge) is not None for law in terms(self.law))
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
+        self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights at a separation reached monotonically from ``memory``.
 
@@ -160,7 +160,7 @@ class Interface(eqx.Module):
             Separation of the mean planes [m], any shape.
         memory
             Thresholds at the last reversal, each of that shape or a scalar.
-        lift
+        integrated
             0 for a plane, 1 for a rigid paraboloid (times 2 pi R).
         near
             How they lie to one another if they are rows of places, those of a row near one another,
@@ -169,7 +169,7 @@ class Interface(eqx.Module):
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         laws = dict(enumerate(terms(self.law)))
         requests: list[tuple[str, TruncatedPower, float]] = [
-            ("touching", TruncatedPower(1.0, 0.0, 0.0), 0.0)
+            ("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0)
         ]
         for k, law in laws.items():
             size = law.radius_power
@@ -179,13 +179,13 @@ class Interface(eqx.Module):
             requests += [(law.mechanism, term, size) for term in force]
             requests += [("energy", term, size) for term in energy]
         names, flat, sizes = zip(*requests, strict=True)
-        values = self.heights.mean_powers(flat, lift, separation, sizes)
+        values = self.heights.mean_powers(flat, integrated, separation, sizes)
         sums: dict[str, jax.Array] = {}
         for name, value in zip(names, values, strict=True):
             sums[name] = sums.get(name, 0.0) + self.density * value
         for k, law in laws.items():
             if law.powers(edges[k]) is None:
-                asked = Asked((*self._force_names(law), "energy"), lift)
+                asked = Asked((*self._force_names(law), "energy"), integrated)
                 rows = self._quadrature(law, edges[k], separation, asked, near)
                 for name, mean in zip(asked.names, rows, strict=True):
                     target = law.mechanism if name == "force" else name
@@ -196,17 +196,17 @@ class Interface(eqx.Module):
             parts=jnp.stack([sums.get(name, zero) for name in self.components]),
             energy=sums.get("energy", zero),
             bonds=jnp.stack(bonds) if bonds else jnp.zeros((0, *separation.shape)),
-            touching=sums["touching"],
+            contacting=sums["contacting"],
         )
 
     def counted(
-        self, separation: jax.Array, memory: Memory, lift: int = 0
+        self, separation: jax.Array, memory: Memory, integrated: int = 0
     ) -> tuple[jax.Array, jax.Array]:
-        """Touching asperities and bonds by law, as in :class:`Means`."""
+        """Contacting asperities and bonds by law, as in :class:`Means`."""
         edges: tuple[Real, ...] = (0.0, *self.bond_gaps(separation, memory))
         powers = tuple(TruncatedPower(1.0, 0.0, edge) for edge in edges)
         sizes = (0.0, *(law.radius_power for law in self.hysteretic))
-        found = self.density * self.heights.mean_powers(powers, lift, separation, sizes)
+        found = self.density * self.heights.mean_powers(powers, integrated, separation, sizes)
         return found[0], found[1:]
 
     def bond_gaps(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
@@ -216,11 +216,13 @@ class Interface(eqx.Module):
             for law, b in zip(self.hysteretic, memory, strict=True)
         ]
 
-    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
-        return self._total(separation, memory, lift, "force")
+    def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
+        return self._total(separation, memory, integrated, "force")
 
-    def _total(self, separation: jax.Array, memory: Memory, lift: int, name: str) -> jax.Array:
+    def _total(
+        self, separation: jax.Array, memory: Memory, integrated: int, name: str
+    ) -> jax.Array:
         """Mean of the force or of the energy of all laws."""
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
         total = jnp.zeros_like(separation)
@@ -229,19 +231,19 @@ class Interface(eqx.Module):
         for k, law in enumerate(terms(self.law)):
             powers = law.powers(edges[k])
             if powers is None:
-                asked = Asked((name,), lift)
+                asked = Asked((name,), integrated)
                 total = total + self._quadrature(law, edges[k], separation, asked)[0]
             else:
                 flat += powers[0 if name == "force" else 1]
                 sizes += (law.radius_power,) * (len(flat) - len(sizes))
         if flat:
-            values = self.heights.mean_powers(flat, lift, separation, sizes)
+            values = self.heights.mean_powers(flat, integrated, separation, sizes)
             total = total + jnp.sum(values, axis=0)
         return self.density * total
 
-    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
-        return self._total(separation, memory, lift, "energy")
+        return self._total(separation, memory, integrated, "energy")
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""

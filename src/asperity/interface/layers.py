@@ -10,7 +10,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..errors import InputError
 from ..laws.law import Law, terms
-from ..surfaces.heights.panel_length import Fineness
+from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
 from .interface import Interface, Means, Memory
 from .plastic_interface import PlasticInterface
@@ -64,19 +64,19 @@ class Layers(eqx.Module):
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
     @property
-    def fineness(self) -> Fineness:
+    def panel_lengths(self) -> PanelLengths:
         """How finely its curves are cut. Without values."""
-        return reduce(Fineness.and_of, [part.fineness for part in self.parts])
+        return reduce(PanelLengths.and_of, [part.panel_lengths for part in self.parts])
 
     @property
-    def blur(self) -> float:
+    def error_floor(self) -> float:
         """Relative error of curves below which nothing is gained. Without values."""
-        return max(part.blur for part in self.parts)
+        return max(part.error_floor for part in self.parts)
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return reduce(jnp.maximum, [part.reach for part in self.parts])
+        return reduce(jnp.maximum, [part.interaction_range for part in self.parts])
 
     @property
     def last_kink(self) -> jax.Array:
@@ -88,13 +88,13 @@ class Layers(eqx.Module):
         """What their heights are on the whole."""
         return scale_of([part.heights for part in self.parts])
 
-    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""
-        return tuple(b for part in self.parts for b in part.fresh(place))
+        return tuple(b for part in self.parts for b in part.initial_memory(place))
 
-    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Saturated memory, on the major unloading branch: all bonds that can hold do."""
-        return tuple(b for part in self.parts for b in part.torn(place))
+        return tuple(b for part in self.parts for b in part.saturated_memory(place))
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """The memory after the separation moved monotonically to ``separation`` [m]."""
@@ -108,27 +108,27 @@ class Layers(eqx.Module):
         return any(part.yields for part in self.parts)
 
     @property
-    def rungs(self) -> jax.Array:
-        """See :attr:`PlasticInterface.rungs`."""
+    def unloading_panels(self) -> jax.Array:
+        """See :attr:`PlasticInterface.unloading_panels`."""
         parts = [part for part in self.parts if isinstance(part, PlasticInterface)]
-        return jnp.concatenate([part.rungs for part in parts])
+        return jnp.concatenate([part.unloading_panels for part in parts])
 
-    def touched(self, memory: Memory) -> jax.Array:
+    def has_yielded(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
-        each = [part.touched(own) for part, own in self._shares(memory)]
+        each = [part.has_yielded(own) for part, own in self._shares(memory)]
         return jnp.any(jnp.stack(each))
 
     def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on an outermost branch; see :meth:`Interface.swept`."""
+        """The memory on a major branch; see :meth:`Interface.swept`."""
         return tuple(b for part, own in self._shares(memory) for b in part.swept(own, unloading))
 
     def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        """Separations [m] at which the bonds of each law reach the major branch."""
         return [d for part, own in self._shares(memory) for d in part.merging(own, unloading)]
 
-    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+    def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
-        values = [part.work_of_approach(separation, lift) for part in self.parts]
+        values = [part.work_of_approach(separation, integrated) for part in self.parts]
         return jnp.sum(jnp.stack(values), axis=0)
 
     @property
@@ -137,26 +137,28 @@ class Layers(eqx.Module):
         return all(part.only_bonded for part in self.parts)
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
+        self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`."""
-        each = [part.measure(separation, own, lift, near) for part, own in self._shares(memory)]
+        each = [
+            part.measure(separation, own, integrated, near) for part, own in self._shares(memory)
+        ]
         return self._together(each, separation)
 
-    def first_approach(self, separation: jax.Array, lift: int = 0) -> Means:
+    def first_approach(self, separation: jax.Array, integrated: int = 0) -> Means:
         """The means of :meth:`measure` for surfaces that were never closer."""
         each = [
-            part.first_approach(separation, lift)
+            part.first_approach(separation, integrated)
             if isinstance(part, PlasticInterface)
-            else part.measure(separation, part.fresh(), lift)
+            else part.measure(separation, part.initial_memory(), integrated)
             for part in self.parts
         ]
         return self._together(each, separation)
 
-    def flattened(self, memory: Memory, lift: int) -> tuple[Flattened | None, ...]:
+    def flattened(self, memory: Memory, integrated: int) -> tuple[Flattened | None, ...]:
         """What a first approach leaves of each; see :meth:`PlasticInterface.flattened`."""
         return tuple(
-            part.flattened(own, lift) if isinstance(part, PlasticInterface) else None
+            part.flattened(own, integrated) if isinstance(part, PlasticInterface) else None
             for part, own in self._shares(memory)
         )
 
@@ -172,27 +174,27 @@ class Layers(eqx.Module):
     def _together(self, each: list[Means], separation: jax.Array) -> Means:
         zero = jnp.zeros_like(separation)
         sums = dict.fromkeys(self.components, zero)
-        touching = zero
+        contacting = zero
         for part, means in zip(self.parts, each, strict=True):
             for name, share in zip(part.components, means.parts, strict=True):
                 sums[name] = sums[name] + share
             if "elastic" in part.components:
-                touching = touching + means.touching
+                contacting = contacting + means.contacting
         return Means(
             parts=jnp.stack([sums[name] for name in self.components]),
             energy=jnp.sum(jnp.stack([means.energy for means in each]), axis=0),
             bonds=jnp.concatenate([means.bonds for means in each]),
-            touching=touching,
+            contacting=contacting,
         )
 
-    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
-        values = [part.pressure(separation, own, lift) for part, own in self._shares(memory)]
+    def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
+        values = [part.pressure(separation, own, integrated) for part, own in self._shares(memory)]
         return jnp.sum(jnp.stack(values), axis=0)
 
-    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
-        values = [part.energy(separation, own, lift) for part, own in self._shares(memory)]
+        values = [part.energy(separation, own, integrated) for part, own in self._shares(memory)]
         return jnp.sum(jnp.stack(values), axis=0)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:

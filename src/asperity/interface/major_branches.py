@@ -1,4 +1,4 @@
-"""Outermost branches of measured summits, as tables over the separation."""
+"""Major branches of measured summits, as tables over the separation."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _INTEGRALS = np.vander(_AT, 7, increasing=True)[:, 1:] / np.arange(1.0, 7.0) @ _
 
 
 class BranchTable(eqx.Module):
-    """Means of a law without truncated powers over measured heights, on its outermost branches.
+    """Means of a law without truncated powers over measured heights, on its major branches.
 
     Polynomials of the fifth degree on even cells from far below the heights to their top, with
     the exact value, slope and curvature at both ends of each; below those on cells that grow in
@@ -50,7 +50,7 @@ class BranchTable(eqx.Module):
     names: tuple[str, ...] = eqx.field(static=True)
 
     def __call__(
-        self, separation: jax.Array, lift: int, unloading: jax.Array | bool = False
+        self, separation: jax.Array, integrated: int, unloading: jax.Array | bool = False
     ) -> jax.Array:
         """The forces and the energy at separations [m] of any shape, one row each."""
         count = self.cells.shape[2]
@@ -61,7 +61,7 @@ class BranchTable(eqx.Module):
         cell = jnp.clip(jnp.floor(place), 0, jnp.where(deep, _DEEP, even) - 1)
         t = (place - cell)[..., None]
         index = jnp.asarray(unloading) * count + jnp.where(deep, even, 0) + cell
-        table = self.cells[lift].reshape(-1, *self.cells.shape[3:])
+        table = self.cells[integrated].reshape(-1, *self.cells.shape[3:])
         found = table.at[index.astype(int)].get(mode="promise_in_bounds")
         value = found[..., -1]
         for k in range(4, -1, -1):

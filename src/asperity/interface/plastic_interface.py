@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..laws.law import Law, Real, TruncatedPower, quantity, terms
 from ..laws.plastic import PlasticContact
 from ..surfaces.heights.distribution import Heights
-from ..surfaces.heights.panel_length import Fineness
+from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
 from .interface import Means, Memory
 from .plastic_means import Asperities, means_at
@@ -73,8 +73,8 @@ class PlasticInterface(eqx.Module):
     area in contact is that at closest approach. It begins when the bodies part; what menisci
     gain by it counts as their formation.
 
-    On a rigid paraboloid h - h_min is the same everywhere, so that ``lift`` 1 integrates means
-    over the separation as before.
+    On a rigid paraboloid h - h_min is the same everywhere, so that ``integrated`` 1 integrates
+    means over the separation as before.
     """
 
     contact: PlasticContact
@@ -108,19 +108,21 @@ class PlasticInterface(eqx.Module):
         return ("elastic", *sorted(names))
 
     @property
-    def fineness(self) -> Fineness:
+    def panel_lengths(self) -> PanelLengths:
         """How finely its curves are cut. Without values."""
-        return self.heights.fineness
+        return self.heights.panel_lengths
 
     @property
-    def blur(self) -> float:
+    def error_floor(self) -> float:
         """Relative error of curves below which nothing is gained. Without values."""
-        return self.heights.blur
+        return self.heights.error_floor
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return reduce(jnp.maximum, [law.reach for law in terms(self.law)], jnp.zeros(()))
+        return reduce(
+            jnp.maximum, [law.interaction_range for law in terms(self.law)], jnp.zeros(())
+        )
 
     @property
     def last_kink(self) -> jax.Array:
@@ -138,45 +140,45 @@ class PlasticInterface(eqx.Module):
         return True
 
     @property
-    def rungs(self) -> jax.Array:
+    def unloading_panels(self) -> jax.Array:
         """Separations above the closest approach [m] between which contacts spring back."""
         if self.pressed is not None:
-            return self.pressed.rungs
+            return self.pressed.unloading_panels
         last = 2.0 * jnp.asarray(self.heights.rms)
         first = jnp.minimum(0.3 * self.contact.yield_overlap, 0.05 * last)
         return first * (last / first) ** (np.arange(_LADDER) / (_LADDER - 1))
 
-    def touched(self, memory: Memory) -> jax.Array:
+    def has_yielded(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
         return jnp.any(memory[0] < jnp.inf)
 
     def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on an outermost branch: of bonds alone, the asperities stay as they are."""
+        """The memory on a major branch: of bonds alone, the asperities stay as they are."""
         deepest, *thresholds = memory
         end = jnp.where(unloading, -jnp.inf, jnp.inf)
         return (deepest, *(jnp.full_like(b, end) for b in thresholds))
 
     def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        """Separations [m] at which the bonds of each law reach the major branch."""
         return [
             b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
             for law, b in zip(self.hysteretic, memory[1:], strict=True)
         ]
 
-    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+    def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
         if not self._in_powers:
-            means = self.measure(separation, self.fresh(), lift)
+            means = self.measure(separation, self.initial_memory(), integrated)
         else:
-            means = self._approached(separation, lift, _FEW_NODES)
+            means = self._approached(separation, integrated, _FEW_NODES)
         work = means.energy + means.bonds[0]
         return work - _MISSED * jnp.abs(work)
 
-    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one row a mechanism."""
         return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.mechanisms)
 
-    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of whole asperities whose bonds hold as far as they can."""
         apart = jnp.full(jnp.shape(place), jnp.inf)
         return (apart, *(-apart for _ in self.hysteretic))
@@ -189,27 +191,29 @@ class PlasticInterface(eqx.Module):
         return (jnp.minimum(deepest, separation), *bonds)
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
+        self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights, as `Interface.measure` has them."""
         if self.pressed is not None:
             return self._measure_pressed(self.pressed, separation, memory)
         shape = jnp.shape(separation)
         rows = tuple(jnp.ravel(jnp.broadcast_to(b, shape)) for b in memory)
-        each = jax.vmap(lambda h, b: self._measure_one(h, b, lift))(jnp.ravel(separation), rows)
+        each = jax.vmap(lambda h, b: self._measure_one(h, b, integrated))(
+            jnp.ravel(separation), rows
+        )
         return Means(*(jnp.moveaxis(x, 0, -1).reshape(*x.shape[1:], *shape) for x in each))
 
-    def first_approach(self, separation: jax.Array, lift: int = 0) -> Means:
+    def first_approach(self, separation: jax.Array, integrated: int = 0) -> Means:
         """The means of :meth:`measure` for surfaces that were never closer."""
         if not self._in_powers:
-            return self.measure(separation, self.fresh(), lift)
-        return self._approached(separation, lift, NODES)
+            return self.measure(separation, self.initial_memory(), integrated)
+        return self._approached(separation, integrated, NODES)
 
-    def _approached(self, separation: jax.Array, lift: int, nodes: int) -> Means:
+    def _approached(self, separation: jax.Array, integrated: int, nodes: int) -> Means:
         """:meth:`first_approach` by so many nodes on a piece."""
 
         def one(h: jax.Array) -> Loaded:
-            return first_loading(self.contact, self.heights, self._sizes, h, lift, nodes)
+            return first_loading(self.contact, self.heights, self._sizes, h, integrated, nodes)
 
         shape = jnp.shape(separation)
         loaded = jax.vmap(one)(jnp.ravel(separation))
@@ -217,7 +221,7 @@ class PlasticInterface(eqx.Module):
         edges = [jnp.asarray(law.forming_gap if law.hysteretic else -jnp.inf)
                  for law in terms(self.law)]  # fmt: skip
         asked = self._asked(edges)
-        whole = self.heights.mean_powers(tuple(ask.term for ask in asked), lift, separation)
+        whole = self.heights.mean_powers(tuple(ask.term for ask in asked), integrated, separation)
         sums: dict[str, jax.Array] = {"elastic": loaded.force, "energy": loaded.recoverable}
         for ask, value in zip(asked, whole, strict=True):
             # While it goes deeper than ever, a tip pulls as if it were whole.
@@ -227,7 +231,7 @@ class PlasticInterface(eqx.Module):
             sums[ask.name] = sums.get(ask.name, 0.0) + value
         return self._means(sums, self._kept(loaded.dissipated, loaded.gained), separation)
 
-    def flattened(self, memory: Memory, lift: int) -> Flattened | None:
+    def flattened(self, memory: Memory, integrated: int) -> Flattened | None:
         """What a first approach leaves, tabulated; its closest approach is in the memory.
 
         None where a law is no sum of truncated powers, whose means are then integrated anew at
@@ -236,8 +240,12 @@ class PlasticInterface(eqx.Module):
         if not self._in_powers:
             return None
         gaps = [law.breaking_gap for law in self.hysteretic]
-        reach = jnp.max(jnp.stack([self.last_kink, *(jnp.asarray(gap, float) for gap in gaps)]))
-        return flatten(self.contact, self.heights, self._sizes, (memory[0], reach), lift)
+        interaction_range = jnp.max(
+            jnp.stack([self.last_kink, *(jnp.asarray(gap, float) for gap in gaps)])
+        )
+        return flatten(
+            self.contact, self.heights, self._sizes, (memory[0], interaction_range), integrated
+        )
 
     def as_flattened(self, pressed: Flattened | None) -> PlasticInterface:
         """The interface from then on."""
@@ -253,13 +261,13 @@ class PlasticInterface(eqx.Module):
             for powers in found
         )
 
-    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
-        return jnp.sum(self.measure(separation, memory, lift).parts, axis=0)
+    def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
+        return jnp.sum(self.measure(separation, memory, integrated).parts, axis=0)
 
-    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         """Energy per area that comes back [J/m^2], 0 for free surfaces far apart."""
-        return self.measure(separation, memory, lift).energy
+        return self.measure(separation, memory, integrated).energy
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per mechanism."""
@@ -283,7 +291,7 @@ class PlasticInterface(eqx.Module):
 
     def _asked(self, edges: list[jax.Array]) -> list[_Ask]:
         """The truncated powers whose means are those of the laws, bonded up to ``edges``."""
-        asked = [_Ask("touching", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
+        asked = [_Ask("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
         for k, (law, edge) in enumerate(zip(terms(self.law), edges, strict=True)):
             size, powers = law.radius_power, law.powers(edge)
             assert powers is not None
@@ -309,14 +317,14 @@ class PlasticInterface(eqx.Module):
             parts=self.density * jnp.stack([sums.get(name, zero) for name in self.components]),
             energy=self.density * sums["energy"],
             bonds=self.density * jnp.stack([kept + zero, *(sums[name] for name in names)]),
-            touching=self.density * sums["touching"],
+            contacting=self.density * sums["contacting"],
         )
 
-    def _measure_one(self, separation: jax.Array, memory: Memory, lift: int) -> Means:
+    def _measure_one(self, separation: jax.Array, memory: Memory, integrated: int) -> Means:
         """The means at one separation, by integration."""
         asperities = Asperities(self.contact, self.law, self.heights)
         edges = self._edges(separation, memory)
-        sums = means_at(asperities, separation, memory[0], edges, lift)
+        sums = means_at(asperities, separation, memory[0], edges, integrated)
         return self._means(sums, sums["kept"], separation)
 
     def _edges(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:

@@ -35,9 +35,9 @@ def means_at(
     separation: jax.Array,
     closest: jax.Array,
     edges: list[jax.Array],
-    lift: int,
+    integrated: int,
 ) -> dict[str, jax.Array]:
-    """Means at one separation [m]: forces by mechanism, energy, what is kept, bonds, touching.
+    """Means at one separation [m]: forces by mechanism, energy, what is kept, bonds, contacting.
 
     Parameters
     ----------
@@ -47,15 +47,15 @@ def means_at(
         Separation, and the closest approach before [m].
     edges
         Gap [m] below which asperities are bonded, for each law.
-    lift
+    integrated
         0 for a plane, 1 for a rigid paraboloid.
     """
     contact, law, heights = asperities
     low = jnp.minimum(closest, separation)
     begin = _height(contact, separation, low)
-    bounds = _bounds(asperities, (separation, low, begin), edges, lift)
+    bounds = _bounds(asperities, (separation, low, begin), edges, integrated)
     height, weight = points(bounds, _NODES)
-    share = weight * heights.tail(lift, height)
+    share = weight * heights.tail(integrated, height)
     deepest = jnp.maximum(height - low, 0.0)
     overlap = jnp.maximum(height - separation, 0.0)
     gap = separation - height + contact.residual(deepest)
@@ -65,8 +65,8 @@ def means_at(
     sums = {
         "elastic": jnp.sum(share * contact.force(overlap, deepest)),
         "energy": jnp.sum(share * contact.recoverable(overlap, deepest)),
-        "kept": _kept(asperities, low, lift),
-        "touching": heights.tail(lift + 1, begin),
+        "kept": _kept(asperities, low, integrated),
+        "contacting": heights.tail(integrated + 1, begin),
     }
     for k, (one, edge) in enumerate(zip(terms(law), edges, strict=True)):
         held, size = gap < edge, one.radius_power
@@ -79,20 +79,20 @@ def means_at(
     return sums
 
 
-def _kept(asperities: Asperities, low: jax.Array, lift: int) -> jax.Array:
+def _kept(asperities: Asperities, low: jax.Array, integrated: int) -> jax.Array:
     """Energy that contact down to a separation keeps.
 
     And what conservative laws beside it gain by flatter tips, which goes the same way.
     """
     contact, law, heights = asperities
     last = jnp.maximum(heights.highest_beside(jnp.minimum(low, heights.top)), low)
-    first = low if lift else jnp.clip(low, heights.bottom, last)
+    first = low if integrated else jnp.clip(low, heights.bottom, last)
     uneven = jnp.clip(first, heights.bottom, last)
     even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
     kinks = jnp.stack([first, *(low + kink for kink in contact.kinks)])
     bounds = jnp.sort(jnp.clip(jnp.concatenate([even, kinks]), first, last))
     height, weight = points(bounds, _NODES)
-    share = weight * heights.tail(lift, height)
+    share = weight * heights.tail(integrated, height)
     deepest = jnp.maximum(height - low, 0.0)
     kept = jnp.sum(share * contact.dissipated(deepest))
     for one in terms(law):
@@ -119,7 +119,7 @@ def _bounds(
     asperities: Asperities,
     places: tuple[jax.Array, jax.Array, jax.Array],
     edges: list[jax.Array],
-    lift: int,
+    integrated: int,
 ) -> jax.Array:
     """Ends of pieces of the heights between which everything is smooth.
 
@@ -133,16 +133,16 @@ def _bounds(
     gaps += [jnp.maximum(edge, 0.0) for one, edge in pairs if one.hysteretic]
     marks = [_height(contact, separation - gap, low) for gap in gaps]
     first = jnp.min(jnp.stack([begin, *marks]))
-    if lift == 0:
+    if integrated == 0:
         first = jnp.maximum(first, heights.bottom)
     highest = heights.highest_beside(jnp.minimum(begin, heights.top))
     last = jnp.maximum(highest, first)
     uneven = jnp.maximum(first, heights.bottom)
     even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
-    reach = last - begin
+    interaction_range = last - begin
     rung = jnp.minimum(0.25 * heights.rms, jnp.maximum(begin - low, contact.yield_overlap))
-    rung = jnp.clip(rung, 0.0, jnp.maximum(reach, 0.0))
-    ratio = jnp.where(rung > 0.0, reach / jnp.where(rung > 0.0, rung, 1.0), 1.0)
+    rung = jnp.clip(rung, 0.0, jnp.maximum(interaction_range, 0.0))
+    ratio = jnp.where(rung > 0.0, interaction_range / jnp.where(rung > 0.0, rung, 1.0), 1.0)
     ladder = begin + rung * ratio ** (np.arange(_RUNGS) / _RUNGS)
     kinks = low + jnp.stack(contact.kinks)
     ends = [even, ladder, kinks, jnp.stack([begin, first, *marks])]

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Law, terms
-from ..surfaces.heights.panel_length import Fineness
+from ..surfaces.heights.panel_length import PanelLengths
 from .class_bonds import ClassBonds
 from .height_quadrature import Asked, Near
 from .interface import Interface, Means, Memory
@@ -39,7 +39,7 @@ class RadiusClasses(eqx.Module):
     parts
         The interfaces, with the same kinds of laws and of heights.
     tabulated
-        Whether their outermost branches are tabulated where they can be (static): of measured
+        Whether their major branches are tabulated where they can be (static): of measured
         heights on the same nodes. Else every mean is a quadrature.
 
     Notes
@@ -89,19 +89,19 @@ class RadiusClasses(eqx.Module):
         return self.stacked.components
 
     @property
-    def fineness(self) -> Fineness:
+    def panel_lengths(self) -> PanelLengths:
         """How finely its curves are cut. Without values."""
-        return self.stacked.fineness
+        return self.stacked.panel_lengths
 
     @property
-    def blur(self) -> float:
+    def error_floor(self) -> float:
         """Relative error of curves below which nothing is gained. Without values."""
-        return self.stacked.blur
+        return self.stacked.error_floor
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return jnp.max(jax.vmap(lambda part: part.reach)(self.stacked))
+        return jnp.max(jax.vmap(lambda part: part.interaction_range)(self.stacked))
 
     @property
     def last_kink(self) -> jax.Array:
@@ -113,13 +113,13 @@ class RadiusClasses(eqx.Module):
         """What their heights are on the whole."""
         return scale_of([part.heights for part in self.parts])
 
-    def fresh(self, place: jax.Array | float = 0.0) -> Memory:
+    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Memory of surfaces that have never touched, one threshold per ``place``."""
-        return self.stacked.fresh(place) * self.count
+        return self.stacked.initial_memory(place) * self.count
 
-    def torn(self, place: jax.Array | float = 0.0) -> Memory:
+    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Saturated memory, on the major unloading branch: all bonds that can hold do."""
-        return self.stacked.torn(place) * self.count
+        return self.stacked.saturated_memory(place) * self.count
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """The memory after the separation moved monotonically to ``separation`` [m]."""
@@ -131,24 +131,24 @@ class RadiusClasses(eqx.Module):
         """Whether what was pressed once stays changed. Without values."""
         return self.stacked.yields
 
-    def touched(self, memory: Memory) -> jax.Array:
+    def has_yielded(self, memory: Memory) -> jax.Array:
         """Whether anything was pressed so that it stays changed."""
-        return self.stacked.touched(memory)
+        return self.stacked.has_yielded(memory)
 
     def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on an outermost branch; see :meth:`Interface.swept`."""
+        """The memory on a major branch; see :meth:`Interface.swept`."""
         return self.stacked.swept(memory, unloading)
 
     def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the outermost branch."""
+        """Separations [m] at which the bonds of each law reach the major branch."""
         shares = zip(self.parts, self._shares(memory), strict=True)
         return [d for part, own in shares for d in part.merging(own, unloading)]
 
-    def work_of_approach(self, separation: jax.Array, lift: int = 0) -> jax.Array:
+    def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
         if not self.tables:
-            return self.energy(separation, self.fresh(), lift)
-        return self._sum([table(separation, lift)[-1] for table in self.tables])
+            return self.energy(separation, self.initial_memory(), integrated)
+        return self._sum([table(separation, integrated)[-1] for table in self.tables])
 
     @property
     def only_bonded(self) -> bool:
@@ -156,61 +156,65 @@ class RadiusClasses(eqx.Module):
         return self.stacked.only_bonded
 
     def measure(
-        self, separation: jax.Array, memory: Memory, lift: int = 0, near: Near | None = None
+        self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
         """All means over the heights; see :meth:`Interface.measure`.
 
-        Places ``near`` one another that are level lie on an outermost branch.
+        Places ``near`` one another that are level lie on a major branch.
         """
         if not self.tables:
-            each = self._each(lambda part, own: part.measure(separation, own, lift, near), memory)
+            each = self._each(
+                lambda part, own: part.measure(separation, own, integrated, near), memory
+            )
             sums = jax.tree_util.tree_map(lambda leaf: jnp.sum(leaf, axis=0), each)
             bonds = each.bonds.reshape(-1, *each.bonds.shape[2:])
-            return Means(sums.parts, sums.energy, bonds, sums.touching)
-        rows = self._rows(separation, memory, lift, near)
+            return Means(sums.parts, sums.energy, bonds, sums.contacting)
+        rows = self._rows(separation, memory, integrated, near)
         parts: dict[str, list[jax.Array]] = {name: [] for name in self.components}
         for table, values in zip(self.tables, rows, strict=True):
             for name, value in zip(table.names, values, strict=False):
                 parts[name].append(value)
-        touching, bonds = self._each(lambda part, own: part.counted(separation, own, lift), memory)
+        contacting, bonds = self._each(
+            lambda part, own: part.counted(separation, own, integrated), memory
+        )
         return Means(
             parts=jnp.stack([self._sum(values) for values in parts.values()]),
             energy=self._sum([values[-1] for values in rows]),
             bonds=bonds.reshape(-1, *separation.shape),
-            touching=jnp.sum(touching, axis=0),
+            contacting=jnp.sum(contacting, axis=0),
         )
 
-    def pressure(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``lift`` 1: N per 2 pi R)."""
+    def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
+        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
         if self.tables:
-            rows = self._rows(separation, memory, lift)
+            rows = self._rows(separation, memory, integrated)
             return self._sum([jnp.sum(values[:-1], axis=0) for values in rows])
-        each = self._each(lambda part, own: part.pressure(separation, own, lift), memory)
+        each = self._each(lambda part, own: part.pressure(separation, own, integrated), memory)
         return jnp.sum(each, axis=0)
 
-    def energy(self, separation: jax.Array, memory: Memory, lift: int = 0) -> jax.Array:
+    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
         if self.tables:
-            rows = self._rows(separation, memory, lift)
+            rows = self._rows(separation, memory, integrated)
             return self._sum([values[-1] for values in rows])
-        each = self._each(lambda part, own: part.energy(separation, own, lift), memory)
+        each = self._each(lambda part, own: part.energy(separation, own, integrated), memory)
         return jnp.sum(each, axis=0)
 
     def _rows(
-        self, separation: jax.Array, memory: Memory, lift: int, near: Near | None = None
+        self, separation: jax.Array, memory: Memory, integrated: int, near: Near | None = None
     ) -> list[jax.Array]:
         """Forces and energy of each law, as its table has them."""
         laws = len(self.tables)
         if near is not None and near.level:
             return [
-                table(separation, lift, jnp.isneginf(b))
+                table(separation, integrated, jnp.isneginf(b))
                 for table, b in zip(self.tables, memory[:laws], strict=True)
             ]
 
         def beside(part: Interface, own: Memory) -> list[jax.Array]:
             out = []
             for law, threshold, table in zip(terms(part.law), own, self.tables, strict=True):
-                asked = Asked((*table.names, "energy"), lift)
+                asked = Asked((*table.names, "energy"), integrated)
                 bonds = ClassBonds(law, part.heights, asked, self.pieces)
                 if near is None:
                     out.append(part.density * bonds.at(threshold, separation))
@@ -220,7 +224,7 @@ class RadiusClasses(eqx.Module):
 
         more = self._each(beside, memory)
         return [
-            table(separation, lift) + jnp.sum(rest, axis=0)
+            table(separation, integrated) + jnp.sum(rest, axis=0)
             for table, rest in zip(self.tables, more, strict=True)
         ]
 
@@ -252,7 +256,7 @@ def _pieces(parts: Sequence[Interface]) -> int:
     part = parts[-1]  # of the largest radii
     widths = [float(law.breaking_gap - law.forming_gap) for law in part.hysteretic]
     rms = float(part.heights.rms)
-    nodes, pieces = part.fineness.along(max(widths, default=0.0) / rms if rms > 0.0 else 0.0)
+    nodes, pieces = part.panel_lengths.along(max(widths, default=0.0) / rms if rms > 0.0 else 0.0)
     return ceil(nodes * pieces / 16)
 
 

@@ -93,7 +93,7 @@ class Flattened(NamedTuple):
     dissipated: jax.Array
 
     @property
-    def rungs(self) -> jax.Array:
+    def unloading_panels(self) -> jax.Array:
         """Separations above the closest approach [m] between which contacts spring back."""
         return self.ends[_BELOW + 2 :]
 
@@ -103,7 +103,7 @@ def flatten(
     heights: Heights,
     sizes: tuple[float, ...],
     within: tuple[jax.Array, jax.Array],
-    lift: int,
+    integrated: int,
 ) -> Flattened:
     """Tabulate what a closest approach leaves, for one asperity per area.
 
@@ -115,16 +115,16 @@ def flatten(
         Powers of the flatness (static).
     within
         Closest approach, and largest gap that a law reaches over [m].
-    lift
+    integrated
         0 for a plane, 1 for a rigid paraboloid.
     """
-    lowest, _reach = within
+    lowest, _interaction_range = within
     ends = _ends(contact, heights, lowest)
     low, width = ends[:-1, None], jnp.diff(ends)[:, None]
     sprung = low + 0.5 * width * (1.0 + _X)
     deepest = contact.deepest(sprung)
     _, left = jax.jvp(contact.residual, (deepest,), (jnp.ones_like(deepest),))
-    count = heights.tail(lift, lowest + deepest) / (1.0 - left)
+    count = heights.tail(integrated, lowest + deepest) / (1.0 - left)
     pressed = sprung > 0.0
     flat = jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
     each = []
@@ -140,9 +140,9 @@ def flatten(
     both = jnp.stack([force, _from_above(force, width)])
     lost = _from_above(_fitted(contact.dissipated(deepest) * count), width)
     signs = (-1.0) ** np.arange(_ROW)
-    whole = [factorial(n) * heights.tail(lift + 1 + n, lowest) for n in range(HIGHEST + 1)]
+    whole = [factorial(n) * heights.tail(integrated + 1 + n, lowest) for n in range(HIGHEST + 1)]
     gained = powers[:, :, 0] @ signs - jnp.stack(whole)
-    further, below = _below(heights, gained, within, lift)
+    further, below = _below(heights, gained, within, integrated)
     # Nothing is below, but for rounding.
     deeper = (
         jnp.zeros((2, further.shape[0] - 1, _ROW)).at[..., 0].set((both[:, 0] @ signs)[:, None])
@@ -158,18 +158,20 @@ def flatten(
 
 
 def _below(
-    heights: Heights, gained: jax.Array, within: tuple[jax.Array, jax.Array], lift: int
+    heights: Heights, gained: jax.Array, within: tuple[jax.Array, jax.Array], integrated: int
 ) -> tuple[jax.Array, jax.Array]:
     """Panels below the closest approach, and the sums on them.
 
     What is above the closest approach counts whole there, and what is below was never pressed.
     """
-    lowest, reach = within
-    uneven = jnp.clip(heights.bottom - lowest, -reach, 0.0)  # lower down they are polynomials
-    ends = jnp.append(-reach, uneven * np.linspace(1.0, 0.0, _BELOW + 1))
+    lowest, interaction_range = within
+    uneven = jnp.clip(
+        heights.bottom - lowest, -interaction_range, 0.0
+    )  # lower down they are polynomials
+    ends = jnp.append(-interaction_range, uneven * np.linspace(1.0, 0.0, _BELOW + 1))
     edge = -(ends[:-1, None] + 0.5 * jnp.diff(ends)[:, None] * (1.0 + _X))
     terms = tuple(TruncatedPower(1.0, float(n), edge) for n in range(HIGHEST + 1))
-    closed = heights.mean_powers(terms, lift, jnp.broadcast_to(lowest, edge.shape))
+    closed = heights.mean_powers(terms, integrated, jnp.broadcast_to(lowest, edge.shape))
     rows = [
         [
             _fitted(whole + in_reach(term, of_size))

@@ -42,7 +42,7 @@ def first_loading(
     heights: Heights,
     sizes: tuple[float, ...],
     separation: jax.Array,
-    lift: int,
+    integrated: int,
     nodes: int = NODES,
 ) -> Loaded:
     """Means at one separation [m]; see :func:`~asperity.interface.residual_profile.flatten`.
@@ -50,7 +50,7 @@ def first_loading(
     By so many ``nodes`` (static) on each piece of the overlaps.
     """
     deepest, weight = points(_bounds(contact, heights, separation), nodes)
-    share = weight * heights.tail(lift, separation + deepest)
+    share = weight * heights.tail(integrated, separation + deepest)
     sprung = deepest - contact.residual(deepest)
     pressed = sprung > 0.0
     flat = jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
@@ -77,12 +77,12 @@ def first_loading(
 def _bounds(contact: PlasticContact, heights: Heights, separation: jax.Array) -> jax.Array:
     """Ends of pieces of the overlap between which everything is smooth."""
     last = heights.highest_beside(jnp.minimum(separation, heights.top))
-    reach = jnp.maximum(last - separation, 0.0)
-    uneven = jnp.clip(heights.bottom - separation, 0.0, reach)
-    even = uneven + (reach - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
+    interaction_range = jnp.maximum(last - separation, 0.0)
+    uneven = jnp.clip(heights.bottom - separation, 0.0, interaction_range)
+    even = uneven + (interaction_range - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
     first = jnp.minimum(0.25 * heights.rms, contact.yield_overlap)
-    first = jnp.minimum(first, reach)
-    ratio = jnp.where(first > 0.0, reach / jnp.where(first > 0.0, first, 1.0), 1.0)
+    first = jnp.minimum(first, interaction_range)
+    ratio = jnp.where(first > 0.0, interaction_range / jnp.where(first > 0.0, first, 1.0), 1.0)
     ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
     ends = [even, ladder, jnp.stack([jnp.zeros(()), *contact.kinks])]
-    return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, reach))
+    return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, interaction_range))

@@ -210,9 +210,9 @@ def _first(overlap: jax.Array, end: End, l: jax.Array) -> Radii:
     bend = 0.7 * end.outer
     wane, load = bend * (1.0 - end.curvature), 1.2 * flank**2 * (flank + l)
     rough = (jnp.sqrt(excess), bend, end.curvature, wane, load, flank, end.inner, l)
-    lift = _lift(*(x.astype(jnp.float32) for x in rough)).astype(jnp.float64)
-    inner = jnp.sqrt(end.inner**2 + excess + 4.0 / 3.0 * l * lift)
-    return inner, flank + lift
+    integrated = _lift(*(x.astype(jnp.float32) for x in rough)).astype(jnp.float64)
+    inner = jnp.sqrt(end.inner**2 + excess + 4.0 / 3.0 * l * integrated)
+    return inner, flank + integrated
 
 
 def _lift(

@@ -60,7 +60,7 @@ class Bradley(Law):
         return -2.0 * pi * self.radius * self.work_of_adhesion
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         return 1.2e3 * self.spacing
 
     @property

@@ -1,4 +1,4 @@
-"""Adhesive elastic contact of soft bodies."""
+"""JKR: adhesive elastic contact of soft bodies, with the pull-off force of one asperity."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ class Jkr(Law):
     With the contact radius a: overlap = a^2/radius - sqrt(2 pi a w/E*) and force
     4 E* a^3/(3 radius) - sqrt(8 pi w E* a^3). The bond forms at gap 0, where the force
     jumps to -(4/3) pi w radius, and breaks at the fold of the branch, where it is
-    -(5/6) pi w radius. Johnson, Kendall and Roberts (1971), eqs. 14-19.
+    -(5/6) pi w radius: pull-off at a given separation. In between the force is least, -(3/2)
+    pi w radius: pull-off at a given load. Johnson, Kendall and Roberts (1971), eqs. 14-19.
     """
 
     radius: Real = quantity()

@@ -109,7 +109,7 @@ class Law(eqx.Module):
         return (0.0,)
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which the force is below 1e-6 of its largest pull."""
         return self.last_kink
 

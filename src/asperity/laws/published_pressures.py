@@ -60,7 +60,7 @@ class PublishedPressure(eqx.Module):
         F_0 and F_3/2: exact, or as printed.
     bands
         Number N_s of the bands of eq. 13 (static).
-    reach
+    interaction_range
         2 r_k cos(theta) [m], the gap at which a meniscus ends; None where it never does, at a
         relative humidity of 1.
     fine
@@ -88,7 +88,7 @@ class PublishedPressure(eqx.Module):
 
     functions: HeightFunctions
     bands: int = eqx.field(static=True)
-    reach: Real | None
+    interaction_range: Real | None
     density: Real = quantity()
     radius: Real = quantity()
     rms_height: Real = quantity()
@@ -107,7 +107,11 @@ class PublishedPressure(eqx.Module):
     def kinks(self) -> tuple[jax.Array, ...]:
         """Separations [m] within the conjunction at which a pressure changes its form."""
         mean_plane = jnp.zeros(())
-        return (mean_plane,) if self.reach is None else (mean_plane, jnp.asarray(self.reach))
+        return (
+            (mean_plane,)
+            if self.interaction_range is None
+            else (mean_plane, jnp.asarray(self.interaction_range))
+        )
 
     def contact(self, separation: jax.Array) -> jax.Array:
         """Pressure of elastic contact, positive apart: eq. 16 per area."""
@@ -127,18 +131,22 @@ class PublishedPressure(eqx.Module):
         """
         scale = 4.0 * pi * self.density * self.radius * self.tension
         above_mean = jnp.maximum(separation, 0.0)
-        if self.reach is None:
+        if self.interaction_range is None:
             # Every meniscus pulls fully: the sum of eq. 15 telescopes, whatever the bands.
             sum_ = self._touching(jnp.zeros(())) - self._touching(above_mean)
         else:
-            sum_ = self._banded(above_mean, jnp.asarray(self.reach))
+            sum_ = self._banded(above_mean, jnp.asarray(self.interaction_range))
         return self._inside(separation, scale * sum_)
 
     def strongest_pull(self, separation: jax.Array) -> jax.Array:
         """Adhesion, and menisci that all pull as they do where they form: no pull is more."""
         scale = 4.0 * pi * self.density * self.radius * self.tension
         above_mean = jnp.maximum(separation, 0.0)
-        near = 0.0 if self.reach is None else jnp.maximum(above_mean - self.reach, 0.0)
+        near = (
+            0.0
+            if self.interaction_range is None
+            else jnp.maximum(above_mean - self.interaction_range, 0.0)
+        )
         bridged = self._touching(jnp.asarray(near)) - self._touching(above_mean)
         return self.adhesion(separation) + self._inside(separation, scale * bridged)
 
@@ -156,17 +164,19 @@ class PublishedPressure(eqx.Module):
     def _inside(self, separation: jax.Array, value: jax.Array) -> jax.Array:
         return jnp.where(separation < self.end, value, 0.0)
 
-    def _banded(self, separation: jax.Array, reach: jax.Array) -> jax.Array:
+    def _banded(self, separation: jax.Array, interaction_range: jax.Array) -> jax.Array:
         """Sum over the bands of their share of asperities times the force at their far gap."""
-        span = jnp.minimum(separation, reach)
+        span = jnp.minimum(separation, interaction_range)
         if self.fine:
-            return self._summed(separation, span, reach)
+            return self._summed(separation, span, interaction_range)
         gaps = span[..., None] * (np.arange(self.bands + 1.0) / self.bands)
         taller = self._touching(separation[..., None] - gaps)
-        force = 1.0 - gaps[..., 1:] / reach
+        force = 1.0 - gaps[..., 1:] / interaction_range
         return jnp.sum(jnp.diff(taller, axis=-1) * force, axis=-1)
 
-    def _summed(self, separation: jax.Array, span: jax.Array, reach: jax.Array) -> jax.Array:
+    def _summed(
+        self, separation: jax.Array, span: jax.Array, interaction_range: jax.Array
+    ) -> jax.Array:
         """The same sum by parts: shares at both ends, and Euler and Maclaurin's formula between.
 
         With the exact F_0, in heights over their rms: its integral is F_1, its derivatives are
@@ -186,8 +196,8 @@ class PublishedPressure(eqx.Module):
             rise = _density_derivative(order, far) - _density_derivative(order, near)
             between = between + factor * step**power * rise
         # Each band pulls with its far gap's force, which falls by this from band to band.
-        fall = span / (self.bands * reach)
-        ends = shares[1] * (1.0 - span / reach) - shares[0] * (1.0 - fall)
+        fall = span / (self.bands * interaction_range)
+        ends = shares[1] * (1.0 - span / interaction_range) - shares[0] * (1.0 - fall)
         safe = jnp.where(step > 0.0, step, 1.0)
         return ends + fall * jnp.where(step > 0.0, between / safe, 0.0)
 

@@ -74,11 +74,11 @@ def check_law(
     Notes
     -----
     The rules: force = -d(energy)/d(gap) on each branch where it exists, also across its
-    kinks; the free energy tends to 0 and the force is negligible beyond ``reach``; a bond
-    breaks at no smaller gap than it forms at, and neither step gains energy; everything is
-    finite float64 of the gap's shape, also at kinks, and the same under ``jit`` and
-    ``vmap``, with finite gradients; ``powers`` and ``components`` add up to the force; in
-    other units the law is the same.
+    kinks; the free energy tends to 0 and the force is negligible beyond
+    ``interaction_range``; a bond breaks at no smaller gap than it forms at, and neither step
+    gains energy; everything is finite float64 of the gap's shape, also at kinks, and the same
+    under ``jit`` and ``vmap``, with finite gradients; ``powers`` and ``components`` add up to
+    the force; in other units the law is the same.
     """
     known = {**DIMENSIONS, **(dimensions or {})}
     for part in terms(law):
@@ -101,7 +101,7 @@ def _name(law: Law) -> str:
 
 def _lengths(law: Law) -> np.ndarray:
     """The law's own lengths [m], ascending; 1 nm where it has none."""
-    own = [law.length, law.reach, law.forming_gap, law.breaking_gap, *law.kinks]
+    own = [law.length, law.interaction_range, law.forming_gap, law.breaking_gap, *law.kinks]
     values = np.abs(np.array([float(value) for value in own]))
     values = np.sort(values[np.isfinite(values) & (values > 0.0)])
     return values if len(values) else np.array([1e-9])
@@ -265,17 +265,17 @@ def _check_far(law: Law) -> None:
         f"{_name(law)}, free branch: the energy must tend to 0 far away; at the gap "
         f"{far:.6g} m it is {energy[0]:.6g} J, beside {largest:.6g} J at most"
     )
-    reach = float(law.reach)
-    beyond = reach + _lengths(law)[-1] * np.array([1e-6, 1e-2, 1.0, 1e2])
+    interaction_range = float(law.interaction_range)
+    beyond = interaction_range + _lengths(law)[-1] * np.array([1e-6, 1e-2, 1.0, 1e2])
     force = np.abs(np.asarray(law.force(jnp.asarray(beyond))))
     pull = max(float(np.max(-np.asarray(b.force(jnp.asarray(b.gaps))), initial=0.0))
                for b in _branches(law, _gaps(law)))  # fmt: skip
     bad = np.flatnonzero(force > 1.01e-6 * pull)
     if len(bad):
         raise AssertionError(
-            f"{_name(law)}, free branch: beyond `reach` = {reach:.6g} m the force must be below "
-            f"1e-6 of the largest pull, {pull:.6g} N; at the gap {beyond[bad[0]]:.6g} m it is "
-            f"{force[bad[0]]:.6g} N"
+            f"{_name(law)}, free branch: beyond `interaction_range` = {interaction_range:.6g} m "
+            f"the force must be below 1e-6 of the largest pull, {pull:.6g} N; at the gap "
+            f"{beyond[bad[0]]:.6g} m it is {force[bad[0]]:.6g} N"
         )
 
 
@@ -353,7 +353,7 @@ def _check_units(
         length, force = dimensions[name]
         changed[name] = value * per_length**length * per_force**force
     other = dataclasses.replace(law, **changed)
-    for name in ("forming_gap", "breaking_gap", "reach", "length"):
+    for name in ("forming_gap", "breaking_gap", "interaction_range", "length"):
         before, after = float(getattr(law, name)), float(getattr(other, name))
         assert after == before or np.isclose(after, per_length * before, rtol=1e-9, atol=0.0), (
             f"{_name(law)}: `{name}` must scale like a length; with lengths times "

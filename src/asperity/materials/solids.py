@@ -144,7 +144,7 @@ def refuse_softer_than_yield(
     if hardness is not None and yield_strength is not None and hardness < yield_strength:
         raise InputError(
             f"`hardness` must be at least the yield strength ({yield_strength / 1e6:.6g} MPa), "
-            f"since a dent is made by yielding; got {hardness / 1e6:.6g} MPa",
+            f"since an indentation that stays is made by yielding; got {hardness / 1e6:.6g} MPa",
             key=key,
         )
 

@@ -23,7 +23,7 @@ def panels(result: Result) -> Row:
     contact = impacts.first_contact(result)
     if contact is not None:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, contact)))
-    many = result.events.get("deepest_time", np.empty(0)).size >= _MANY
+    many = result.events.get("closest_approach_time", np.empty(0)).size >= _MANY
     losses = [values for name, values in result.energies.items() if name.startswith("lost_")]
     if many and any(np.any(values > 0.0) for values in losses):
         row.append(Panel(1.0, lambda axes: _losses(axes, result)))
@@ -37,7 +37,7 @@ def _stack(axes: Axes, result: Result, points: slice, shown: str) -> None:
 
 
 def _contact(axes: Axes, result: Result, points: slice) -> None:
-    time_unit = _stacked(axes, result, points, result.events["deepest_time"][0])
+    time_unit = _stacked(axes, result, points, result.events["closest_approach_time"][0])
     axes.set_xlabel(style.label("time from closest", time_unit))
     axes.set_title("first contact")
 

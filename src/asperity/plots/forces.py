@@ -30,14 +30,14 @@ def panels(result: Result) -> Row:
     pull = max((np.max(np.abs(result.forces[name])) for name in pulls), default=0.0)
     if 0.0 < pull < _SMALL * peak:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, pulls)))
-    if result.events.get("deepest_time", np.empty(0)).size >= _MANY:
+    if result.events.get("closest_approach_time", np.empty(0)).size >= _MANY:
         row.append(Panel(0.9, lambda axes: _peaks(axes, result)))
     return row
 
 
 def _contact(axes: Axes, result: Result, names: list[str]) -> None:
     points = impacts.first_contact(result)
-    start = 0.0 if points is None else result.events["deepest_time"][0]
+    start = 0.0 if points is None else result.events["closest_approach_time"][0]
     points = points or slice(None)
     time = result.time[points] - start
     forces = {name: result.forces[name][points] for name in names}

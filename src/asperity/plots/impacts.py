@@ -18,7 +18,7 @@ def first_contact(result: Result) -> slice | None:
     The contact lasts while a force exceeds a small share of its largest value: the contact force
     of the peak, a pull of the largest pull, so that a weak but long pull is seen too.
     """
-    deepest = result.events.get("deepest_time", np.empty(0))
+    deepest = result.events.get("closest_approach_time", np.empty(0))
     if deepest.size == 0 or "contact" not in result.forces:
         return None
     tops = result.events.get("apex_time", np.empty(0))
@@ -59,7 +59,7 @@ def window(result: Result) -> tuple[float, float] | None:
     points = first_contact(result)
     if points is None:
         return None
-    middle = float(result.events["deepest_time"][0])
+    middle = float(result.events["closest_approach_time"][0])
     time = result.time[points]
     return float(time[0]) - middle, float(time[-1]) - middle
 
@@ -67,7 +67,7 @@ def window(result: Result) -> tuple[float, float] | None:
 def largest(result: Result, name: str, sign: float) -> np.ndarray:
     """Largest push (sign 1) or pull (sign -1) of a force in each impact [N]."""
     force = result.forces.get(name)
-    deepest = result.events.get("deepest_time", np.empty(0))
+    deepest = result.events.get("closest_approach_time", np.empty(0))
     if force is None or deepest.size == 0:
         return np.empty(0)
     tops = result.events.get("apex_time", np.empty(0))[: deepest.size - 1]
@@ -78,14 +78,14 @@ def largest(result: Result, name: str, sign: float) -> np.ndarray:
 
 def lost(result: Result, name: str) -> np.ndarray:
     """Energy that a channel of losses took from apex to apex, per impact [J]."""
-    deepest = result.events.get("deepest_time", np.empty(0))
+    deepest = result.events.get("closest_approach_time", np.empty(0))
     tops = result.events.get("apex_time", np.empty(0))[: max(deepest.size - 1, 0)]
     ends = np.concatenate([result.time[:1], tops, result.time[-1:]])[: deepest.size + 1]
     taken: np.ndarray = np.diff(np.interp(ends, result.time, result.energies[name]))
     return taken
 
 
-def datum(result: Result) -> float | None:
+def reference(result: Result) -> float | None:
     """Separation from which heights of rebound count [m]: at rest, or the conjunction's edge."""
     heights = result.measures.get("rebound_height") or []
     tops = result.events.get("apex_separation", np.empty(0))

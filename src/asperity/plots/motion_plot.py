@@ -12,7 +12,7 @@ from asperity.results.result import Result
 
 _MANY = 3
 _MARKED = 40
-_TURNS = (("apex", "^", "top of rebound"), ("deepest", "v", "closest approach"))
+_TURNS = (("apex", "^", "top of rebound"), ("closest_approach", "v", "closest approach"))
 
 
 def panels(result: Result) -> Row:
@@ -27,12 +27,12 @@ def panels(result: Result) -> Row:
 
 
 def _heights(result: Result) -> np.ndarray:
-    """Heights of the release and of the rebounds above the datum [m]; NaN where not above.
+    """Heights of release and rebounds above the static equilibrium [m]; NaN where below it.
 
     A body that is launched counts with the height v^2/2g that its speed is worth, since the
     rebounds are to be compared with its energy; without gravity there is no such height.
     """
-    base = impacts.datum(result)
+    base = impacts.reference(result)
     if base is None:
         return np.empty(0)
     tops = [h if h is not None else np.nan for h in result.measures.get("rebound_height") or []]
@@ -64,11 +64,11 @@ def _whole(axes: Axes, result: Result) -> None:
             axes.plot(
                 found[seen] / seconds, place, sign, ms=3.0, mew=0.0, color=colour(turn), label=text
             )
-    base = impacts.datum(result)
+    base = impacts.reference(result)
     if base is not None:
         axes.axhline(
             base / metres, color=colour("quiet"), lw=0.6, ls=(0, (4, 3)), zorder=0,
-            label=_datum_name(result),
+            label=_reference_name(result),
         )  # fmt: skip
     axes.set_xlabel(style.label("time since release", time_unit) + shown)
     axes.set_ylabel(style.label("separation", unit))
@@ -76,7 +76,7 @@ def _whole(axes: Axes, result: Result) -> None:
     style.legend_above(axes)
 
 
-def _datum_name(result: Result) -> str:
+def _reference_name(result: Result) -> str:
     """What rebounds are counted from."""
     if result.case.publication is None:
         return "static equilibrium"
@@ -106,7 +106,7 @@ def _rebounds(axes: Axes, result: Result, heights: np.ndarray) -> None:
 def _first(axes: Axes, result: Result) -> None:
     points = impacts.first_contact(result)
     assert points is not None
-    time = result.time[points] - result.events["deepest_time"][0]
+    time = result.time[points] - result.events["closest_approach_time"][0]
     gap = result.separation[points]
     seconds, time_unit = style.scale_of(time, unit="s")
     metres, unit = style.scale_of(gap, result.central_separation[points], unit="m")

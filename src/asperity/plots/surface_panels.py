@@ -151,8 +151,12 @@ def draw_radii(axes: Axes, description: Description) -> None:
               color=colour("apex"), alpha=0.5, rasterized=True, label="summits")  # fmt: skip
     axes.axhline(tops.radius / up, color=colour("contact"), lw=0.8, label="of mean curvature")
     if description.nayak is not None:
-        reach = 5.0 * sqrt(description.spectral.m0)
-        z = np.linspace(max(tops.heights.min(), -reach), min(tops.heights.max(), reach), 100)
+        interaction_range = 5.0 * sqrt(description.spectral.m0)
+        z = np.linspace(
+            max(tops.heights.min(), -interaction_range),
+            min(tops.heights.max(), interaction_range),
+            100,
+        )
         sharp = description.nayak.curvature_at(z)
         axes.plot(z / across, 1.0 / (sharp * up), color=colour("capillary"), label="Nayak")
     axes.set_yscale("log")

@@ -38,7 +38,7 @@ class FirstTouch(NamedTuple):
 
     force: jax.Array
     elastic: jax.Array
-    touching: jax.Array
+    contacting: jax.Array
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Evidence:
     @property
     def closest(self) -> float:
         """Rigid separation of the first closest approach [m]."""
-        return float(self.wet.events["deepest_separation"][0])
+        return float(self.wet.events["closest_approach_separation"][0])
 
     @property
     def contact_radius(self) -> float:
@@ -186,7 +186,7 @@ class Evidence:
     @property
     def wet_touching(self) -> float:
         """Asperities of the conjunction that touch at the first closest approach."""
-        return float(_first_touch(self.contact, jnp.asarray(self.closest)).touching)
+        return float(_first_touch(self.contact, jnp.asarray(self.closest)).contacting)
 
     @property
     def exact_rest(self) -> float:
@@ -198,8 +198,8 @@ class Evidence:
     def load_at_rest(self) -> float:
         """Load parameter there."""
         rest = self.exact_state(self.exact_rest)
-        elastic, touching = float(rest.elastic), float(rest.touching)
-        return regimes.load_parameter(elastic, touching, self.work, self.rough.asperity_radius)
+        elastic, contacting = float(rest.elastic), float(rest.contacting)
+        return regimes.load_parameter(elastic, contacting, self.work, self.rough.asperity_radius)
 
     def exact_state(self, separation: float) -> FirstTouch:
         """Contact of bodies that never touched, by the exact model."""
@@ -257,8 +257,8 @@ def _printed_off(stop: threading.Event) -> dict[str, float]:
 
 
 def _fresh_state(contact: Contact, separation: jax.Array) -> FirstTouch:
-    state = contact.state(separation, contact.fresh())
-    return FirstTouch(state.force, state.elastic, state.touching)
+    state = contact.state(separation, contact.initial_memory())
+    return FirstTouch(state.force, state.elastic, state.contacting)
 
 
 _first_touch = Program(_fresh_state)

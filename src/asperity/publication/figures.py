@@ -151,13 +151,13 @@ def _meniscus(evidence: Evidence) -> Drawing:
     assert angle is not None
     radius, flat = rough.asperity_radius, float(evidence.contact.pressure.end)
     kelvin = evidence.kelvin_radius(_SHOWN_HUMIDITY)
-    reach = 2.0 * kelvin * cos(angle)
-    gap = 0.3 * reach
+    interaction_range = 2.0 * kelvin * cos(angle)
+    gap = 0.3 * interaction_range
     # The parabola meets the filled height where its own rise has used up the rest of the reach.
-    filled = sqrt(2.0 * radius * (reach - gap))
+    filled = sqrt(2.0 * radius * (interaction_range - gap))
     place = np.linspace(-1.6 * filled, 1.6 * filled, 161)
     turn = np.linspace(-1.0, 1.0, 61) * (0.5 * pi - angle)
-    arc_y = 0.5 * reach * (1.0 + np.sin(turn) / sin(0.5 * pi - angle))
+    arc_y = 0.5 * interaction_range * (1.0 + np.sin(turn) / sin(0.5 * pi - angle))
     arc_x = filled - kelvin * (np.cos(turn) - np.cos(turn[0]))
     pitch = rough.asperity_density**-0.5
     summits = pitch * (np.arange(_SUMMITS) - _SUMMITS // 2)
@@ -219,8 +219,8 @@ def _wet_and_dry(evidence: Evidence) -> Drawing:
 
 def _forces(evidence: Evidence) -> Drawing:
     """With two values where the pulls set in, at each closest approach."""
-    wet, turns = evidence.wet, evidence.wet.events["deepest_time"]
-    begun = evidence.retraction_forces(wet.events["deepest_separation"]).T
+    wet, turns = evidence.wet, evidence.wet.events["closest_approach_time"]
+    begun = evidence.retraction_forces(wet.events["closest_approach_separation"]).T
     forces: dict[str, np.ndarray] = dict(
         zip(evidence.contact.components, begun, strict=True),
         weight=np.full(turns.size, -evidence.weight),
@@ -232,7 +232,7 @@ def _forces(evidence: Evidence) -> Drawing:
         "Figure 7b: the forces of the wet motion",
         ("time [s]", *(f"{name} [N]" for name in names)),
         {"wet": (time, *(np.insert(wet.forces[name], after, forces[name]) for name in names))},
-        {"first closest approach [s]": float(wet.events["deepest_time"][0])},
+        {"first closest approach [s]": float(wet.events["closest_approach_time"][0])},
     )
 
 

@@ -112,7 +112,7 @@ def refit(
     case: Case,
     entries: Sequence[Entry],
     *,
-    tell: Callable[[float, str], None] | None = None,
+    report: Callable[[float, str], None] | None = None,
     stop: threading.Event | None = None,
 ) -> Refit | None:
     """Least squares of relative differences over decrements and stiction times.
@@ -123,14 +123,14 @@ def refit(
         The case with a [publication] table; its three unknown inputs are a first guess.
     entries
         The tables.
-    tell, stop
+    report, stop
         As for :func:`asperity.solve`.
 
     Returns
     -------
     None where fewer than three numbers are there, or where it was stopped.
     """
-    report = tell or (lambda fraction, text: None)
+    report = report or (lambda fraction, text: None)
     problem = _Problem(case, entries)
     if len(problem.targets) < len(UNKNOWN):
         return None
@@ -219,7 +219,7 @@ class _Problem:
         if not (allowed and x[1] > _LEAST_CLEARANCE):
             return np.full(len(self.targets), _MISSED)
         found = np.asarray(
-            _flights(self._contact, self._body, self._surfaces, jnp.asarray(self.inputs(x)),
+            _integrate(self._contact, self._body, self._surfaces, jnp.asarray(self.inputs(x)),
                      jnp.asarray(self._rest))
         )  # fmt: skip
         out = np.array([found[t.surface, t.quantity] / t.value - 1.0 for t in self.targets])
@@ -259,7 +259,7 @@ class _Problem:
         return Inputs(*map(float, sigma)), covariance / np.outer(sigma, sigma)
 
 
-def _fly(
+def _motion_of(
     contact: PublishedContact,
     body: Body,
     surfaces: jax.Array,
@@ -286,4 +286,4 @@ def _fly(
     return jax.vmap(one)(surfaces)
 
 
-_flights = Program(_fly)
+_integrate = Program(_motion_of)

@@ -110,16 +110,16 @@ def reproduce(
     SimulationError
         If a motion fails.
     """
-    tell = progress or (lambda fraction, text: None)
+    report = progress or (lambda fraction, text: None)
     stop = stop or threading.Event()
     entries, case = read_tables(tables), builtin("published")
     fit: Refit | None = None
-    tell(0.02, "tables")
+    report(0.02, "tables")
     if refitted:
         before = _before(case, entries, stop)
         if keep is not None and before is not None:
             keep(before)
-        fit = refit(case, entries, tell=lambda f, text: tell(0.2 + 0.4 * f, text), stop=stop)
+        fit = refit(case, entries, report=lambda f, text: report(0.2 + 0.4 * f, text), stop=stop)
         case = case if fit is None else fit.inputs.within(case)
         if stop.is_set() and before is not None:
             return before
@@ -132,15 +132,15 @@ def reproduce(
         keep(partial)
     if stop.is_set():
         return partial
-    tell(0.2 + 0.4 * refitted, "what the exact model says")
-    return _audited(partial, case, results, tell, stop, measured)
+    report(0.2 + 0.4 * refitted, "what the exact model says")
+    return _audited(partial, case, results, report, stop, measured)
 
 
 def _audited(
     partial: Reproduction,
     case: Case,
     results: Motions,
-    tell: Report,
+    report: Report,
     stop: threading.Event,
     measured: Pair | None,
 ) -> Reproduction:
@@ -153,10 +153,10 @@ def _audited(
             raise
     if stop.is_set():
         return partial
-    tell(0.9, "figures")
+    report(0.9, "figures")
     claims = [claim._asdict() for claim in audit.claims(evidence)]
     drawings = figures.drawings(evidence, measured)
-    tell(1.0, "done")
+    report(1.0, "done")
     problems = [*partial.problems, *([_ELSEWHERE] if usable != case else [])]
     return replace(partial, audit=claims, drawings=drawings, problems=problems)
 

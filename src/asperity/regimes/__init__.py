@@ -2,7 +2,7 @@
 
 `dimensionless_numbers`: Tabor number, plasticity index and the like. `choice`: the adhesion law
 for a Tabor number. `boundaries`: the adhesion map of Johnson and Greenwood. `verdicts`: what a
-number says, in words. `liquid_regime`: dry, isolated menisci, coalesced, flooded.
+number says, in words. `liquid_regime`: dry, pendular, coalesced, flooded.
 `validity` collects the warnings of `accuracy`, `ambient`, `model_domain`, `plastic_validity` and
 `wave_limits`: each threshold is a constant beside the warning that uses it.
 """

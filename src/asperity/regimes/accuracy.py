@@ -55,7 +55,7 @@ def ring_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     contact, table = problem.contact, motion.table
     if not isinstance(contact, ElasticContact) or table is None:
         return []
-    deepest = float(motion.impacts.deepest[0])
+    deepest = float(motion.impacts.closest_approach[0])
     row = read_row(table, 0, deepest)
     off = ring_error(contact, deepest, float(row[SIZE]), row[quantities(contact).field])
     allowed = max(case.numerics.tolerance, CLOSED)

@@ -41,13 +41,15 @@ def liquid_warnings(case: Case, regime: Regime) -> list[str]:
             "the Kelvin radius is infinite: menisci of any height, which would have coalesced long "
             "before, are kept isolated"
         )
-    elif on_asperities and regime.wetting in ("coalesced", "flooded"):
+    elif on_asperities and regime.liquid_regime in ("coalesced", "flooded"):
         out.append(
-            f"{regime.wetting}: {regime.wetting_reason}: menisci merge, and this model keeps them "
-            "isolated ('kelvin-filling' is meant for this)"
+            f"{regime.liquid_regime}: {regime.liquid_regime_reason}: menisci merge, and this model "
+            "keeps them isolated ('kelvin-filling' is meant for this)"
         )
-    elif regime.wetting == "flooded":
-        out.append(f"flooded: {regime.wetting_reason}: the drag of the liquid itself is left out")
+    elif regime.liquid_regime == "flooded":
+        out.append(
+            f"flooded: {regime.liquid_regime_reason}: the drag of the liquid itself is left out"
+        )
     return out + _wide(case)
 
 
@@ -125,7 +127,7 @@ def gas_warnings(case: Case, central: float, motion: Motion) -> list[str]:
         *_slip(gas, thinnest),
         *_compressed(case, gas, thinnest, motion),
     ]
-    if not float(motion.impacts.apex[0]) > float(motion.impacts.deepest[0]):
+    if not float(motion.impacts.apex[0]) > float(motion.impacts.closest_approach[0]):
         held = case.launch.gravity > 0.0
         end = "creeps to rest" if held else "never touches"
         out.append(f"the gas film damps the fall so strongly that the body {end}")
@@ -183,7 +185,7 @@ def _slip(gas: Gas, thinnest: float) -> list[str]:
 def _compressed(case: Case, gas: Gas, thinnest: float, motion: Motion) -> list[str]:
     """A film whose gas is compressed."""
     mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    speed = np.sqrt(2.0 * float(motion.impacts.fastest[0]) / mass)
+    speed = np.sqrt(2.0 * float(motion.impacts.maximum_kinetic[0]) / mass)
     slip = float(slip_factor(thinnest, gas.film_slip_length))
     pressure = 3.0 * gas.film_viscosity * case.body.radius * speed * slip / thinnest**2
     if gas.pressure is None or not pressure > _COMPRESSED * gas.pressure:

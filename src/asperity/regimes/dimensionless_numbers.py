@@ -21,17 +21,17 @@ class Regime(NamedTuple):
     plasticity_index
         (E*/H) sqrt(sigma/beta), the publication's eq. 3; above 1 asperities yield.
     load_parameter
-        Mean contact force per touching asperity at closest approach over pi w beta.
+        Mean contact force per contacting asperity at closest approach over pi w beta.
     adhesion_law
         Name of the law in use.
     adhesion_reason
         Why this law, where the program chose it; None where the case names it.
-    wetting
-        State of the liquid at closest approach: "dry", "isolated menisci", "coalesced",
+    liquid_regime
+        State of the liquid at closest approach: "dry", "pendular", "coalesced",
         "flooded".
-    wetting_reason
+    liquid_regime_reason
         The number and the rule that say so.
-    touching_asperities
+    contacting_asperities
         How many are expected to touch at closest approach; None for a smooth body.
     """
 
@@ -41,9 +41,9 @@ class Regime(NamedTuple):
     load_parameter: float | None
     adhesion_law: str
     adhesion_reason: str | None = None
-    wetting: str = "dry"
-    wetting_reason: str = "there is no liquid"
-    touching_asperities: float | None = None
+    liquid_regime: str = "dry"
+    liquid_regime_reason: str = "there is no liquid"
+    contacting_asperities: float | None = None
 
 
 def tabor_number(radius: float, work: float, modulus: float, spacing: float) -> float:
@@ -56,6 +56,6 @@ def plasticity_index(modulus: float, hardness: float, rms_height: float, radius:
     return modulus / hardness * sqrt(rms_height / radius)
 
 
-def load_parameter(force: float, touching: float, work: float, radius: float) -> float:
+def load_parameter(force: float, contacting: float, work: float, radius: float) -> float:
     """Mean contact force per asperity [N] over the pull of a rigid one, pi w beta."""
-    return force / touching / (pi * work * radius)
+    return force / contacting / (pi * work * radius)

@@ -1,4 +1,4 @@
-"""How much liquid lies between two bodies: dry, isolated menisci, coalesced, flooded."""
+"""How much liquid lies between two bodies: dry, pendular, coalesced, flooded."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ FULL = 0.99
 """Share of the places at the axis that liquid bridges where the gap counts as full."""
 
 
-class Wetting(NamedTuple):
+class LiquidState(NamedTuple):
     """The state of the liquid, and why.
 
     Attributes
     ----------
     regime
-        "dry", "isolated menisci", "coalesced" or "flooded".
+        "dry", "pendular", "coalesced" or "flooded".
     reason
         The number and the rule that say so.
     """
@@ -26,7 +26,7 @@ class Wetting(NamedTuple):
     reason: str
 
 
-def wetting_regime(
+def liquid_state(
     *,
     radius: float,
     span: float,
@@ -34,7 +34,7 @@ def wetting_regime(
     spacing: float | None,
     central: float,
     rms_height: float,
-) -> Wetting:
+) -> LiquidState:
     """State of the liquid at closest approach.
 
     Parameters
@@ -61,26 +61,26 @@ def wetting_regime(
     equator.
     """
     if radius == 0.0:
-        return Wetting("dry", "there is no liquid")
+        return LiquidState("dry", "there is no liquid")
     if spacing is None:
         if span >= 0.5 * tip_radius:
-            return Wetting("flooded", "the liquid's edge reaches the equator of the body")
-        return Wetting("isolated menisci", "a smooth body has one meniscus")
+            return LiquidState("flooded", "the liquid's edge reaches the equator of the body")
+        return LiquidState("pendular", "a smooth body has one meniscus")
     bridged = float(ndtr((span - central) / rms_height)) if np.isfinite(span) else 1.0
     if bridged >= FULL:
-        return Wetting(
+        return LiquidState(
             "flooded",
             f"liquid bridges {100.0 * bridged:.4g} % of the places at the axis at closest "
             f"approach, {100.0 * FULL:g} % or more",
         )
     if radius >= spacing:
-        return Wetting(
+        return LiquidState(
             "coalesced",
             f"the liquid's radius of curvature, {radius * 1e9:.3g} nm, reaches the asperity "
             f"spacing of {spacing * 1e9:.3g} nm",
         )
-    return Wetting(
-        "isolated menisci",
+    return LiquidState(
+        "pendular",
         f"the liquid's radius of curvature, {radius * 1e9:.3g} nm, is below the asperity spacing "
         f"of {spacing * 1e9:.3g} nm",
     )

@@ -32,7 +32,7 @@ DEEP = 0.02
 """Depth over body radius: the cap that deep has a contact radius of 0.2 body radii."""
 
 OVERLAP = 0.1
-"""Mean overlap of touching asperities over tip radius: the contact radius is then 0.32 of it."""
+"""Mean overlap of contacting asperities over tip radius: the contact radius is then 0.32 of it."""
 
 FAST = 0.02
 """Impact speed over the speed of waves in a bar: 10 % of the energy then goes into waves."""
@@ -60,7 +60,7 @@ def domain_warnings(
         The motion.
     """
     rough = case.asperities
-    speed = sqrt(2.0 * float(motion.impacts.fastest[0]) / float(problem.body.mass))
+    speed = sqrt(2.0 * float(motion.impacts.maximum_kinetic[0]) / float(problem.body.mass))
     return [
         *([] if rough is None else _asperities(case, rough, central)),
         *_shape(case, contact_radius(case, problem, elastic, central), motion),
@@ -79,7 +79,7 @@ def contact_radius(case: Case, problem: Problem, elastic: float, central: float)
         As for :func:`domain_warnings`.
     """
     radius, rough = case.body.radius, case.asperities
-    relaxed = 1.0 if problem.creep is None else float(problem.creep.ratio)
+    relaxed = 1.0 if problem.relaxation is None else float(problem.relaxation.ratio)
     hertz = float(np.cbrt(0.75 * max(elastic, 0.0) * radius / (relaxed * problem.modulus)))
     if rough is None:
         return hertz
@@ -119,7 +119,7 @@ def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
     told = case.plasticity_model != "none" and overlap > tip  # with the plastic laws' limits
     if overlap > OVERLAP * tip and not told:
         out.append(
-            f"the mean overlap of touching asperities is {overlap / tip:.2g} of their tip radius "
+            f"the mean overlap of contacting asperities is {overlap / tip:.2g} of their tip radius "
             f"and their contact radius {sqrt(overlap / tip):.2g} of it: their laws hold for "
             f"overlaps below {OVERLAP:g}"
         )
@@ -128,7 +128,7 @@ def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
 
 def _shape(case: Case, width: float, motion: Motion) -> list[str]:
     """A contact that is not small beside the body."""
-    radius, depth = case.body.radius, -float(motion.impacts.deepest[0])
+    radius, depth = case.body.radius, -float(motion.impacts.closest_approach[0])
     if depth <= DEEP * radius and width <= WIDE * radius:
         return []
     sinks = f"the body sinks in by {100.0 * depth / radius:.0f} % of its radius and "
@@ -192,34 +192,34 @@ def first_yield_load(pressure: float, modulus: float, radius: float) -> float:
     return pi**3 * pressure**3 * radius**2 / (6.0 * modulus**2)
 
 
-def _kept_elastic(case: Case) -> bool:
+def _elastic_model(case: Case) -> bool:
     """Whether a smooth body whose strength is known does not yield."""
     return case.roughness is None and case.plasticity_model == "none" and case.has_strength
 
 
 def _pressed(case: Case, modulus: float, elastic: float) -> list[str]:
-    """A smooth body that a load would make yield, and that is kept elastic."""
-    if not _kept_elastic(case):
+    """A smooth body that a load would make yield, in an elastic model."""
+    if not _elastic_model(case):
         return []
     first = first_yield_load(case.yielding.yield_pressure, modulus, case.body.radius)
     if elastic <= first:
         return []
     return [
         f"the elastic force is {elastic:.3g} N, {elastic / first:.3g} times the load at which a "
-        f"smooth body first yields ({first:.3g} N), and the body is kept elastic: [plasticity] "
+        f"smooth body first yields ({first:.3g} N), and this model is elastic: [plasticity] "
         "lets it yield"
     ]
 
 
 def _yields(case: Case, modulus: float, speed: float) -> list[str]:
-    """A smooth body that would yield, and is kept elastic."""
-    if not _kept_elastic(case):
+    """A smooth body that would yield, in an elastic model."""
+    if not _elastic_model(case):
         return []
     first = first_yield_speed(case.yielding.yield_pressure, modulus, case.body_density)
     if speed <= first:
         return []
     return [
         f"the body comes in at {speed:.3g} m/s, {speed / first:.3g} times the speed at which a "
-        f"smooth body first yields ({first:.3g} m/s), and is kept elastic: [plasticity] lets it "
-        "yield"
+        f"smooth body first yields ({first:.3g} m/s), and this model is elastic: [plasticity] lets "
+        "it yield"
     ]

@@ -20,7 +20,7 @@ FITTED = 110.0
 """Overlap over that of yield up to which the laws were fitted."""
 
 SHARE = 0.01
-"""Share of the touching asperities beyond yield from which it is said."""
+"""Share of the contacting asperities beyond yield from which it is said."""
 
 
 def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[str]:
@@ -39,11 +39,11 @@ def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[
     without = "what the first impact would have returned could not be computed"
     if np.isfinite(elastic):
         without = f"the first impact would have returned e = {elastic:.5g}"
-    return [f"kept elastic, {without}; with yielding ({case.plasticity_model}) it returns {found}"]
+    return [f"without yielding {without}; with it ({case.plasticity_model}) it returns {found}"]
 
 
 def yielded(case: Case, modulus: float, central: float) -> list[str]:
-    """Lines on the share of touching asperities that is beyond yield, and how far they are.
+    """Lines on the share of contacting asperities that is beyond yield, and how far they are.
 
     And on what is taken to yield, or cannot be judged, where that is not known.
 
@@ -69,19 +69,21 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
         return []
     law = _law(case, rough.asperity_radius, modulus)
     heights = Gaussian(rough.rms_height, rough.mean_height)
-    overlap, touching, beyond, whole = (float(x) for x in _tails(law, heights, as_float64(central)))
-    share = beyond / touching if touching > 0.0 else 0.0
+    overlap, contacting, beyond, whole = (
+        float(x) for x in _tails(law, heights, as_float64(central))
+    )
+    share = beyond / contacting if contacting > 0.0 else 0.0
     if share < SHARE:
         return []
     advice = ": [plasticity] lets them yield" if _could_yield(case) else ""
     out = [
-        f"{100.0 * share:.3g} % of the touching asperities are beyond yield at closest approach "
+        f"{100.0 * share:.3g} % of the contacting asperities are beyond yield at closest approach "
         f"(overlaps above {overlap * 1e9:.3g} nm, by {_model(case)}){advice}"
     ]
-    mean, tip = whole / touching, rough.asperity_radius
+    mean, tip = whole / contacting, rough.asperity_radius
     if case.plasticity_model != "none" and mean > min(FITTED * overlap, tip):
         out.append(
-            f"the mean overlap of touching asperities, {mean * 1e9:.3g} nm, is "
+            f"the mean overlap of contacting asperities, {mean * 1e9:.3g} nm, is "
             f"{mean / overlap:.3g} times that of yield and {mean / tip:.3g} tip radii: the laws "
             f"were fitted up to {FITTED:g} times, on tips much larger than the overlap"
         )
@@ -93,8 +95,8 @@ def _counted(
 ) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
     """Overlap at yield [m], asperities that touch and that yield, and the former's overlaps."""
     overlap = jnp.asarray(law.yield_overlap)
-    touching, beyond = heights.tail(2, central), heights.tail(2, central + overlap)
-    return overlap, touching, beyond, heights.tail(3, central)
+    contacting, beyond = heights.tail(2, central), heights.tail(2, central + overlap)
+    return overlap, contacting, beyond, heights.tail(3, central)
 
 
 _tails = Program(_counted, AT_ONCE)

@@ -10,7 +10,7 @@ import numpy as np
 from ..config import Case
 from ..contact import Contact, ElasticContact
 from ..dynamics import Motion
-from ..dynamics.curve_table import CENTRAL, FORCE, PULL, TOUCHING, read_row
+from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, read_row
 from ..dynamics.problem import Problem
 from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import sample
@@ -26,6 +26,9 @@ from .wave_limits import wave_warnings
 APART = 1e-6
 """Share of its value at closest approach below which a contact force counts as none."""
 
+YIELDS_ABOVE = 1.0
+"""Plasticity index above which asperities yield (Greenwood and Williamson 1966)."""
+
 CLASSED = 5e-3
 """Relative error of bonds' work from which classes of tip radius are too few."""
 
@@ -35,28 +38,28 @@ class AtDepth(NamedTuple):
 
     Attributes
     ----------
-    touching
-        Expected number of touching asperities.
+    contacting
+        Expected number of contacting asperities.
     elastic
         Elastic part of the force [N].
     central
         Separation of the deformed mean planes at the axis [m].
     """
 
-    touching: float
+    contacting: float
     elastic: float
     central: float
 
     @classmethod
     def of(cls, contact: Contact, motion: Motion, trajectory: Trajectory | None = None) -> AtDepth:
         """Read off the curve of first approach, or off a motion that was stepped in time."""
-        deepest = float(motion.impacts.deepest[0])
+        deepest = float(motion.impacts.closest_approach[0])
         if trajectory is None:
             row = read_row(motion.table, 0, deepest)
         else:
             row = trajectory.series.rows[np.argmin(np.abs(trajectory.series.separation - deepest))]
-        elastic = row[FORCE] - row[PULL]
-        return cls(float(row[TOUCHING]), float(elastic), float(row[CENTRAL]))
+        elastic = row[FORCE] - row[ATTRACTION]
+        return cls(float(row[CONTACTING]), float(elastic), float(row[CENTRAL]))
 
 
 def warnings_of(
@@ -125,7 +128,7 @@ def _one_law(case: Case, problem: Problem) -> list[str]:
     names = " and ".join(LAW_NAMES[law] for law in dict.fromkeys(laws))
     return [
         f"the {LAW_NAMES[problem.adhesion.law]} law was chosen for the mean tip radius: between "
-        f" radii of {ends[0] * 1e9:.3g} and {ends[1] * 1e9:.3g} nm (5 to 95 % of the "
+        f"radii of {ends[0] * 1e9:.3g} and {ends[1] * 1e9:.3g} nm (5 to 95 % of the "
         f"summits) it would be {names}"
     ]
 
@@ -147,7 +150,7 @@ def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
     rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
     hertz = 0.0
     if case.counterface.deformation != "rigid":
-        relaxed = 1.0 if problem.creep is None else float(problem.creep.ratio)
+        relaxed = 1.0 if problem.relaxation is None else float(problem.relaxation.ratio)
         modulus = relaxed * problem.modulus
         hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / modulus)
     width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
@@ -165,30 +168,31 @@ def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
     if rough is None:
         return []
     out = []
-    touching = max(at_depth.touching, 0.0)
-    if touching < 1.0:
-        out.append(_hardly_one(touching))
-    elif touching < FEW:
-        scatter = 100.0 / np.sqrt(touching)
+    contacting = max(at_depth.contacting, 0.0)
+    if contacting < 1.0:
+        out.append(_hardly_one(contacting))
+    elif contacting < FEW:
+        scatter = 100.0 / np.sqrt(contacting)
         out.append(
-            f"only {touching:.2g} asperities are expected to touch at closest approach: the "
+            f"only {contacting:.2g} asperities are expected to touch at closest approach: the "
             f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
             "in that number (Poisson)"
         )
     share = rough.covered(at_depth.central)
     if share > 0.1:
         out.append(
-            f"touching asperities cover {100 * share:.0f} % of the area at the axis at closest "
+            f"contacting asperities cover {100 * share:.0f} % of the area at the axis at closest "
             "approach: neighbours interact, which the sum over single asperities leaves out"
         )
     return out
 
 
-def _hardly_one(touching: float) -> str:
-    """What a mean of fewer than one touching asperity means."""
+def _hardly_one(contacting: float) -> str:
+    """What a mean of fewer than one contacting asperity means."""
     return (
-        f"only {touching:.2g} asperities are expected to touch at closest approach: "
-        f"{missed(touching)}, and the numbers are means over many bodies, which none of them shows"
+        f"only {contacting:.2g} asperities are expected to touch at closest approach: "
+        f"{missed(contacting)}, and the numbers are means over many bodies, which none of them "
+        "shows"
     )
 
 
@@ -244,10 +248,10 @@ def _publication(case: Case) -> list[str]:
 def _adhesion(regime: Regime, near_borders: Sequence[str], yields: bool) -> list[str]:
     out = list(near_borders)
     psi, mu = regime.plasticity_index, regime.tabor_number
-    if psi is not None and psi > 1.0 and not yields:
+    if psi is not None and psi > YIELDS_ABOVE and not yields:
         out.append(
-            f"the plasticity index is {psi:.3g}: above 1 the asperities yield, and this model "
-            "keeps them elastic"
+            f"the plasticity index is {psi:.3g}: above {YIELDS_ABOVE:g} the asperities yield, and "
+            "this model keeps them elastic"
         )
     law = regime.adhesion_law
     if mu is not None and law in ("dmt", "bradley") and mu > DMT_BELOW:
@@ -277,9 +281,9 @@ def slow_menisci(
     trajectory
         The same in time; without it all menisci formed at once.
     """
-    if problem.late is None:
+    if problem.delayed is None:
         return []
-    time = float(problem.late.time)
+    time = float(problem.delayed.time)
     if trajectory is None:
         series = sample(problem.body, motion.table, motion.impacts)
     else:
@@ -296,11 +300,13 @@ def slow_menisci(
 
 
 def _ledger(problem: Problem, motion: Motion) -> list[str]:
-    what = "way between the branches" if problem.creep is None else "creeping contact"
-    if isinstance(problem.contact, ElasticContact) and problem.creep is None:
+    what = "scanning curve" if problem.relaxation is None else "viscoelastic contact"
+    if isinstance(problem.contact, ElasticContact) and problem.relaxation is None:
         what += f" or the deformation on {problem.contact.rings} rings"
     rows = motion.impacts
-    off = float(np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.fastest[0])
+    off = float(
+        np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.maximum_kinetic[0]
+    )
     if off <= CLOSED:
         return []
     return [

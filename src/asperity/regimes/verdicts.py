@@ -17,7 +17,7 @@ NARROW_BELOW = 0.1
 """Kelvin radius over the tip's radius below which a meniscus is narrow beside its tip."""
 
 FEW = 10.0
-"""Touching asperities below which a mean over asperities says little of one impact."""
+"""Contacting asperities below which a mean over asperities says little of one impact."""
 
 
 class Verdict(NamedTuple):
@@ -51,8 +51,8 @@ class Situation(NamedTuple):
         Radius of one asperity, or of the smooth body [m].
     spacing
         Mean distance of asperities [m]; None for a smooth body.
-    touching
-        Expected number of touching asperities at the deepest point of the first impact.
+    contacting
+        Expected number of contacting asperities at the deepest point of the first impact.
     kelvin_radius
         Radius of curvature of the liquid [m]: Kelvin's, or less where an adsorbed film bounds
         it; 0 without menisci, infinite in saturated vapour without a film.
@@ -70,7 +70,7 @@ class Situation(NamedTuple):
     rough: bool
     tip_radius: float
     spacing: float | None
-    touching: float
+    contacting: float
     kelvin_radius: float
     molecule_size: float | None
     bounded: bool = False
@@ -78,15 +78,15 @@ class Situation(NamedTuple):
     yields: bool = False
 
 
-def missed(touching: float) -> str:
+def missed(contacting: float) -> str:
     """What it means that fewer than one asperity is expected to touch.
 
     Parameters
     ----------
-    touching
-        Expected number, below 1: by Poisson's law a share exp(-touching) of bodies touches none.
+    contacting
+        Expected number, below 1: by Poisson's law a share exp(-contacting) of bodies touches none.
     """
-    if touching < 0.5:
+    if contacting < 0.5:
         return "most single bodies touch none and a few touch one"
     return "about half of single bodies touch none and the others one or two"
 
@@ -103,11 +103,11 @@ def verdicts(situation: Situation) -> dict[str, Verdict]:
             regime.adhesion_law, "", f"chosen: {reason}" if reason else "as the case says"
         ),
         "plasticity_index": _plasticity(situation),
-        "touching_asperities": _touching(situation),
+        "contacting_asperities": _touching(situation),
         "kelvin_radius": _kelvin(situation),
         "kelvin_radius_over_spacing": _over_spacing(situation),
         "kelvin_radius_over_tip_radius": _over_tip(situation),
-        "humidity_regime": _humidity(situation),
+        "liquid_regime": _humidity(situation),
     }
 
 
@@ -144,7 +144,7 @@ def _load(situation: Situation) -> Verdict:
     regime = situation.regime
     value, elasticity = regime.load_parameter, regime.elasticity_parameter
     if value is None:
-        touches = situation.touching > 0.0
+        touches = situation.contacting > 0.0
         why = "the case has no adhesion" if touches else "nothing touches at closest approach"
         return Verdict(None, "1", why)
     # Without a range the limit is known only to lie between those of rigid and of soft bodies.
@@ -180,7 +180,7 @@ def _plasticity(situation: Situation) -> Verdict:
 
 
 def _touching(situation: Situation) -> Verdict:
-    value = situation.touching
+    value = situation.contacting
     if not situation.rough:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
     if value < 1.0:
@@ -232,4 +232,4 @@ def _over_tip(situation: Situation) -> Verdict:
 
 def _humidity(situation: Situation) -> Verdict:
     """Dry, isolated or coalesced menisci, or a gap full of liquid."""
-    return Verdict(situation.regime.wetting, "", situation.regime.wetting_reason)
+    return Verdict(situation.regime.liquid_regime, "", situation.regime.liquid_regime_reason)

@@ -36,7 +36,7 @@ def wave_warnings(
     """
     if problem.body.waves is None or not elastic > 0.0:
         return []
-    mass, energy = float(problem.body.mass), float(motion.impacts.fastest[0])
+    mass, energy = float(problem.body.mass), float(motion.impacts.maximum_kinetic[0])
     # Of a pulse of this force that turns the body back; half a period of it is the contact time.
     rate = elastic / (mass * sqrt(2.0 * energy / mass))
     return [

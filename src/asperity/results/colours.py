@@ -6,7 +6,7 @@ COLOURS = {
     "motion": "#0072B2",
     "central": "#56B4E9",
     "apex": "#E69F00",
-    "deepest": "#D55E00",
+    "closest_approach": "#D55E00",
     "quiet": "#888888",
     "contact": "#000000",
     "total": "#000000",

@@ -1,4 +1,4 @@
-"""A motion that was flown, as the result that a user reads: units, names, plain numbers."""
+"""A motion that was integrate, as the result that a user reads: units, names, plain numbers."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..dynamics import Body, Motion
 from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from ..dynamics.problem import Problem
 from ..dynamics.quasi_static import losses
-from ..dynamics.static_equilibrium import Datum, end_of_contact
+from ..dynamics.static_equilibrium import Reference, end_of_contact
 from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import Series, ascending, sample, until
 from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
 from ..regimes.accuracy import CLOSED
-from ..regimes.liquid_regime import Wetting, wetting_regime
+from ..regimes.liquid_regime import LiquidState, liquid_state
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
     AtDepth,
@@ -41,8 +41,8 @@ _measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
-class Flight(NamedTuple):
-    """A motion that was flown, the contact it was flown with, and how it ended.
+class Solution(NamedTuple):
+    """A motion that was integrate, the contact it was integrate with, and how it ended.
 
     The body has the release that was found, where the case gives a speed alone.
     """
@@ -73,9 +73,9 @@ def contact_end(table: Table, peak: float) -> float:
     return float(_end_of_contact(table, as_float64(peak)))
 
 
-def measured(flight: Flight, body: Body) -> Measures:
+def measured(solution: Solution, body: Body) -> Measures:
     """Measures over a power of two of rows, seldom more than the first: one compilation."""
-    motion, body = flight.motion, flight.body or body
+    motion, body = solution.motion, solution.body or body
     rows = motion.impacts.made.shape[0]
     size = max(_least_rows(body), 1 << (rows - 1).bit_length())
 
@@ -83,11 +83,11 @@ def measured(flight: Flight, body: Body) -> Measures:
         return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
 
     whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
-    if flight.trajectory is None:
+    if solution.trajectory is None:
         return _measure(whole, body, None, None)
-    first, passing = _stepped_contact(flight.trajectory, motion, body), None
+    first, passing = _stepped_contact(solution.trajectory, motion, body), None
     if body.film is not None:
-        found = flight.trajectory.passing(float(first.end), float(body.mass))
+        found = solution.trajectory.passing(float(first.end), float(body.mass))
         passing = jax.tree_util.tree_map(pad, found)
     return _measure(whole, body, passing, first)
 
@@ -108,10 +108,10 @@ def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> Firs
 
 
 def _sampled(
-    case: Case, flight: Flight, body: Body, most: int | None
+    case: Case, solution: Solution, body: Body, most: int | None
 ) -> tuple[Series, dict[str, np.ndarray]]:
     """A motion as a time series, and the energy lost by mechanism along it."""
-    motion, contact, stepped = flight.motion, flight.contact, flight.trajectory
+    motion, contact, stepped = solution.motion, solution.contact, solution.trajectory
     limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
     impacts = motion.impacts
     cut = most is not None and most < int(np.sum(impacts.made))
@@ -124,20 +124,20 @@ def _sampled(
     return series, _losses_along(contact, motion, body, series)
 
 
-def first_restitution(flight: Flight, body: Body) -> float | None:
+def first_restitution(solution: Solution, body: Body) -> float | None:
     """Restitution of a motion's first impact; None where it has none."""
-    return _number(measured(flight, body).restitution[0])
+    return _number(measured(solution, body).restitution[0])
 
 
 def result_of(
     case: Case,
     name: str,
     problem: Problem,
-    flight: Flight,
+    solution: Solution,
     elastic: float | None = None,
     most: int | None = None,
 ) -> Result:
-    """The result of a motion that was flown.
+    """The result of a motion that was integrate.
 
     Parameters
     ----------
@@ -145,27 +145,27 @@ def result_of(
         The case, and what to call it.
     problem
         What was built from it.
-    flight
+    solution
         The motion.
     elastic
         Restitution of the first impact were nothing to yield, for a case in which it does.
     most
         Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
     """
-    problem = problem._replace(body=flight.body or problem.body)
-    motion, body = flight.motion, problem.body
+    problem = problem._replace(body=solution.body or problem.body)
+    motion, body = solution.motion, problem.body
     made = int(np.sum(motion.impacts.made))
-    measures = measured(flight, body)
-    series, lost = _sampled(case, flight, body, most)
-    at_depth = AtDepth.of(flight.contact, motion, flight.trajectory)
+    measures = measured(solution, body)
+    series, lost = _sampled(case, solution, body, most)
+    at_depth = AtDepth.of(solution.contact, motion, solution.trajectory)
     check_surface(case, problem, at_depth)
     regime = regime_of(case, problem, at_depth)
-    forces, energies = _histories(flight.contact, motion, body, series, lost)
+    forces, energies = _histories(solution.contact, motion, body, series, lost)
     impacts = motion.impacts
     return Result(
         case=case,
         name=name,
-        outcome=flight.outcome,
+        outcome=solution.outcome,
         time=series.time,
         separation=series.separation,
         central_separation=series.rows[:, CENTRAL],
@@ -174,21 +174,21 @@ def result_of(
         energies=energies,
         regime=regime._asdict(),
         measures=_plain(measures, made),
-        ledger=_ledger(flight.contact, motion, body, made),
+        ledger=_ledger(solution.contact, motion, body, made),
         surface=None if case.asperities is None else case.asperities.facts,
         warnings=[
             *warnings_of(case, problem, regime, at_depth, motion),
             *pull_warnings(case, float(measures.pull_off), float(measures.held_at_pull_off)),
             *release_warnings(float(measures.reference)),
-            *slow_menisci(problem, motion, flight.trajectory),
+            *slow_menisci(problem, motion, solution.trajectory),
             *kept_elastic(case, float(np.asarray(measures.restitution)[0]), elastic),
         ],
         events={
             name: np.asarray(values)[:made]
             for name, values in (
-                ("deepest_time", impacts.deepest_time),
+                ("closest_approach_time", impacts.closest_approach_time),
                 ("apex_time", impacts.apex_time),
-                ("deepest_separation", impacts.deepest),
+                ("closest_approach_separation", impacts.closest_approach),
                 ("apex_separation", impacts.apex),
             )
         },
@@ -228,7 +228,7 @@ def assessment_of(
     problem
         What was built from it.
     contact, motion
-        The contact that was flown with, and the motion.
+        The contact that was integrate with, and the motion.
     """
     at_depth = AtDepth.of(contact, motion)
     check_surface(case, problem, at_depth)
@@ -239,7 +239,7 @@ def assessment_of(
         rough=rough is not None,
         tip_radius=problem.tip_radius,
         spacing=None if rough is None else rough.asperity_density**-0.5,
-        touching=at_depth.touching,
+        contacting=at_depth.contacting,
         kelvin_radius=case.liquid_radius,
         molecule_size=None if liquid is None else liquid.molecule_size,
         bounded=case.liquid_radius < case.kelvin_radius,
@@ -262,22 +262,22 @@ def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime
         plasticity = regimes.plasticity_index(
             problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
         )
-    touching = max(at_depth.touching, 0.0)  # far apart, a polynomial may say a little less
-    if work and touching > 0.0:
+    contacting = max(at_depth.contacting, 0.0)  # far apart, a polynomial may say a little less
+    if work and contacting > 0.0:
         elastic = at_depth.elastic
-        load = regimes.load_parameter(elastic, touching, work, problem.tip_radius)
+        load = regimes.load_parameter(elastic, contacting, work, problem.tip_radius)
     elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
-    wetting = _wetting(case, problem, at_depth)
+    liquid = _liquid(case, problem, at_depth)
     return regimes.Regime(
         tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
-        wetting.regime, wetting.reason, None if rough is None else touching,
+        liquid.regime, liquid.reason, None if rough is None else contacting,
     )  # fmt: skip
 
 
-def _wetting(case: Case, problem: Problem, at_depth: AtDepth) -> Wetting:
+def _liquid(case: Case, problem: Problem, at_depth: AtDepth) -> LiquidState:
     rough, given = case.asperities, case.capillary.surface_rms_height
     rms = 0.0 if rough is None else given or rough.surface_rms_height or rough.rms_height
-    return wetting_regime(
+    return liquid_state(
         radius=case.liquid_radius,
         span=case.liquid_span,
         tip_radius=problem.tip_radius,
@@ -308,7 +308,7 @@ def _histories(
         forces["total"] = forces["total"] + forces[name]
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
-        "potential": weight * (series.separation - _zero_height(motion.datum)),
+        "potential": weight * (series.separation - _zero_height(motion.reference)),
         "stored": rows[:, STORED],
     }
     for name, lost in losses.items():
@@ -329,7 +329,7 @@ def _losses_along(
     change = bonds - begun
     laws = len(contact.mechanisms)
     lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
-    lost[:, laws:] += series.heat
+    lost[:, laws:] += series.dissipated
     return _by_name(contact, body, ascending(lost, _known(motion)))
 
 
@@ -337,7 +337,7 @@ def _known(motion: Motion) -> float:
     """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
     impacts = motion.impacts
     energy_balance_error = np.max(np.where(impacts.made, impacts.energy_balance_error, 0.0))
-    return float(max(2.0 * energy_balance_error, CLOSED * impacts.fastest[0]))
+    return float(max(2.0 * energy_balance_error, CLOSED * impacts.maximum_kinetic[0]))
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
@@ -348,9 +348,9 @@ def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.nda
     return out
 
 
-def _zero_height(datum: Datum) -> float:
+def _zero_height(ground: Reference) -> float:
     """Separation at which the potential energy is 0: the static equilibrium, if any."""
-    at_rest = float(datum.equilibrium)
+    at_rest = float(ground.equilibrium)
     return at_rest if np.isfinite(at_rest) else 0.0
 
 
@@ -361,9 +361,9 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
     names = (*contact.mechanisms, *body.mechanisms)
     for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
-    impact_energy = float(motion.impacts.fastest[0])
+    impact_energy = float(motion.impacts.maximum_kinetic[0])
     energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
-    initial = float(motion.release) - weight * _zero_height(motion.datum)
+    initial = float(motion.release) - weight * _zero_height(motion.reference)
     return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
 
 

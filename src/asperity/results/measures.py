@@ -148,7 +148,7 @@ def measure(
     first
         Its first contact, where that is known; :func:`first_contact` needs the table.
     """
-    rows, datum, end = motion.impacts, motion.datum, motion.end
+    rows, ground, end = motion.impacts, motion.reference, motion.end
     first = first_contact(motion.table, rows, body) if first is None else first
     reference, pulled = first.end, first.unloading
     outside = reference < body.release
@@ -161,10 +161,12 @@ def measure(
     top = body.release + jnp.where(
         falls, body.kinetic / jnp.where(falls, body.weight, 1.0), jnp.inf * (body.kinetic > 0)
     )
-    rebounds = rows.made & (rows.apex > rows.deepest)  # a body that creeps to rest has none
+    rebounds = rows.made & (
+        rows.apex > rows.closest_approach
+    )  # a body that creeps to rest has none
     apex = jnp.where(gone, jnp.nan, jnp.where(rebounds, rows.apex, jnp.nan))
-    height = apex - datum.equilibrium
-    before = _shift(height, top - datum.equilibrium)
+    height = apex - ground.equilibrium
+    before = _shift(height, top - ground.equilibrium)
     fits = jnp.logical_and(jnp.isfinite(before), height > 0.0)
     decrement = jnp.log(jnp.where(fits, before, 1.0) / jnp.where(fits, height, 1.0))
 
@@ -174,13 +176,13 @@ def measure(
     rests = end.outcome == ENDS.index(Outcome.REST)
     captures = _captures(motion, body, reference, outside, away)
     captures = jnp.logical_or(captures, rests & rows.made & ~rebounds)
-    capture_time = rows.deepest_time[jnp.argmax(captures)]
+    capture_time = rows.closest_approach_time[jnp.argmax(captures)]
     energies = _energies(motion, body, reference, outside, passing)
     safe = jnp.where(jnp.isfinite(period), period, 1.0)
     blank = jnp.where(jnp.isfinite(period), 1.0, jnp.nan)
     return Measures(
-        impact_speed=_speed(jnp.where(outside, energies[0][0], rows.fastest[0]), body.mass),
-        maximum_speed=_speed(rows.fastest[0], body.mass),
+        impact_speed=_speed(jnp.where(outside, energies[0][0], rows.maximum_kinetic[0]), body.mass),
+        maximum_speed=_speed(rows.maximum_kinetic[0], body.mass),
         captured=captures[0],
         capture_time=jnp.where(jnp.any(captures), capture_time, jnp.nan),
         time_to_rest=jnp.where(rests, end.time, jnp.nan),
@@ -212,7 +214,7 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
     end = end_of_contact(table, jnp.maximum(peak, pulled.pull_off))
     inwards = time_to(body, _ahead(table, fall, unloading=False), fall.kinetic, False, end)
     outwards = time_to(body, _ahead(table, rise, unloading=True), rise.kinetic, True, end)
-    time = rows.deepest_time[0] - fall.begun - inwards + outwards
+    time = rows.closest_approach_time[0] - fall.begun - inwards + outwards
     return FirstContact(
         end=end,
         time=jnp.where(rows.apex[0] >= end, time, jnp.nan),
@@ -261,7 +263,7 @@ def _captures(
     Gas alone may keep one within its reach: that is no capture, and the static equilibrium
     counts in place of the end of contact.
     """
-    rows, still = motion.impacts, motion.datum.equilibrium
+    rows, still = motion.impacts, motion.reference.equilibrium
     held = reference if body.film is None else jnp.fmin(reference, still)
     held = jnp.where(outside, held, still)
     return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
@@ -283,7 +285,7 @@ def _energies(
     """
     rows, weight = motion.impacts, body.weight
     zero = jnp.where(
-        outside, weight * reference, motion.datum.stored + weight * motion.datum.equilibrium
+        outside, weight * reference, motion.reference.stored + weight * motion.reference.equilibrium
     )
     after = rows.mechanical - zero
     before = _shift(after, motion.release - zero)

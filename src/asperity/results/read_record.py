@@ -17,8 +17,8 @@ from asperity.results.netcdf_record import SEAL, sealed
 from asperity.results.result import Curve, Result
 
 _MOTION = ("time", "separation", "central_separation", "speed")
-_EVENTS = ("deepest_time", "deepest_separation", "apex_time", "apex_separation")
-_NUMBERS = ("deepest", "pull_off", "work_of_separation", "loss")
+_EVENTS = ("closest_approach_time", "closest_approach_separation", "apex_time", "apex_separation")
+_NUMBERS = ("minimum_separation", "pull_off", "work_of_separation", "loss")
 _MAYBE = ("pull_off_separation", "preload")
 _MAGIC = b"CDF\x02"
 

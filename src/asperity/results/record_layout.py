@@ -32,8 +32,8 @@ _ENERGIES = {
     "stored": "energy stored in the contact",
 }
 _EVENTS = {
-    "deepest_time": ("s", "time of closest approach"),
-    "deepest_separation": ("m", "rigid separation at closest approach"),
+    "closest_approach_time": ("s", "time of closest approach"),
+    "closest_approach_separation": ("m", "rigid separation at closest approach"),
     "apex_time": ("s", "time of the rebound's turning point"),
     "apex_separation": ("m", "rigid separation at the rebound's turning point"),
 }
@@ -60,7 +60,7 @@ _MEASURES = {
     "power_loss_published": ("W", "one-way work over the impact time, as the publication counts"),
 }
 _CURVE = {
-    "deepest": ("m", "closest rigid separation"),
+    "minimum_separation": ("m", "closest rigid separation"),
     **_PULL,
     "loss": ("J", "energy lost over in and out"),
 }
@@ -168,7 +168,7 @@ def _motion(result: ResultData) -> list[Variable]:
 
 def _impacts(result: ResultData) -> list[Variable]:
     found = []
-    count = np.size(result.events.get("deepest_time", ()))
+    count = np.size(result.events.get("closest_approach_time", ()))
     for name, values in result.events.items():
         units, meaning = _EVENTS.get(name, ("1", name.replace("_", " ")))
         values = np.asarray(values, dtype=float)

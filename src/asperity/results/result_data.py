@@ -44,7 +44,8 @@ class ResultData:
     warnings : list of str
         What to know before the numbers are used.
     events : dict of str to numpy.ndarray
-        "deepest_time", "apex_time" [s], "deepest_separation", "apex_separation" [m], per impact.
+        "closest_approach_time", "apex_time" [s], "closest_approach_separation",
+        "apex_separation" [m], per impact.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
     case_file : str, optional
@@ -89,7 +90,7 @@ class CurveData:
         Contact force [N], positive apart; as long as ``rigid_separation``.
     components_loading, components_unloading : dict of str to numpy.ndarray
         The forces taken apart by mechanism [N].
-    deepest : float
+    minimum_separation : float
         Closest rigid separation [m].
     pull_off : float
         Largest tension while unloading [N].
@@ -118,7 +119,7 @@ class CurveData:
     force_unloading: np.ndarray
     components_loading: Arrays
     components_unloading: Arrays
-    deepest: float
+    minimum_separation: float
     pull_off: float
     pull_off_separation: float | None
     work_of_separation: float

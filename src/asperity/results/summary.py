@@ -214,19 +214,20 @@ def _chosen(regime: dict[str, Any]) -> list[str]:
     Nothing where the case names the law, and where it is dry.
     """
     lines: list[str] = []
-    reason, wetting = regime.get("adhesion_reason"), regime.get("wetting")
+    reason, liquid = regime.get("adhesion_reason"), regime.get("liquid_regime")
     if reason is not None:
         law = LAW_NAMES[regime["adhesion_law"]]
         lines += ["", *_wrapped(f"Adhesion law chosen: {law}. {reason}.")]
-    if wetting not in (None, "dry"):
-        why = regime["wetting_reason"]
-        lines += ["", *_wrapped(f"Liquid: {wetting}, since {why}.")]
+    if liquid not in (None, "dry"):
+        name = "pendular (isolated menisci)" if liquid == "pendular" else liquid
+        why = regime["liquid_regime_reason"]
+        lines += ["", *_wrapped(f"Liquid regime: {name}, since {why}.")]
     return lines
 
 
 def _curve(curve: CurveData) -> list[tuple[str, str]]:
     return [
-        ("closest rigid separation", amount(curve.deepest, "m")),
+        ("closest rigid separation", amount(curve.minimum_separation, "m")),
         *_pull(vars(curve)),
         ("lost over in and out", amount(curve.loss, "J")),
     ]

@@ -17,7 +17,7 @@ _TAKERS = {
     "capillary": "menisci take",
     "gas": "the gas film takes",
     "plastic": "yielding takes",
-    "viscous": "the creeping bulk takes",
+    "viscous": "the viscoelastic bulk takes",
     "waves": "elastic waves take",
 }
 _LITTLE = 1e-9
@@ -36,10 +36,10 @@ def verdict(result: ResultData) -> str:
         The result.
     """
     if unjudged(result):
-        touching = result.regime["touching_asperities"]
+        contacting = result.regime["contacting_asperities"]
         return (
-            f"no verdict: {touching:.2g} asperities are expected to touch at closest approach, so "
-            f"{missed(touching)}; the numbers are means over many bodies"
+            f"no verdict: {contacting:.2g} asperities are expected to touch at closest approach, "
+            f"so {missed(contacting)}; the numbers are means over many bodies"
         )
     if not result.measures["rebound_height"]:
         return "touched nothing before the run ended"
@@ -80,17 +80,17 @@ def unjudged(result: ResultData) -> bool:
     result: ResultData
         The result.
     """
-    touching = result.regime.get("touching_asperities")
+    contacting = result.regime.get("contacting_asperities")
     if result.outcome is Outcome.FAILED or _untouched(result):
         return False
-    return touching is not None and touching < 1.0
+    return contacting is not None and contacting < 1.0
 
 
 def _untouched(result: ResultData) -> bool:
     """Whether the gas film stopped the body on its first way in."""
     if result.outcome is not Outcome.STOPPED:
         return False
-    apexes, deepest = (result.events[f"{name}_separation"] for name in ("apex", "deepest"))
+    apexes, deepest = (result.events[f"{name}_separation"] for name in ("apex", "closest_approach"))
     return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
 
 
@@ -142,7 +142,7 @@ def _rebounds_made(result: ResultData) -> int:
 
 def _rebounds_before(result: ResultData) -> int:
     """Rebounds before the impact that captures."""
-    times = np.asarray(result.events["deepest_time"])
+    times = np.asarray(result.events["closest_approach_time"])
     return int(np.sum(times < result.measures["capture_time"] * (1.0 - 1e-12)))
 
 

@@ -19,7 +19,7 @@ from ..config.html_table import card, counted
 from ..critical_velocity import Launcher, Rebound, critical_measures
 from ..dynamics import Limits
 from ..errors import InputError, SimulationError
-from ..integration import Report, flown, silently
+from ..integration import Report, integrate, silently
 from ..model import build
 from ..results.case_source import CaseLike, case_of
 from ..results.conversion import assessment_of, measured
@@ -226,14 +226,14 @@ def restitution_curve(
     limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1, time_limit=np.inf))
     numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
     first = case.model_copy(update={"numerics": numerics})
-    flight = flown(first, problem, tell, stop)
-    about = assessment_of(case, name, problem, flight.contact, flight.motion)
-    measures = measured(flight, problem.body)
+    solution = integrate(first, problem, tell, stop)
+    about = assessment_of(case, name, problem, solution.contact, solution.motion)
+    measures = measured(solution, problem.body)
     own = float(measures.impact_speed)  # none where gas stops the body before
     own = own if np.isfinite(own) else float(measures.maximum_speed)
-    launcher = Launcher(problem, flight, limits, finer=_FINER, stop=stop)
+    launcher = Launcher(problem, solution, limits, finer=_FINER, stop=stop)
     tell(0.3, "critical velocity")
-    found = critical_measures(launcher.edges(flight))
+    found = critical_measures(launcher.edges(solution))
     if speeds is None:
         speeds = _decades(found["capture_edges"], own, points)
     rebounds: list[Rebound] = []

@@ -156,7 +156,7 @@ def _no_list(values: object) -> bool:
 
 
 def _computed(
-    study: Study, tell: Report, stop: threading.Event
+    study: Study, report: Report, stop: threading.Event
 ) -> tuple[dict[str, np.ndarray], Tally]:
     """The columns of all cases, and what is to be known of them."""
     whole = {}
@@ -164,7 +164,7 @@ def _computed(
         wide = (study.width(column.along),) if column.along else ()
         whole[column.name] = np.full((study.size, *wide), column.fill, column.dtype)
     tally = Tally(0, 0, study.tasks, study.size)
-    tell(0.0, f"{study.size:,} cases (the first are compiled)")
+    report(0.0, f"{study.size:,} cases (the first are compiled)")
     answers = generator_of(in_process(study, range(study.tasks), stop))
     with contextlib.closing(answers):
         for task, columns, effort in answers:
@@ -172,6 +172,6 @@ def _computed(
             for name, values in columns.items():
                 whole[name][cases.start : cases.stop] = values
             tally = tally.plus(effort, 0.0)
-            tell(tally.cases / study.size, f"{tally.cases:,} of {study.size:,} cases")
-    tell(1.0, "done")
+            report(tally.cases / study.size, f"{tally.cases:,} of {study.size:,} cases")
+    report(1.0, "done")
     return whole, tally

@@ -61,7 +61,13 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
             "unloading": packed(curve.force_unloading),
             **{
                 name: plain(getattr(curve, name))
-                for name in ("deepest", "pull_off", "work_of_separation", "preload", "loss")
+                for name in (
+                    "minimum_separation",
+                    "pull_off",
+                    "work_of_separation",
+                    "preload",
+                    "loss",
+                )
             },
         },
         "place": _place(result),
@@ -86,7 +92,9 @@ def _drawn(result: Result) -> int:
 
 def _first_contact(result: Result) -> list[float]:
     """From when to when [s] the first impact is in contact, with a margin."""
-    deepest, apex = (float(result.events[name][0]) for name in ("deepest_time", "apex_time"))
+    deepest, apex = (
+        float(result.events[name][0]) for name in ("closest_approach_time", "apex_time")
+    )
     force = np.abs(result.forces["contact"])
     during = (result.time <= apex) & (force > _CONTACT * force.max(initial=0.0))
     if not during.any():

@@ -181,8 +181,8 @@ class _Page:
             return
         compiling = ahead(what, self.surfaces)
 
-        def task(tell: Report, stop: threading.Event) -> None:
-            compiling(tell, stop)
+        def task(report: Report, stop: threading.Event) -> None:
+            compiling(report, stop)
             if stop.is_set():
                 return
             if len(self._ready) >= MOST_KINDS:

@@ -37,11 +37,11 @@ FILES = {
 def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], Any]:
     """A computation that gives what the page shows."""
 
-    def compute(tell: Report, stop: threading.Event) -> dict[str, Any]:
-        with _resolved(asked, surfaces, tell) as (case, uploads):
+    def compute(report: Report, stop: threading.Event) -> dict[str, Any]:
+        with _resolved(asked, surfaces, report) as (case, uploads):
             solver = importlib.import_module("asperity.solver")  # which loads JAX
             result, curve = solver.explore(
-                case, name=asked.name, most=DRAWN, progress=tell, stop=stop
+                case, name=asked.name, most=DRAWN, progress=report, stop=stop
             )
             return answer(renamed(result, asked.case(), uploads), curve)
 
@@ -53,10 +53,10 @@ def critical(
 ) -> Callable[[Report, threading.Event], dict[str, Any]]:
     """A computation that gives the critical velocity, which takes longer than all the rest."""
 
-    def compute(tell: Report, stop: threading.Event) -> dict[str, Any]:
-        with _resolved(asked, surfaces, tell) as (case, _):
+    def compute(report: Report, stop: threading.Event) -> dict[str, Any]:
+        with _resolved(asked, surfaces, report) as (case, _):
             solver = importlib.import_module("asperity.solver")
-            found: dict[str, Any] = solver.critical_velocity(case, progress=tell, stop=stop)
+            found: dict[str, Any] = solver.critical_velocity(case, progress=report, stop=stop)
             return found
 
     return compute
@@ -69,8 +69,8 @@ def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event
     it was stopped.
     """
 
-    def compute(tell: Report, stop: threading.Event) -> None:
-        with _resolved(asked, surfaces, tell) as (case, _):
+    def compute(report: Report, stop: threading.Event) -> None:
+        with _resolved(asked, surfaces, report) as (case, _):
             solver = importlib.import_module("asperity.solver")
             numerics = case.numerics.model_copy(update={"max_impacts": 1})
             for law in CHOSEN:
@@ -78,7 +78,7 @@ def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event
                 one = case.model_copy(update={"adhesion": adhesion, "numerics": numerics})
                 # What a law cannot do here is said once it is chosen.
                 with contextlib.suppress(InputError, SimulationError):
-                    solver.explore(one, most=DRAWN, progress=tell, stop=stop)
+                    solver.explore(one, most=DRAWN, progress=report, stop=stop)
 
     return compute
 
@@ -100,15 +100,15 @@ def kind_of(case: Case) -> int:
 def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threading.Event], bytes]:
     """A computation that gives one of `FILES`, as `asperity run` and `asperity curve` write it."""
 
-    def compute(tell: Report, stop: threading.Event) -> bytes:
-        with _resolved(asked, surfaces, tell) as (case, uploads):
+    def compute(report: Report, stop: threading.Event) -> bytes:
+        with _resolved(asked, surfaces, report) as (case, uploads):
             solver = importlib.import_module("asperity.solver")  # which loads JAX
             made: Result | Curve
             if name.startswith("curve"):
-                drawn = solver.curve(case, name=asked.name, progress=tell, stop=stop)
+                drawn = solver.curve(case, name=asked.name, progress=report, stop=stop)
                 made = replace(drawn, case=asked.case())
             else:
-                result = solver.solve(case, name=asked.name, progress=tell, stop=stop)
+                result = solver.solve(case, name=asked.name, progress=report, stop=stop)
                 made = renamed(result, asked.case(), uploads)
         if name.endswith(".csv"):
             return table(made)
@@ -121,10 +121,10 @@ def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threa
 
 @contextlib.contextmanager
 def _resolved(
-    asked: Asked, surfaces: Surfaces, tell: Report
+    asked: Asked, surfaces: Surfaces, report: Report
 ) -> Iterator[tuple[Case, Mapping[str, Upload]]]:
     """The case to compute; errors within name files as the user does."""
-    tell(0.0, "loading")
+    report(0.0, "loading")
     case, uploads = surfaces.resolved(asked.case(), asked.surfaces)
     try:
         yield case, uploads

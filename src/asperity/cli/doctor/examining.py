@@ -11,7 +11,7 @@ import typer
 
 from asperity.cli.doctor import cache, machine
 from asperity.cli.doctor.requirements import unmet
-from asperity.cli.reporter import Voice, seconds
+from asperity.cli.reporter import Reporter, seconds
 from asperity.cli.stack import NOT_INSTALLED, versions
 from asperity.cli.terminal import say, tell, wrapped
 from asperity.cli.working import Work
@@ -27,20 +27,20 @@ def examine(**manner: bool) -> None:
     Parameters
     ----------
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
 
     Raises
     ------
     SimulationError
         Where a requirement is not met, or a check of the self-test fails.
     """
-    voice = Voice(**manner)
-    found, code = Work(lambda stop: _Examination(voice, stop).made()).wait()
+    reporter = Reporter(**manner)
+    found, code = Work(lambda stop: _Examination(reporter, stop).made()).wait()
     if code or found is None:
         say("asperity: interrupted; what was found until then is above", whole=True)
         raise typer.Exit(code)
-    if voice.as_json:
-        voice.answer(str, lambda: found)
+    if reporter.as_json:
+        reporter.answer(str, lambda: found)
     failed = [one["name"] for one in found["checks"] if not one["ok"]]
     if failed:
         raise SimulationError(f"{len(failed)} of {len(found['checks'])} checks fail: "
@@ -53,7 +53,7 @@ def empty(**manner: bool) -> None:
     Parameters
     ----------
     **manner : bool
-        As `Voice` takes them.
+        As `Reporter` takes them.
 
     Raises
     ------
@@ -62,12 +62,12 @@ def empty(**manner: bool) -> None:
     OutputError
         Where a file cannot be removed.
     """
-    voice, place = Voice(**manner), cache.folder()
+    reporter, place = Reporter(**manner), cache.folder()
     if place is None:
         raise InputError("`--empty-cache` must have a compile cache to empty; it is off")
-    with voice.step("compile cache"):
+    with reporter.step("compile cache"):
         entries, size = cache.emptied(place)
-    voice.answer(
+    reporter.answer(
         lambda: "\n".join([f"removed {entries} entries, {_bytes(size)}, from", f"  {place}"]),
         lambda: {"folder": str(place), "removed": entries, "bytes": size},
     )
@@ -78,14 +78,14 @@ class _Examination:
 
     Parameters
     ----------
-    voice : Voice
+    reporter : Reporter
         How to say it.
     stop : threading.Event
         Ends the examination after the section under way.
     """
 
-    def __init__(self, voice: Voice, stop: threading.Event) -> None:
-        self._voice, self._stop = voice, stop
+    def __init__(self, reporter: Reporter, stop: threading.Event) -> None:
+        self._voice, self._stop = reporter, stop
         self._checks: list[dict[str, Any]] = []
 
     def made(self) -> dict[str, Any]:

@@ -125,16 +125,16 @@ def _decrement() -> float:
 
 
 def _heights(case: Case) -> tuple[float, float]:
-    """Heights [m] above the datum, of the release and of the first apex."""
+    """Heights [m] above the static equilibrium, of the release and of the first apex."""
     motion = _motion(case)
-    datum = float(motion.datum.equilibrium)
+    reference = float(motion.reference.equilibrium)
     release = float(build(case).body.release)
-    return release - datum, float(motion.impacts.apex[0]) - datum
+    return release - reference, float(motion.impacts.apex[0]) - reference
 
 
 def _ledger() -> float:
     impacts = _motion(builtin("published")).impacts
-    return float(impacts.energy_balance_error[0] / impacts.fastest[0])
+    return float(impacts.energy_balance_error[0] / impacts.maximum_kinetic[0])
 
 
 def _motion(case: Case) -> Motion:

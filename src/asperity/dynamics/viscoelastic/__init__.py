@@ -1,5 +1,5 @@
 """Motions on a bulk that creeps: stepped in time, with the usual records."""
 
-from .viscoelastic_motion import fly_creeping
+from .viscoelastic_motion import integrate_viscoelastic
 
-__all__ = ["fly_creeping"]
+__all__ = ["integrate_viscoelastic"]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._jax import jax, jnp
-from ...contact.delayed_formation import LateContact
+from ...contact.delayed_formation import DelayedContact
 from ...interface.interface import Memory as Thresholds
 from ...interface.layers import Surfaces
 
@@ -29,32 +29,32 @@ class Waiting(NamedTuple):
 
     Attributes
     ----------
-    late
+    delayed
         What takes time.
     surfaces
         The surfaces with their menisci told.
     """
 
-    late: LateContact
+    delayed: DelayedContact
     surfaces: Surfaces
 
     def goal(self, gaps: jax.Array) -> jax.Array:
         """What the thresholds fall towards [m]."""
-        return gaps - self.late.law.forming_gap
+        return gaps - self.delayed.law.forming_gap
 
     def rate(self, gaps: jax.Array, held: Thresholds) -> jax.Array:
         """Rate of the thresholds [m/s], 0 or negative."""
-        behind = self.goal(gaps) - held[self.late.late]
-        return jnp.minimum(behind, 0.0) / self.late.time
+        behind = self.goal(gaps) - held[self.delayed.delayed]
+        return jnp.minimum(behind, 0.0) / self.delayed.time
 
     def holding(self, held: Thresholds, known: jax.Array, span: jax.Array) -> Holding:
         """Thresholds at a stage, by what is ``known`` of their change and its rate for ``span``."""
-        begun, gain = held[self.late.late] + known, span / self.late.time
+        begun, gain = held[self.delayed.delayed] + known, span / self.delayed.time
 
         def at(gaps: jax.Array) -> Thresholds:
             goal = self.goal(gaps)
             lags = (begun + gain * goal) / (1.0 + gain)
-            return self.late.with_threshold(held, jnp.where(goal < begun, lags, begun))
+            return self.delayed.with_threshold(held, jnp.where(goal < begun, lags, begun))
 
         return at
 
@@ -62,14 +62,14 @@ class Waiting(NamedTuple):
         self, gaps: jax.Array, held: Thresholds, rate: jax.Array, around: jax.Array
     ) -> tuple[jax.Array, jax.Array]:
         """Power lost per area on menisci that form [W/m^2] at the rings, and beyond them [W]."""
-        k = self.late.late
-        loss = self.late.loss(gaps - held[k])
+        k = self.delayed.delayed
+        loss = self.delayed.loss(gaps - held[k])
 
         def bonds(threshold: jax.Array) -> tuple[jax.Array, jax.Array]:
-            told = self.late.with_threshold(held, threshold)
-            last = tuple(b[-1:] for b in told)
-            outside = self.surfaces.measure(gaps[-1:], last, lift=1).bonds[k, 0]
-            return self.surfaces.measure(gaps, told).bonds[k], outside
+            base = self.delayed.with_threshold(held, threshold)
+            last = tuple(b[-1:] for b in base)
+            outside = self.surfaces.measure(gaps[-1:], last, integrated=1).bonds[k, 0]
+            return self.surfaces.measure(gaps, base).bonds[k], outside
 
         _, (inside, outside) = jax.jvp(bonds, (held[k],), (rate,))
         return inside[:-1] * loss[:-1], around * outside * loss[-1]
@@ -78,13 +78,13 @@ class Waiting(NamedTuple):
         """Pressure [Pa] that a change of the thresholds [m] makes."""
 
         def pressure(threshold: jax.Array) -> jax.Array:
-            return self.surfaces.pressure(gaps, self.late.with_threshold(held, threshold))
+            return self.surfaces.pressure(gaps, self.delayed.with_threshold(held, threshold))
 
-        pressed: jax.Array = jax.jvp(pressure, (held[self.late.late],), (change,))[1]
+        pressed: jax.Array = jax.jvp(pressure, (held[self.delayed.delayed],), (change,))[1]
         return pressed
 
 
-class Flight(NamedTuple):
+class FreeFlight(NamedTuple):
     """A goal that moves on a parabola: where it starts [m], its speed, and how that changes."""
 
     begin: np.ndarray
@@ -109,7 +109,7 @@ class Flight(NamedTuple):
         root = np.sqrt(self.speed**2 + 2.0 * self.gravity * fall)
         start = np.where(fall > 0.0, 2.0 * fall / np.where(fall > 0.0, root - self.speed, 1.0), 0.0)
         start = np.minimum(start, span)
-        later = Flight(self.goal(start), self.speed - self.gravity * start, self.gravity)
+        later = FreeFlight(self.goal(start), self.speed - self.gravity * start, self.gravity)
         end = later._lag(threshold, span - start, pace)
         return np.where(self.goal(np.asarray(span)) < threshold, end, threshold)
 

@@ -1,7 +1,7 @@
 r"""One step in time of a rough body on a half-space that creeps.
 
 The displacement of the rings is u = C p + (1/k - 1) C c, with C the compliance of the instantaneous
-modulus and c the pressure that has crept, dc/dt = (p - c) k/time. A step is implicit: a diagonal
+modulus and c the pressure that has retarded, dc/dt = (p - c) k/time. A step is implicit: a diagonal
 Runge-Kutta method of order 4 that damps what is fast (Kennedy and Carpenter 2003, ARK4(3)6L[2]SA).
 At each of its stages mass, creep and elasticity together are one stiffer or softer half-space, so
 that the rings' separations alone are solved for, by Newton's method.
@@ -15,10 +15,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..._jax import jax, jnp
-from ...contact.equilibrium import Rest as Settled
+from ...contact.equilibrium import RingEquilibrium as Settled
 from ...contact.equilibrium import asked_size, beyond
 from ...contact.resolution import fills_by_contact
-from ...contact.viscoelastic import Creep
+from ...contact.viscoelastic import Relaxation
 from ...interface.interface import Memory as Thresholds
 from ...laws.law import Real
 from ...numerics.compilation import kept
@@ -44,7 +44,7 @@ _LOWER = np.array(
 _TIMES = np.array([0.0, 0.5, 83 / 250, 31 / 50, 17 / 20, 1.0])
 """When the stages are, as fractions of the step."""
 
-_LOOKS = legendre.legvander(np.linspace(-1.0, 1.0, 65), 5) @ np.linalg.inv(
+_ENERGY_SAMPLES = legendre.legvander(np.linspace(-1.0, 1.0, 65), 5) @ np.linalg.inv(
     legendre.legvander(2.0 * _TIMES - 1.0, 5)
 )
 
@@ -81,7 +81,7 @@ class Step(NamedTuple):
 
 
 class _Rates(NamedTuple):
-    """Rates of separation, speed, crept pressure, energy taken and thresholds, at each stage.
+    """Rates of separation, speed, retarded pressure, energy taken and thresholds, at each stage.
 
     The energy is that taken by creep, or on menisci that take time; there are thresholds of these
     alone.
@@ -89,8 +89,8 @@ class _Rates(NamedTuple):
 
     separation: jax.Array
     speed: jax.Array
-    crept: jax.Array
-    heat: jax.Array
+    retarded: jax.Array
+    dissipated: jax.Array
     threshold: jax.Array
 
     def along(self, weights: jax.Array) -> _Rates:
@@ -102,10 +102,10 @@ class _Rates(NamedTuple):
         return _Rates(*(a.at[stage].set(b) for a, b in zip(self, rates, strict=True)))
 
 
-def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
+def step(relaxation: Relaxation, body: Body, size: Real, here: Here, span: Real) -> Step:
     """Go on for ``span`` [s] on a mesh of a ``size`` [m]."""
-    bulk = Bulk.of(creep, jnp.asarray(size))
-    first = _rates(bulk, body, here.speed, here.crept, here.gaps, here.thresholds)
+    bulk = Bulk.of(relaxation, jnp.asarray(size))
+    first = _rates(bulk, body, here.speed, here.retarded, here.gaps, here.thresholds)
     blank = _Rates(*(jnp.zeros((6, *jnp.shape(rate))) for rate in first))
 
     def stage(carry: tuple[_Rates, jax.Array], job: tuple[jax.Array, jax.Array]) -> Any:
@@ -119,68 +119,68 @@ def step(creep: Creep, body: Body, size: Real, here: Here, span: Real) -> Step:
     (rates, _), (gaps, solved) = jax.lax.scan(stage, (blank.put(0, first), here.gaps), jobs)
     change = rates.along(span * _WEIGHTS)
     off = rates.along(span * (_WEIGHTS - _LOWER))
-    path = jnp.asarray(_LOOKS) @ jnp.concatenate([here.gaps[None], gaps])
+    path = jnp.asarray(_ENERGY_SAMPLES) @ jnp.concatenate([here.gaps[None], gaps])
     thresholds, lost = _bonds(bulk, _waited(bulk, here.thresholds, change), path)
     end = Here(
         here.separation + change.separation, here.speed + change.speed, gaps[-1],
-        here.crept + change.crept, thresholds,
+        here.retarded + change.retarded, thresholds,
     )  # fmt: skip
     # Rings that turned within the step hold bonds that the stages did not know of.
-    base = end.separation + bulk.rise + bulk.excess * (bulk.rows @ end.crept)
+    base = end.separation + bulk.rise + bulk.excess * (bulk.rows @ end.retarded)
     rest = Rest(base, bulk.rows, jnp.zeros(()))
     settled, agree = balanced(bulk, lambda gaps: thresholds, rest, gaps[-1])
     end, solved = end._replace(gaps=settled), jnp.append(solved, agree)
     pressure, _ = bulk.pressed(end.gaps, end.thresholds)
-    bonds = bulk.contact.interface.hysteretic if bulk.late is None else bulk.late.laws
+    bonds = bulk.contact.interface.hysteretic if bulk.delayed is None else bulk.delayed.laws
     more = beyond(bulk.contact, bulk.size, end.gaps[-1]) if fills_by_contact(bonds) else 0.0
     fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings, more)
-    if bulk.late is None:
-        lost = jnp.append(lost, change.heat)
+    if bulk.delayed is None:
+        lost = jnp.append(lost, change.dissipated)
     else:
-        lost = lost.at[bulk.late.late].add(change.heat)
+        lost = lost.at[bulk.delayed.delayed].add(change.dissipated)
     return Step(
-        end, jnp.stack([rates.speed[-1], rates.heat[-1]]), row_of(bulk, end),
+        end, jnp.stack([rates.speed[-1], rates.dissipated[-1]]), row_of(bulk, end),
         lost, fit, _errors(bulk, end, off), jnp.all(solved),
     )  # fmt: skip
 
 
 def _waited(bulk: Bulk, held: Thresholds, change: _Rates) -> Thresholds:
     """Memory in which the menisci that take time have gone on forming."""
-    late = bulk.late
-    if late is None:
+    delayed = bulk.delayed
+    if delayed is None:
         return held
-    return late.with_threshold(held, held[late.late] + change.threshold)
+    return delayed.with_threshold(held, held[delayed.delayed] + change.threshold)
 
 
 def _errors(bulk: Bulk, end: Here, off: _Rates) -> jax.Array:
     """Errors of a step by those of its changes, see :class:`Step`."""
-    pressed, heat = bulk.excess * off.crept, off.heat
+    pressed, dissipated = bulk.excess * off.retarded, off.dissipated
     if bulk.waiting is not None:
         pressed = bulk.waiting.pressing(end.gaps, end.thresholds, off.threshold)[:-1]
         # A threshold that is off leaves a force, over a way of about a rms height.
         way = jnp.asarray(bulk.contact.interface.heights.rms)
-        heat = jnp.abs(heat) + way * jnp.abs(bulk.area @ pressed)
+        dissipated = jnp.abs(dissipated) + way * jnp.abs(bulk.area @ pressed)
     displaced = jnp.max(jnp.abs(bulk.rows @ pressed))
-    return jnp.abs(jnp.stack([off.separation, off.speed, displaced, heat]))
+    return jnp.abs(jnp.stack([off.separation, off.speed, displaced, dissipated]))
 
 
 def _rates(
     bulk: Bulk,
     body: Body,
     speed: jax.Array,
-    crept: jax.Array,
+    retarded: jax.Array,
     gaps: jax.Array,
     held: Thresholds,
 ) -> _Rates:
     pressure, force = bulk.pressed(gaps, held)
-    falling, heat = jnp.zeros(0), bulk.heat(pressure, crept)
+    falling, dissipated = jnp.zeros(0), bulk.dissipated(pressure, retarded)
     if bulk.waiting is not None:
         falling = bulk.waiting.rate(gaps, held)
         inside, outside = bulk.waiting.power(gaps, held, falling, bulk.around)
-        heat = bulk.area @ inside + outside
+        dissipated = bulk.area @ inside + outside
     return _Rates(
-        jnp.asarray(speed), force / body.mass - body.gravity, bulk.pace * (pressure - crept),
-        heat, falling,
+        jnp.asarray(speed), force / body.mass - body.gravity, bulk.pace * (pressure - retarded),
+        dissipated, falling,
     )  # fmt: skip
 
 
@@ -189,10 +189,10 @@ def _solved(
 ) -> tuple[jax.Array, _Rates, jax.Array]:
     """Separations at a stage and the rates there, from what is known of its values."""
     gain = span * bulk.pace
-    crept = (here.crept + known.crept) / (1.0 + gain)
+    retarded = (here.retarded + known.retarded) / (1.0 + gain)
     speed = here.speed + known.speed - span * body.gravity
     place = here.separation + known.separation + span * speed
-    base = place + bulk.rise + bulk.excess * (bulk.rows @ crept)
+    base = place + bulk.rise + bulk.excess * (bulk.rows @ retarded)
     rows = bulk.rows * (1.0 + bulk.excess * gain / (1.0 + gain))
     rest = Rest(base, rows, span**2 / body.mass)
 
@@ -204,9 +204,9 @@ def _solved(
     gaps, solved = balanced(bulk, holding, rest, guess)
     held = holding(gaps)
     pressure, force = bulk.pressed(gaps, held)
-    crept = crept + gain / (1.0 + gain) * pressure
+    retarded = retarded + gain / (1.0 + gain) * pressure
     speed = speed + span * force / body.mass
-    return gaps, _rates(bulk, body, speed, crept, gaps, held), solved
+    return gaps, _rates(bulk, body, speed, retarded, gaps, held), solved
 
 
 def _bonds(bulk: Bulk, held: Thresholds, path: jax.Array) -> tuple[Thresholds, jax.Array]:
@@ -217,12 +217,14 @@ def _bonds(bulk: Bulk, held: Thresholds, path: jax.Array) -> tuple[Thresholds, j
     surfaces = bulk.contact.interface
     if not surfaces.mechanisms:
         return held, jnp.zeros(0)
-    formed, broken = surfaces.losses() if bulk.late is None else bulk.late.losses
+    formed, broken = surfaces.losses() if bulk.delayed is None else bulk.delayed.losses
 
     def count(gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
         inside = surfaces.measure(gaps, held).bonds[:, :-1]
         last = tuple(b[-1:] for b in held)
-        return inside * bulk.area, bulk.around * surfaces.measure(gaps[-1:], last, lift=1).bonds
+        return inside * bulk.area, bulk.around * surfaces.measure(
+            gaps[-1:], last, integrated=1
+        ).bonds
 
     def along(carry: Any, gaps: jax.Array) -> Any:
         held, before, lost = carry

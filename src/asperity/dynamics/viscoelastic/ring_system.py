@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._jax import jax, jnp
-from ...contact.delayed_formation import LateContact
+from ...contact.delayed_formation import DelayedContact
 from ...contact.elastic import ElasticContact
 from ...contact.equilibrium import compliance
-from ...contact.viscoelastic import Creep
+from ...contact.viscoelastic import Relaxation
 from ...halfspace import ring_mesh
 from ...interface.interface import Memory as Thresholds
 from ...laws.law import Real
@@ -32,8 +32,8 @@ class Here(NamedTuple):
         Of the rigid body [m], and positive apart [m/s].
     gaps
         Separation of the mean planes at the rings and at the mesh's end [m].
-    crept
-        Pressure that has crept, c, at the rings [Pa].
+    retarded
+        Pressure that has retarded, c, at the rings [Pa].
     thresholds
         Memory of the bonds, at the rings and at the mesh's end.
     """
@@ -41,7 +41,7 @@ class Here(NamedTuple):
     separation: Real
     speed: Real
     gaps: Real
-    crept: Real
+    retarded: Real
     thresholds: Thresholds
 
 
@@ -49,7 +49,7 @@ class Bulk(NamedTuple):
     """What the rings' displacement and force are made of."""
 
     contact: ElasticContact
-    late: LateContact | None
+    delayed: DelayedContact | None
     size: jax.Array
     rows: jax.Array
     area: jax.Array
@@ -58,37 +58,39 @@ class Bulk(NamedTuple):
     pace: jax.Array
 
     @classmethod
-    def of(cls, creep: Creep, size: jax.Array) -> Bulk:
-        contact: Any = creep.contact
+    def of(cls, relaxation: Relaxation, size: jax.Array) -> Bulk:
+        contact: Any = relaxation.contact
         mesh = ring_mesh(contact.rings)
         rows = compliance(contact.rings)[:, :-1]
         around = jnp.asarray(2.0 * pi * contact.shape.radius)
         area = jnp.asarray(mesh.area) * size**2
-        excess, pace = 1.0 / creep.ratio - 1.0, creep.ratio / creep.time
+        excess, pace = 1.0 / relaxation.ratio - 1.0, relaxation.ratio / relaxation.time
         rows = rows * (size / contact.modulus)
-        return cls(contact, creep.late, size, rows, area, around, excess, pace)
+        return cls(contact, relaxation.delayed, size, rows, area, around, excess, pace)
 
     @property
     def rise(self) -> jax.Array:
         """Rise of the body's surface at the rings and at the mesh's end [m]."""
         mesh = ring_mesh(self.contact.rings)
-        return self.contact.shape.rise(self.size * np.append(mesh.radius, mesh.end))
+        return self.contact.shape.profile(self.size * np.append(mesh.radius, mesh.end))
 
     def pressed(self, gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
         """Pressure on the rings [Pa] and the whole force [N]."""
         pressure = self.contact.interface.pressure(gaps, held)
-        outside = self.contact.interface.pressure(gaps[-1:], tuple(b[-1:] for b in held), lift=1)
+        outside = self.contact.interface.pressure(
+            gaps[-1:], tuple(b[-1:] for b in held), integrated=1
+        )
         return pressure[:-1], self.area @ pressure[:-1] + self.around * outside[0]
 
     @property
     def waiting(self) -> Waiting | None:
         """Its menisci, where they take time."""
-        return None if self.late is None else Waiting(self.late, self.contact.interface)
+        return None if self.delayed is None else Waiting(self.delayed, self.contact.interface)
 
-    def heat(self, pressure: jax.Array, crept: jax.Array) -> jax.Array:
+    def dissipated(self, pressure: jax.Array, retarded: jax.Array) -> jax.Array:
         """Power that the dashpots take [W]."""
-        late = pressure - crept
-        return self.excess * self.pace * ((self.area * late) @ (self.rows[:-1] @ late))
+        delayed = pressure - retarded
+        return self.excess * self.pace * ((self.area * delayed) @ (self.rows[:-1] @ delayed))
 
 
 @kept
@@ -97,7 +99,7 @@ class Freed(NamedTuple):
 
     Attributes
     ----------
-    lift
+    displacement
         Displacement that creep has left at the rings and at the mesh's end [m].
     axis
         The same at the axis [m].
@@ -105,17 +107,19 @@ class Freed(NamedTuple):
         Energy that it holds [J].
     """
 
-    lift: Real
+    displacement: Real
     axis: Real
     stored: Real
 
 
-def freed(creep: Creep, size: Real, crept: Real) -> Freed:
+def freed(relaxation: Relaxation, size: Real, retarded: Real) -> Freed:
     """What creep has left on a mesh of a ``size`` [m], where nothing presses."""
-    bulk = Bulk.of(creep, jnp.asarray(size))
-    lift = bulk.excess * (bulk.rows @ crept)
-    stored = 0.5 * crept @ (bulk.area * lift[:-1])
-    return Freed(lift, jnp.asarray(ring_mesh(bulk.contact.rings).axis) @ lift[:-1], stored)
+    bulk = Bulk.of(relaxation, jnp.asarray(size))
+    displacement = bulk.excess * (bulk.rows @ retarded)
+    stored = 0.5 * retarded @ (bulk.area * displacement[:-1])
+    return Freed(
+        displacement, jnp.asarray(ring_mesh(bulk.contact.rings).axis) @ displacement[:-1], stored
+    )
 
 
 class Rest(NamedTuple):
@@ -163,7 +167,7 @@ def row_of(bulk: Bulk, here: Here) -> jax.Array:
     surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
     inside = surfaces.measure(here.gaps, here.thresholds)
     last = tuple(b[-1:] for b in here.thresholds)
-    outside = surfaces.measure(here.gaps[-1:], last, lift=1)
+    outside = surfaces.measure(here.gaps[-1:], last, integrated=1)
 
     def whole(inner: jax.Array, outer: jax.Array) -> jax.Array:
         return inner[..., :-1] @ bulk.area + bulk.around * outer[..., 0]
@@ -171,12 +175,19 @@ def row_of(bulk: Bulk, here: Here) -> jax.Array:
     parts = whole(inside.parts, outside.parts)
     pressure = jnp.sum(inside.parts, axis=0)[:-1]
     bent = pressure @ (bulk.area * (bulk.rows[:-1] @ pressure))
-    crept = here.crept @ (bulk.area * (bulk.rows[:-1] @ here.crept))
-    stored = whole(inside.energy, outside.energy) + 0.5 * (bent + bulk.excess * crept)
+    retarded = here.retarded @ (bulk.area * (bulk.rows[:-1] @ here.retarded))
+    stored = whole(inside.energy, outside.energy) + 0.5 * (bent + bulk.excess * retarded)
     force = jnp.sum(parts)
-    pull = force - bulk.contact.elastic_part(parts)
+    attraction = force - bulk.contact.elastic_part(parts)
     central = jnp.asarray(mesh.axis) @ here.gaps[:-1]
-    head = [force, pull, stored, central, whole(inside.touching, outside.touching), bulk.size]
+    head = [
+        force,
+        attraction,
+        stored,
+        central,
+        whole(inside.contacting, outside.contacting),
+        bulk.size,
+    ]
     bonds = whole(inside.bonds, outside.bonds)
-    taken = jnp.zeros(1 if bulk.late is None else 0)
+    taken = jnp.zeros(1 if bulk.delayed is None else 0)
     return jnp.concatenate([jnp.stack(head), bonds, taken, parts])

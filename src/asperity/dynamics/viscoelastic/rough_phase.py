@@ -11,13 +11,13 @@ import numpy as np
 from ..._jax import jax, jnp
 from ...contact.continuation import first_size
 from ...contact.elastic import ElasticContact
-from ...contact.viscoelastic import Creep
+from ...contact.viscoelastic import Relaxation
 from ...interface.interface import Memory as Thresholds
 from ...numerics.compilation import Program
 from ..curve_table import CENTRAL, STORED, quantities
 from ..record import Body
-from ..stepped_phase import CREPT, FAILED, LEFT, TURNED, Samples
-from .ring_menisci import Flight
+from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples
+from .ring_menisci import FreeFlight
 from .ring_step import Step, step
 from .ring_system import Freed, Here, freed
 from .sample_times import flight_times
@@ -40,7 +40,7 @@ class RoughBounce:
 
     Parameters
     ----------
-    creep, body
+    relaxation, body
         The half-space with its contact, and what falls.
     size
         Size of the mesh of rings [m].
@@ -52,39 +52,48 @@ class RoughBounce:
 
     def __init__(
         self,
-        creep: Creep,
+        relaxation: Relaxation,
         body: Body,
         size: float,
         ends: tuple[float, float, float],
         asked: Callable[[], None],
     ) -> None:
-        told: Any = creep.contact
-        self._contact: ElasticContact = told
-        self.creep, self.body, self.size, self.ends, self._asked = creep, body, size, ends, asked
-        self._rms, self._reach = float(told.interface.heights.rms), float(told.reach)
-        self._rise = np.asarray(_rise(told, np.asarray(size, float)))
-        self._rate = float(creep.ratio / creep.time)
+        base: Any = relaxation.contact
+        self._contact: ElasticContact = base
+        self.relaxation, self.body, self.size, self.ends, self._asked = (
+            relaxation,
+            body,
+            size,
+            ends,
+            asked,
+        )
+        self._rms, self._interaction_range = (
+            float(base.interface.heights.rms),
+            float(base.interaction_range),
+        )
+        self._rise = np.asarray(_rise(base, np.asarray(size, float)))
+        self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
-        rings = told.rings
-        self.layout = quantities(told)
-        self._late = creep.late
-        self.lost = np.zeros(len(told.mechanisms) + (creep.late is None))
+        rings = base.rings
+        self.layout = quantities(base)
+        self._delayed = relaxation.delayed
+        self.lost = np.zeros(len(base.mechanisms) + (relaxation.delayed is None))
         self.time, self.fit = 0.0, 1.0
         gaps = float(body.release) + self._rise
-        thresholds = told.interface.fresh(np.zeros(rings + 1))
-        if creep.late is not None:  # in equilibrium with the vapour
-            goal = gaps - float(creep.late.law.forming_gap)
-            thresholds = creep.late.with_threshold(thresholds, jnp.asarray(goal))
+        thresholds = base.interface.initial_memory(np.zeros(rings + 1))
+        if relaxation.delayed is not None:  # in equilibrium with the vapour
+            goal = gaps - float(relaxation.delayed.law.forming_gap)
+            thresholds = relaxation.delayed.with_threshold(thresholds, jnp.asarray(goal))
         here = Here(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
         self.here: Here = jax.tree_util.tree_map(np.asarray, here)
         # A body may be let go at rest where forces begin; a fall by a height is its first scale.
         speed = sqrt(float(body.speed) ** 2 + 2.0 * self._gravity * self._rms)
-        self.fastest = 0.5 * self._mass * speed**2
+        self.maximum_kinetic = 0.5 * self._mass * speed**2
         self._span = _FIRST * self._rms / speed
 
     def start(self) -> Samples:
         """The sample of the release."""
-        sample = self._flown(self._left(), np.zeros(1))
+        sample = self._free_flight_samples(self._left(), np.zeros(1))
         if float(self.here.separation) > self._edge():
             return sample
         done = self._try(0.0)  # something acts already: the rings come to their equilibrium
@@ -93,11 +102,11 @@ class RoughBounce:
 
     def way(self, inwards: bool) -> tuple[str, Samples]:
         """The samples until the body turns, and how they end."""
-        parts: list[Samples] = [self._flown(self._left(), np.zeros(0))]
+        parts: list[Samples] = [self._free_flight_samples(self._left(), np.zeros(0))]
         for _ in range(_MOST):
             self._asked()
             free = float(self.here.separation) > self._edge()
-            fate, samples = (self._fly if free else self._go)(inwards)
+            fate, samples = (self._free_flight if free else self._go)(inwards)
             parts.append(samples)
             if fate:
                 return fate, Samples.joined(parts)
@@ -105,15 +114,15 @@ class RoughBounce:
 
     def _left(self) -> Freed:
         """What creep has left."""
-        answer = _freed(self.creep, np.asarray(self.size), self.here.crept)
+        answer = _freed(self.relaxation, np.asarray(self.size), self.here.retarded)
         return jax.tree_util.tree_map(np.asarray, answer)
 
     def _edge(self) -> float:
         """Separation beyond which nothing acts [m]: the reach, and what stands out of the bulk."""
-        lift = self.here.gaps - self._rise - self.here.separation
-        return self._reach + max(0.0, -float(np.min(lift)))
+        displacement = self.here.gaps - self._rise - self.here.separation
+        return self._interaction_range + max(0.0, -float(np.min(displacement)))
 
-    def _fly(self, inwards: bool) -> tuple[str, Samples]:
+    def _free_flight(self, inwards: bool) -> tuple[str, Samples]:
         """Without forces: to the apex, or to where they begin."""
         place, speed, g = float(self.here.separation), float(self.here.speed), self._gravity
         left = self._left()
@@ -127,7 +136,7 @@ class RoughBounce:
             span, fate = max(self.ends[2] - place, 0.0) / speed, LEFT
         fast = max(abs(speed), abs(speed - g * span), 1e-300)
         scale = min(1.0 / self._rate, self._rms / fast)
-        samples = self._flown(left, flight_times(span, scale))
+        samples = self._free_flight_samples(left, flight_times(span, scale))
         share = np.exp(-self._rate * span)
         thresholds = self._waited(span)
         place = float(samples.separation[-1])
@@ -135,12 +144,14 @@ class RoughBounce:
             thresholds=thresholds,
             separation=np.asarray(place),
             speed=np.asarray(0.0 if fate == TURNED else samples.speed[-1]),
-            crept=self.here.crept * share,
-            gaps=place + self._rise + left.lift * share,
+            retarded=self.here.retarded * share,
+            gaps=place + self._rise + left.displacement * share,
         )
         self.time, self.lost = float(samples.time[-1]), samples.lost[-1].copy()
         self._span = _FIRST * self._rms / max(abs(float(samples.speed[-1])), 1e-300)
-        self.fastest = max(self.fastest, 0.5 * self._mass * float(samples.speed[-1]) ** 2)
+        self.maximum_kinetic = max(
+            self.maximum_kinetic, 0.5 * self._mass * float(samples.speed[-1]) ** 2
+        )
         return fate, samples
 
     def _waited(self, span: float) -> Thresholds:
@@ -148,32 +159,34 @@ class RoughBounce:
 
         All others stand where they are, until the body comes back.
         """
-        held, late, here = self.here.thresholds, self._late, self.here
-        if late is None:
+        held, delayed, here = self.here.thresholds, self._delayed, self.here
+        if delayed is None:
             return held
-        form, part = float(late.law.forming_gap), float(late.law.breaking_gap)
-        flight = Flight(np.asarray(here.gaps) - form, float(here.speed), self._gravity)
-        after = flight.follow(np.asarray(held[late.late]), span, 1.0 / float(late.time))
-        return late.with_threshold(
+        form, part = float(delayed.law.forming_gap), float(delayed.law.breaking_gap)
+        flight = FreeFlight(np.asarray(here.gaps) - form, float(here.speed), self._gravity)
+        after = flight.follow(np.asarray(held[delayed.delayed]), span, 1.0 / float(delayed.time))
+        return delayed.with_threshold(
             held, np.maximum(after, flight.goal(np.asarray(span)) + form - part)
         )
 
     @property
     def threshold(self) -> float:
         """Threshold of the menisci that take time at the mesh's end [m], 0 where none do."""
-        return 0.0 if self._late is None else float(self.here.thresholds[self._late.late][-1])
+        return (
+            0.0 if self._delayed is None else float(self.here.thresholds[self._delayed.delayed][-1])
+        )
 
-    def _flown(self, left: Freed, spans: np.ndarray) -> Samples:
+    def _free_flight_samples(self, left: Freed, spans: np.ndarray) -> Samples:
         """Samples of a flight at times from now."""
         share = np.exp(-self._rate * spans)
         place = float(self.here.separation) + spans * (
             float(self.here.speed) - 0.5 * self._gravity * spans
         )
-        rows = np.zeros((spans.size, self.layout.components.stop + (self._late is None)))
+        rows = np.zeros((spans.size, self.layout.components.stop + (self._delayed is None)))
         rows[:, STORED] = float(left.stored) * share**2
         rows[:, CENTRAL] = place + float(left.axis) * share
         lost = np.repeat(self.lost[None], spans.size, axis=0)
-        if self._late is None:
+        if self._delayed is None:
             lost[:, -1] += float(left.stored) * (1.0 - share**2)
         self._book(rows, lost)
         speed = float(self.here.speed) - self._gravity * spans
@@ -181,34 +194,34 @@ class RoughBounce:
 
     def _book(self, rows: np.ndarray, lost: np.ndarray) -> None:
         """What creep has taken, in its column."""
-        if self._late is None:
+        if self._delayed is None:
             rows[:, self.layout.bonds.stop] = lost[:, -1]
 
     def _go(self, inwards: bool) -> tuple[str, Samples]:
         """One step within reach of the forces, that ends where the body turns."""
         done, span = self._taken(inwards)
         if done is None:
-            return FAILED, self._flown(self._left(), np.zeros(0))
+            return FAILED, self._free_flight_samples(self._left(), np.zeros(0))
         self.here, self.fit = done.here, float(done.fit)
         self.time += span
         self.lost = self.lost + done.lost
         rows = done.row[None].copy()
         self._book(rows, self.lost[None])
         speed = float(self.here.speed)
-        self.fastest = max(self.fastest, 0.5 * self._mass * speed**2)
+        self.maximum_kinetic = max(self.maximum_kinetic, 0.5 * self._mass * speed**2)
         fate = ""
         if abs(speed) <= self._still:
             fate, speed = TURNED, 0.0
             self.here = self.here._replace(speed=np.asarray(0.0))
         elif self._rests():
-            fate = CREPT
+            fate = AT_REST
         time, place = np.array([self.time]), np.array([float(self.here.separation)])
         return fate, Samples(time, place, np.array([speed]), rows, self.lost[None])
 
     @property
     def _still(self) -> float:
         """Speed that counts as none [m/s]."""
-        return 1e-11 * sqrt(2.0 * self.fastest / self._mass)
+        return 1e-11 * sqrt(2.0 * self.maximum_kinetic / self._mass)
 
     def _rests(self) -> bool:
         """Whether the body is at rest, but for what is too slow to matter."""
@@ -228,7 +241,7 @@ class RoughBounce:
             error = self._error(done)
             factor = 0.9 * max(error, 1e-9) ** -0.25 if np.isfinite(error) else 0.2
             if error <= 1.0:
-                wish = span * min(factor, 2.0)
+                next_span = span * min(factor, 2.0)
                 if ahead * float(done.here.speed) < -self._still:
                     turn = self._turn(done, span, ahead)
                     if turn is not None:
@@ -237,7 +250,7 @@ class RoughBounce:
                     span *= 0.5
                     continue
                 fast = max(abs(float(done.here.speed)), abs(float(self.here.speed)))
-                self._span = min(wish, _STRIDE * self._rms / max(fast, 1e-300))
+                self._span = min(next_span, _STRIDE * self._rms / max(fast, 1e-300))
                 return done, span
             span *= min(max(factor, 0.1), 0.9)
         return None, span
@@ -263,7 +276,7 @@ class RoughBounce:
         return done, span
 
     def _try(self, span: float) -> Step:
-        done = _step(self.creep, self.body, np.asarray(self.size), self.here, np.asarray(span))
+        done = _step(self.relaxation, self.body, np.asarray(self.size), self.here, np.asarray(span))
         answer: Step = jax.tree_util.tree_map(np.asarray, done)
         return answer
 
@@ -271,22 +284,22 @@ class RoughBounce:
         """Error of a step over what is allowed; infinite where it is not solved."""
         if not done.solved or not np.all(np.isfinite(done.row)):
             return inf
-        energy = max(self.fastest, 0.5 * self._mass * float(done.here.speed) ** 2)
+        energy = max(self.maximum_kinetic, 0.5 * self._mass * float(done.here.speed) ** 2)
         speed = sqrt(2.0 * energy / self._mass)
         scale = np.array([self._rms, speed, self._rms, energy])
         return float(np.max(done.error / scale)) / TOLERANCE
 
 
 def _rise_of(contact: ElasticContact, size: Any) -> Any:
-    from ...contact.equilibrium import rise_of
+    from ...contact.equilibrium import profile_of
 
-    return rise_of(contact, size, contact.rings)
+    return profile_of(contact, size, contact.rings)
 
 
 _rise = Program(_rise_of)
 
 
-def first_mesh(creep: Creep, lowest: float) -> float:
+def first_mesh(relaxation: Relaxation, lowest: float) -> float:
     """Size of a mesh [m] to begin with, for a body that may come as low as a separation [m]."""
-    contact: Any = creep.contact
+    contact: Any = relaxation.contact
     return float(first_size(contact, jnp.asarray(lowest)))

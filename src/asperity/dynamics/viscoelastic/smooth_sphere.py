@@ -8,10 +8,10 @@ from math import sqrt
 import numpy as np
 
 from ...contact.smooth import SmoothContact
-from ...contact.viscoelastic import Creep
+from ...contact.viscoelastic import Relaxation
 from ...halfspace.viscoelastic_paraboloid import Solid
 from ...laws import Hertz
-from ..curve_table import CENTRAL, FORCE, STORED, TOUCHING, quantities
+from ..curve_table import CENTRAL, CONTACTING, FORCE, STORED, quantities
 from ..stepped_phase import Samples
 from .sphere_motion import Bounce, Track
 from .viscoelastic_record import Ledger
@@ -22,7 +22,7 @@ class SmoothBounce:
 
     Parameters
     ----------
-    creep
+    relaxation
         The half-space, under a contact by Hertz's law.
     ledger
         What moves on what, and where it ends.
@@ -32,9 +32,9 @@ class SmoothBounce:
     Units of speed, length, time and energy are those of the elastic impact.
     """
 
-    def __init__(self, creep: Creep, ledger: Ledger) -> None:
-        assert isinstance(creep.contact, SmoothContact)
-        law, body = creep.contact.law, ledger.body
+    def __init__(self, relaxation: Relaxation, ledger: Ledger) -> None:
+        assert isinstance(relaxation.contact, SmoothContact)
+        law, body = relaxation.contact.law, ledger.body
         assert isinstance(law, Hertz)
         gravity, release = float(body.gravity), float(body.release)
         self._speed = sqrt(float(body.speed) ** 2 + 2.0 * gravity * release)
@@ -44,7 +44,9 @@ class SmoothBounce:
         self._time = self._length / self._speed
         self._columns = quantities(ledger.contact).components.stop
         solid = Solid(
-            float(creep.ratio), float(creep.time) / self._time, gravity * self._time / self._speed
+            float(relaxation.ratio),
+            float(relaxation.time) / self._time,
+            gravity * self._time / self._speed,
         )
         still, near, top = ledger.ends
         goal = -still / self._length, near / self._length
@@ -74,12 +76,12 @@ class SmoothBounce:
         track = Track(*(np.concatenate(c) for c in zip(*tracks, strict=True)))
         rows = np.zeros((track.time.size, self._columns))
         force = track.force * self._energy / self._length
-        touching = (force > 0.0).astype(float)
+        contacting = (force > 0.0).astype(float)
         stored = (track.stored + track.dented) * self._energy
         spent = track.spent * self._energy
         separation = -track.depth * self._length
-        columns = [FORCE, STORED, CENTRAL, TOUCHING, -2, -1]
-        rows[:, columns] = np.stack([force, stored, separation, touching, spent, force], axis=1)
+        columns = [FORCE, STORED, CENTRAL, CONTACTING, -2, -1]
+        rows[:, columns] = np.stack([force, stored, separation, contacting, spent, force], axis=1)
         return Samples(
             track.time * self._time, separation, -track.speed * self._speed, rows, spent[:, None]
         )

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...errors import SimulationError
-from ...halfspace.residual_indentation import Dent
+from ...halfspace.residual_indentation import ResidualIndentation
 from ...halfspace.viscoelastic_paraboloid import (
     ADVANCES,
     DEPTH,
@@ -23,14 +23,14 @@ from ...halfspace.viscoelastic_paraboloid import (
 )
 from .sample_times import flight_times
 
-TURNED, LEFT, CREPT, FAILED = "turned", "left", "crept", "failed"
+TURNED, LEFT, AT_REST, FAILED = "turned", "left", "at rest", "failed"
 """How a way ends: by a turn, at the top, at rest without a turn, not at all."""
 
 _TOLERANCE, _LEAST = 1e-11, 1e-15  # of the integration, relative and absolute
 _STIFF = 0.05  # relaxation time over that of an impact below which explicit steps are too many
 _SPAN = 30.0  # impacts' times that are integrated at once
 _MOST = 4000  # such spans on a way
-_FADED = 1e-15  # a dent that counts as gone
+_FADED = 1e-15  # an indentation that counts as gone
 _POINTS = 48  # samples of a stretch
 _SLOW = 1e-9  # an edge that counts as turning
 
@@ -72,20 +72,20 @@ class Bounce:
         self.time = self._clock = 0.0
         self.state = np.zeros(6)
         self.state[[DEPTH, SPEED]] = depth, speed
-        self.phase = Phase(solid, ADVANCES, 0.0, Dent())
+        self.phase = Phase(solid, ADVANCES, 0.0, ResidualIndentation())
         self.pressed = False
 
     def way(self, inwards: bool) -> tuple[str, list[Track]]:
         """The stretches until the body turns, and how they end."""
         tracks: list[Track] = []
         for _ in range(_MOST):
-            fate, track = (self._press if self.pressed else self._fly)(inwards)
+            fate, track = (self._press if self.pressed else self._free_flight)(inwards)
             tracks.append(track)
             if fate:
                 return fate, tracks
         return FAILED, tracks
 
-    def _fly(self, inwards: bool) -> tuple[str, Track]:
+    def _free_flight(self, inwards: bool) -> tuple[str, Track]:
         """Without contact: to the apex, or to where the surface is met."""
         g, depth, speed = self.solid.weight, float(self.state[DEPTH]), float(self.state[SPEED])
         apex = inf if inwards else (-speed / g if g > 0.0 else inf)
@@ -95,7 +95,7 @@ class Bounce:
         fate = ""
         if span < met:
             fate = TURNED if apex <= out else LEFT
-        track = self._flown(span)
+        track = self._free_flight_samples(span)
         self.time += span
         self.state[:] = self._aloft(np.array([span]))[:, 0]
         if fate == TURNED:
@@ -105,7 +105,7 @@ class Bounce:
         return fate, track
 
     def _aloft(self, span: np.ndarray) -> np.ndarray:
-        """States after times in flight: a parabola, and a dent that fills up."""
+        """States after times in flight: a parabola, and an indentation that fills up."""
         k, tau, g = self.solid
         begun = self.state[:, None]
         states = np.repeat(begun, span.size, axis=1)
@@ -117,7 +117,7 @@ class Bounce:
         states[SPENT] = begun[SPENT] + self.phase.springs(begun[SQUARED]) * gone
         return states
 
-    def _flown(self, span: float) -> Track:
+    def _free_flight_samples(self, span: float) -> Track:
         steps = flight_times(span, min(1.0, self.solid.time / self.solid.ratio))
         states = self._aloft(steps)
         none = np.zeros(steps.size)
@@ -159,16 +159,16 @@ class Bounce:
         return float(brentq(above, looks[index - 1], looks[index], xtol=1e-15, rtol=1e-14))
 
     def _touch(self) -> None:
-        """The surface is met: what is left of a dent is its start. The time counts from here."""
+        """The surface is met: the phase starts with what is left of an indentation, at time 0."""
         self.phase.begun -= self.time
         self._clock += self.time
         self.time = 0.0
         _, free = self.phase.faded(self.time)
-        dent, begun = self.phase.dent, self.phase.begun
-        if free * abs(dent.at(0.0)[0]) < _FADED:
-            dent, begun, free = Dent(), self.time, 1.0
-        self.phase = Phase(self.solid, ADVANCES, begun, dent)
-        once, twice = dent.whole
+        indentation, begun = self.phase.indentation, self.phase.begun
+        if free * abs(indentation.at(0.0)[0]) < _FADED:
+            indentation, begun, free = ResidualIndentation(), self.time, 1.0
+        self.phase = Phase(self.solid, ADVANCES, begun, indentation)
+        once, twice = indentation.whole
         self.state[[EXTENSION, SQUARED, PULLED]] = free * once, free**2 * twice, 0.0
         self.pressed = True
 
@@ -178,9 +178,9 @@ class Bounce:
 
         phase = self.phase
         speed = _event(lambda t, y: y[SPEED], -1.0 if inwards else 1.0)
-        edge = _event(phase.turning, -phase.way)
+        edge = _event(phase.turning, -phase.direction)
         events = [speed, edge]
-        if phase.way == RECEDES:
+        if phase.direction == RECEDES:
             events.append(_event(phase.touching, -1.0))
         stiff = self.solid.time < _STIFF
         try:
@@ -191,7 +191,7 @@ class Bounce:
             )  # fmt: skip
         except ValueError as error:  # of SciPy's search for the root of an event
             raise SimulationError(
-                "the edge of a creeping contact could not be followed: its relaxation, in "
+                "the edge of a viscoelastic contact could not be followed: its relaxation, in "
                 f"{self.solid.time:.2g} of the time of the impact to {self.solid.ratio:.2g} of the "
                 "modulus, is too quick and too deep beside the motion"
             ) from error
@@ -201,7 +201,7 @@ class Bounce:
         if done.status < 0:
             return FAILED, track
         if done.status == 0:
-            return (CREPT if self._rests() else ""), track
+            return (AT_REST if self._rests() else ""), track
         # Edge and body often turn together, and rounding may put either first.
         edge_turned = bool(done.t_events[1].size)
         turned = bool(done.t_events[0].size) or (edge_turned and abs(self.state[SPEED]) < _SLOW)
@@ -218,9 +218,9 @@ class Bounce:
 
     def _turns_with_body(self, inwards: bool) -> bool:
         """Whether the edge turns where the body does, which rounding may hide."""
-        way = self.phase.way
-        against = way == (ADVANCES if inwards else RECEDES)
-        slow = way * self.phase.turning(self.time, self.state) < _SLOW
+        direction = self.phase.direction
+        against = direction == (ADVANCES if inwards else RECEDES)
+        slow = direction * self.phase.turning(self.time, self.state) < _SLOW
         return against and float(self.state[SPEED]) == 0.0 and slow
 
     def _rests(self) -> bool:
@@ -235,18 +235,18 @@ class Bounce:
         """The edge of contact turns."""
         phase = self.phase
         edge = phase.radius(self.time, float(self.state[DEPTH]), float(self.state[PULLED]))
-        self._begin(-phase.way, edge)
+        self._begin(-phase.direction, edge)
 
     def _part(self) -> None:
-        """The surface is left, with a dent in it."""
+        """The surface is left, with an indentation in it."""
         self._begin(ADVANCES, 0.0)
         self.pressed = False
 
-    def _begin(self, way: int, edge: float) -> None:
+    def _begin(self, direction: int, edge: float) -> None:
         """A phase begins where the last one ends, at a radius of contact."""
-        dent = self.phase.left_behind(self.time, edge)
-        self.phase = Phase(self.solid, way, self.time, dent, edge)
-        self.state[[EXTENSION, SQUARED]] = dent.whole
+        indentation = self.phase.left_behind(self.time, edge)
+        self.phase = Phase(self.solid, direction, self.time, indentation, edge)
+        self.state[[EXTENSION, SQUARED]] = indentation.whole
         self.state[PULLED] = 0.0
 
     def _tracked(self, phase: Phase, done: Any) -> Track:

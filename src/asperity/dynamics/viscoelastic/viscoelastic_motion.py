@@ -11,11 +11,11 @@ from typing import Any, Protocol
 
 from ...contact.contact import Contact
 from ...contact.elastic import ElasticContact
-from ...contact.viscoelastic import Creep
+from ...contact.viscoelastic import Relaxation
 from ...errors import Outcome
 from ..curve_table import Table
 from ..record import Body, Limits, Motion
-from ..static_equilibrium import Datum
+from ..static_equilibrium import Reference
 from ..stepped_phase import FAILED, TURNED, Ended, Samples
 from ..stepped_series import Trajectory
 from .rough_phase import RoughBounce, first_mesh
@@ -40,13 +40,13 @@ class Bouncing(Protocol):
         """The samples until the body turns, and how they end."""
 
 
-def fly_creeping(
+def integrate_viscoelastic(
     contact: Contact,
-    creep: Creep,
+    relaxation: Relaxation,
     body: Body,
-    prepared: tuple[Table, Datum],
+    prepared: tuple[Table, Reference],
     limits: Limits,
-    tell: Callable[[int], None],
+    report: Callable[[int], None],
     stop: threading.Event | None = None,
 ) -> tuple[Motion, Trajectory, Outcome]:
     """Motion of a body from its release until it rests, escapes, reaches a limit or is stopped.
@@ -56,15 +56,15 @@ def fly_creeping(
     contact
         The contact when its bulk has relaxed, with a ``viscous`` loss; that with menisci that form
         at once where they take time.
-    creep
+    relaxation
         How it relaxes, or what takes time on it.
     body
         The body and its release, outside contact.
     prepared
-        The table of ``contact``, and the datum.
+        The table of ``contact``, and the reference separation.
     limits
         Ends of the motion.
-    tell
+    report
         Called with the number of impacts, after each.
     stop
         Set from another thread, it ends the motion at the last whole impact.
@@ -80,7 +80,7 @@ def fly_creeping(
             raise Ended
 
     ledger = Ledger(contact, body, prepared, limits)
-    bouncing = _bouncing(creep, ledger, asked)
+    bouncing = _bouncing(relaxation, ledger, asked)
     last = bouncing.start()
     done: list[Bounced] = []
     outcome = None
@@ -100,7 +100,7 @@ def fly_creeping(
         done.append(Bounced(last, fall, rise))
         last = done[-1].end
         outcome = ledger.outcome(done, abs(before - bouncing.threshold))
-        tell(len(done))
+        report(len(done))
     return *ledger.motion(done, outcome), outcome
 
 
@@ -108,17 +108,17 @@ def _none(like: Samples) -> Samples:
     return Samples(*(column[:0] for column in like))
 
 
-def _bouncing(creep: Creep, ledger: Ledger, asked: Callable[[], None]) -> Bouncing:
+def _bouncing(relaxation: Relaxation, ledger: Ledger, asked: Callable[[], None]) -> Bouncing:
     """The body at its release, on a mesh that fits the first impact where there is one."""
-    if not isinstance(creep.contact, ElasticContact):
-        return SmoothBounce(creep, ledger)
+    if not isinstance(relaxation.contact, ElasticContact):
+        return SmoothBounce(relaxation, ledger)
     table, _ = ledger.prepared
-    size = first_mesh(creep, float(table.ends[0]))
+    size = first_mesh(relaxation, float(table.ends[0]))
     for _ in range(_PASSES):
-        trial: Any = RoughBounce(creep, ledger.body, size, ledger.ends, asked)
+        trial: Any = RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)
         trial.start()
         fate, _ = trial.way(inwards=True)
         if fate == FAILED or abs(trial.fit - 1.0) <= _FIT:
             break
         size *= trial.fit
-    return RoughBounce(creep, ledger.body, size, ledger.ends, asked)
+    return RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)

@@ -11,11 +11,11 @@ from ..._jax import jax, jnp
 from ...contact.contact import Contact
 from ...errors import Outcome
 from ...numerics.polynomials import NODES
-from ..curve_table import FORCE, PULL, STORED, TOUCHING, Pieces, Table, quantities
+from ..curve_table import ATTRACTION, CONTACTING, FORCE, STORED, Pieces, Table, quantities
 from ..motion import LEAST_LOSS
 from ..record import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
-from ..static_equilibrium import Datum
-from ..stepped_phase import CREPT, FAILED, LEFT, Samples
+from ..static_equilibrium import Reference
+from ..stepped_phase import AT_REST, FAILED, LEFT, Samples
 from ..stepped_series import Trajectory
 from ..time_series import Series
 
@@ -57,21 +57,21 @@ class Ledger(NamedTuple):
     contact, body
         What moves on what; the contact has a ``viscous`` loss where its bulk creeps.
     prepared
-        The table of the contact when its bulk has relaxed, and the datum.
+        The table of the contact when its bulk has relaxed, and the reference separation.
     limits
         Ends of the motion.
     """
 
     contact: Contact
     body: Body
-    prepared: tuple[Table, Datum]
+    prepared: tuple[Table, Reference]
     limits: Limits
 
     @property
     def ends(self) -> tuple[float, float, float]:
         """Separations [m]: at rest, how close counts as there, and where a body has left."""
-        table, datum = self.prepared
-        still = float(datum.equilibrium)
+        table, reference = self.prepared
+        still = float(reference.equilibrium)
         near = float(self.limits.rest) * (float(self.body.release) - still)
         return still, near, float(table.ends[-1])
 
@@ -87,11 +87,11 @@ class Ledger(NamedTuple):
         return whole
 
     def left(self, sample: Samples) -> float:
-        """The same without what a dent holds, where the body has left it [J]."""
-        dent = sample.rows[0, STORED] if sample.rows[0, FORCE] == 0.0 else 0.0
-        return float(self.energy(sample)[0] - dent)
+        """The same without what an indentation holds, where the body has left it [J]."""
+        indentation = sample.rows[0, STORED] if sample.rows[0, FORCE] == 0.0 else 0.0
+        return float(self.energy(sample)[0] - indentation)
 
-    def fastest(self, bounced: Bounced) -> float:
+    def maximum_kinetic(self, bounced: Bounced) -> float:
         """Largest kinetic energy on the way in [J]."""
         joined = Samples.joined([bounced.begin, bounced.fall.samples])
         return float(np.max(self.kinetic(joined)))
@@ -107,48 +107,48 @@ class Ledger(NamedTuple):
         """
         last, limits = done[-1], self.limits
         cycle = np.sum(last.end.lost - last.begin.lost)
-        repeats = waits <= LEAST_LOSS * float(self.contact.reach)
+        repeats = waits <= LEAST_LOSS * float(self.contact.interaction_range)
         rules = (
             (FAILED in (last.fall.fate, last.rise.fate), Outcome.FAILED),
-            (CREPT in (last.fall.fate, last.rise.fate), Outcome.REST),
+            (AT_REST in (last.fall.fate, last.rise.fate), Outcome.REST),
             (last.rise.fate == LEFT, Outcome.ESCAPED),
             (last.end.time[0] >= limits.time, Outcome.TIME_LIMIT),
             (self.height(last) < limits.rest * self.height(done[0]), Outcome.REST),
-            (repeats and cycle < LEAST_LOSS * self.fastest(done[0]), Outcome.OSCILLATING),
+            (repeats and cycle < LEAST_LOSS * self.maximum_kinetic(done[0]), Outcome.OSCILLATING),
             (len(done) >= limits.impacts, Outcome.MAX_IMPACTS),
         )
         return next((outcome for holds, outcome in rules if holds), None)
 
     def motion(self, done: Sequence[Bounced], outcome: Outcome) -> tuple[Motion, Trajectory]:
         """The records of a motion."""
-        table, datum = self.prepared
+        table, reference = self.prepared
         origin = float(self.energy(done[0].begin)[0])
-        fastest = self.fastest(done[0])
-        rows = [self._row(one, origin, fastest) for one in done]
+        maximum_kinetic = self.maximum_kinetic(done[0])
+        rows = [self._row(one, origin, maximum_kinetic) for one in done]
         impacts: Impacts = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *rows)
         end = self._progress(done, outcome)
-        motion = Motion(impacts, end, table, datum, jnp.asarray(origin))
+        motion = Motion(impacts, end, table, reference, jnp.asarray(origin))
         return motion, self._trajectory(done)
 
-    def _row(self, one: Bounced, origin: float, fastest: float) -> Impacts:
+    def _row(self, one: Bounced, origin: float, maximum_kinetic: float) -> Impacts:
         samples = Samples.joined([one.begin, one.fall.samples, one.rise.samples])
         energy = self.energy(samples) + np.sum(samples.lost, axis=1)
         middle, end = one.middle, one.end
         columns: dict[str, Any] = {
             "made": np.asarray(True),
-            "deepest": middle.separation[0],
+            "closest_approach": middle.separation[0],
             "apex": end.separation[0],
-            "deepest_time": middle.time[0],
+            "closest_approach_time": middle.time[0],
             "apex_time": end.time[0],
             "mechanical": np.asarray(self.left(end)),
             "leaving": np.asarray(np.nan),
             "force": middle.rows[0, FORCE],
-            "touching": middle.rows[0, TOUCHING],
+            "contacting": middle.rows[0, CONTACTING],
             "bonds": middle.rows[0, quantities(self.contact).bonds],
             "lost": end.lost[0],
             "energy_balance_error": np.max(np.abs(energy - origin)),
             "pull_work": np.asarray(_pull_work(Samples.joined([middle, one.rise.samples]))),
-            "fastest": np.asarray(fastest),
+            "maximum_kinetic": np.asarray(maximum_kinetic),
             "fall": self._phase(one.begin, middle),
             "rise": self._phase(middle, end),
         }
@@ -174,14 +174,14 @@ class Ledger(NamedTuple):
     def _progress(self, done: Sequence[Bounced], outcome: Outcome) -> Progress:
         last = done[-1].end
         end: dict[str, Any] = {
-            "memory": self.contact.fresh(),
+            "memory": self.contact.initial_memory(),
             "place": last.separation[0],
             "kinetic": self.kinetic(last)[0],
             "time": last.time[0],
             "lost": last.lost[0],
             "bonds": last.rows[0, quantities(self.contact).bonds],
             "first": self.height(done[0]),
-            "impact_energy": self.fastest(done[0]),
+            "impact_energy": self.maximum_kinetic(done[0]),
             "outcome": ENDS.index(outcome) if outcome in ENDS else -1,
             "made": len(done),
         }
@@ -207,5 +207,5 @@ class Ledger(NamedTuple):
 
 def _pull_work(samples: Samples) -> float:
     """Work against the attractive forces along a way [J]."""
-    pull, step = samples.rows[:, PULL], np.diff(samples.separation)
-    return float(0.0 - np.sum(0.5 * (pull[1:] + pull[:-1]) * step))
+    attraction, step = samples.rows[:, ATTRACTION], np.diff(samples.separation)
+    return float(0.0 - np.sum(0.5 * (attraction[1:] + attraction[:-1]) * step))

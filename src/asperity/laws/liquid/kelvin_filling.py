@@ -43,14 +43,14 @@ class KelvinFilling(Condensed):
         return jnp.asarray(self.tension / self.kelvin_radius)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
-        return jnp.where((gap >= 0.0) & (gap < self.reach), -self.pull, 0.0)
+        return jnp.where((gap >= 0.0) & (gap < self.interaction_range), -self.pull, 0.0)
 
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
-        return -self.pull * (self.reach - jnp.clip(gap, 0.0, self.reach))
+        return -self.pull * (self.interaction_range - jnp.clip(gap, 0.0, self.interaction_range))
 
     def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers]:
-        edge = bond_gap if self.hysteretic else self.reach
-        left = self.reach - edge
+        edge = bond_gap if self.hysteretic else self.interaction_range
+        left = self.interaction_range - edge
         force = (TruncatedPower(-self.pull, 0.0, edge), TruncatedPower(self.pull, 0.0, 0.0))
         energy = (
             TruncatedPower(-self.pull, 1.0, edge),

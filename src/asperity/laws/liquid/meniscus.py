@@ -16,22 +16,22 @@ class Formation(eqx.Module):
     """When a meniscus forms."""
 
     @abc.abstractmethod
-    def gap(self, reach: jax.Array) -> jax.Array:
+    def gap(self, interaction_range: jax.Array) -> jax.Array:
         """Gap [m] at which it forms, given the largest it can span."""
 
 
 class ByContact(Formation):
     """Forms when the bodies touch and holds to the Kelvin gap: a cycle loses energy."""
 
-    def gap(self, reach: jax.Array) -> jax.Array:
-        return jnp.zeros_like(reach)
+    def gap(self, interaction_range: jax.Array) -> jax.Array:
+        return jnp.zeros_like(interaction_range)
 
 
 class ByKelvinGap(Formation):
     """Forms at the gap at which it also breaks: conservative."""
 
-    def gap(self, reach: jax.Array) -> jax.Array:
-        return reach
+    def gap(self, interaction_range: jax.Array) -> jax.Array:
+        return interaction_range
 
 
 class Condensed(Law):
@@ -44,7 +44,7 @@ class Condensed(Law):
     counts: ClassVar[frozenset[str]] = frozenset({"capillary"})
 
     @property
-    def reach(self: Any) -> jax.Array:
+    def interaction_range(self: Any) -> jax.Array:
         """Largest gap that it spans, c [m]."""
         return jnp.asarray(2.0 * self.kelvin_radius * jnp.cos(self.contact_angle))
 
@@ -54,16 +54,16 @@ class Condensed(Law):
 
     @property
     def forming_gap(self: Any) -> jax.Array:
-        gap: jax.Array = self.formation.gap(self.reach)
+        gap: jax.Array = self.formation.gap(self.interaction_range)
         return gap
 
     @property
     def breaking_gap(self) -> jax.Array:
-        return self.reach
+        return self.interaction_range
 
     @property
     def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (0.0, self.reach)
+        return (0.0, self.interaction_range)
 
     def force(self, gap: jax.Array) -> jax.Array:
         return jnp.where(gap < self.forming_gap, self.bonded_force(gap), 0.0)
@@ -111,14 +111,14 @@ class Meniscus(Condensed):
         return 4.0 * pi * self.radius * self.tension * jnp.cos(self.contact_angle)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
-        return -self.pull * jnp.clip(1.0 - gap / self.reach, 0.0, 1.0)
+        return -self.pull * jnp.clip(1.0 - gap / self.interaction_range, 0.0, 1.0)
 
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
-        left = jnp.clip(1.0 - gap / self.reach, 0.0, 1.0)
-        return -self.pull * (0.5 * self.reach * left**2 + jnp.maximum(-gap, 0.0))
+        left = jnp.clip(1.0 - gap / self.interaction_range, 0.0, 1.0)
+        return -self.pull * (0.5 * self.interaction_range * left**2 + jnp.maximum(-gap, 0.0))
 
     def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers]:
-        c, slope = self.reach, self.pull / self.reach
+        c, slope = self.interaction_range, self.pull / self.interaction_range
         edge = bond_gap if self.hysteretic else c
         step_f, step_u = -slope * (c - edge), -0.5 * slope * (c - edge) ** 2
         force = (

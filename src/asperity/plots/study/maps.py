@@ -29,7 +29,7 @@ _PANELS = 3
 _TINTS = {
     "rebounds": outcomes.REBOUNDS,
     "captured": outcomes.CAPTURED,
-    "rest": colour("deepest"),
+    "rest": colour("closest_approach"),
     "oscillating": colour("apex"),
     "escaped": colour("motion"),
     "time_limit": colour("gas"),

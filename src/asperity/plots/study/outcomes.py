@@ -16,7 +16,7 @@ from asperity.sweeps.study.columns import OUTCOMES
 if TYPE_CHECKING:
     import xarray
 
-CAPTURED, REBOUNDS, FAILED = colour("deepest"), colour("motion"), "#DDDDDD"
+CAPTURED, REBOUNDS, FAILED = colour("closest_approach"), colour("motion"), "#DDDDDD"
 """Colours of cases whose first impact captures, that rebound from it, that failed."""
 
 WORDS = {"captured": "captured at the first impact", "rebounds": "rebounds"}
@@ -27,7 +27,7 @@ SHADE = "#F7E3D8"
 
 HATCH = "//////"
 
-SERIES = ("motion", "apex", "capillary", "deepest", "gas", "central")
+SERIES = ("motion", "apex", "capillary", "closest_approach", "gas", "central")
 """Names of the colours of series, in order."""
 
 BOUNDARY: Any = {"color": colour("contact"), "lw": 1.2}

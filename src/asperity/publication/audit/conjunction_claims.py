@@ -33,10 +33,10 @@ def claims(evidence: Evidence) -> list[Claim]:
 
 
 def _dry_adhesion(evidence: Evidence) -> float:
-    """Pull of all touching asperities at lambda' = 3 by the exact model [N], eq. 9."""
+    """Pull of all contacting asperities at lambda' = 3 by the exact model [N], eq. 9."""
     rough = evidence.rough
-    touching = float(evidence.exact_state(3.0 * rough.rms_height).touching)
-    return touching * 2.0 * pi * rough.asperity_radius * evidence.work
+    contacting = float(evidence.exact_state(3.0 * rough.rms_height).contacting)
+    return contacting * 2.0 * pi * rough.asperity_radius * evidence.work
 
 
 def _pressure(evidence: Evidence) -> Claim:
@@ -96,13 +96,13 @@ def _deformation(evidence: Evidence) -> list[Claim]:
 
 def _few(evidence: Evidence) -> Claim:
     depth = float(evidence.contact.pressure.end) - evidence.closest
-    touching = evidence.wet_touching
-    at_rest = float(evidence.exact_state(evidence.exact_rest).touching)
+    contacting = evidence.wet_touching
+    at_rest = float(evidence.exact_state(evidence.exact_rest).contacting)
     return Claim(
         "A mean over asperities describes the impact",
         "-",
-        f"{touching:.2g} asperities of the conjunction touch at closest approach, "
+        f"{contacting:.2g} asperities of the conjunction touch at closest approach, "
         f"{amount(depth, 'm')} past its edge, and {at_rest:.2g} at rest by the exact model: single "
-        f"impacts scatter by {100.0 / sqrt(max(touching, 1e-12)):.0f} % in that number",
-        either(min(touching, at_rest) > 10.0, AGREES, OUTSIDE),
+        f"impacts scatter by {100.0 / sqrt(max(contacting, 1e-12)):.0f} % in that number",
+        either(min(contacting, at_rest) > 10.0, AGREES, OUTSIDE),
     )

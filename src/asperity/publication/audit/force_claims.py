@@ -116,7 +116,7 @@ def _kelvin(evidence: Evidence) -> Claim:
     )
 
 
-def _reach(evidence: Evidence, humidity: float) -> float:
+def _interaction_range(evidence: Evidence, humidity: float) -> float:
     """Gap at which a meniscus ends [m]."""
     angle = evidence.case.capillary.contact_angle
     assert angle is not None
@@ -124,11 +124,11 @@ def _reach(evidence: Evidence, humidity: float) -> float:
 
 
 def _push(evidence: Evidence) -> Claim:
-    reach = _reach(evidence, 0.5)
+    end = _interaction_range(evidence, 0.5)
     return Claim(
         "A meniscus pulls as in eq. 12 at any gap",
         "-",
-        f"beyond {reach * 1e9:.3g} nm (at 50 %) it pushes, at twice that with its full force",
+        f"beyond {end * 1e9:.3g} nm (at 50 %) it pushes, at twice that with its full force",
         WRONG,
     )
 
@@ -148,19 +148,19 @@ def _factor_of_bands(evidence: Evidence) -> Claim:
 def _left_out(evidence: Evidence) -> Claim:
     """What the sum of eq. 15 omits: asperities that touch, and those below the mean plane."""
     sigma, at = evidence.rough.rms_height, 3.0
-    reach = _reach(evidence, _EXAMPLE) / sigma
-    inside = min(reach, at)
+    interaction_range = _interaction_range(evidence, _EXAMPLE) / sigma
+    inside = min(interaction_range, at)
 
     def waiting(gap: float) -> float:
-        return (1.0 - gap / reach) * exp(-0.5 * (at - gap) ** 2) / sqrt(2.0 * pi)
+        return (1.0 - gap / interaction_range) * exp(-0.5 * (at - gap) ** 2) / sqrt(2.0 * pi)
 
     summed = quad(waiting, 0.0, inside)[0]
-    touching = float(ndtr(-at))
-    everywhere = 1.0 / (0.5 - touching)
+    contacting = float(ndtr(-at))
+    everywhere = 1.0 / (0.5 - contacting)
     return Claim(
         "The menisci of all asperities (eq. 15)",
         "those between the flat and the mean plane",
-        f"at lambda' = 3 those that touch, which are left out, carry {touching / summed:.2g} "
+        f"at lambda' = 3 those that touch, which are left out, carry {contacting / summed:.2g} "
         f"times what the sum holds within the reach of a meniscus at {100.0 * _EXAMPLE:g} % "
         "(beyond it the terms push, as printed); at 100 % also all below the mean plane are "
         f"left out, and the whole is {everywhere:.3g} times the sum",

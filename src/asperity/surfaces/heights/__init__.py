@@ -2,6 +2,6 @@
 
 from .distribution import Gaussian, Heights
 from .measured_heights import Sampled, Spread, spread_of
-from .panel_length import Fineness
+from .panel_length import PanelLengths
 
-__all__ = ["Fineness", "Gaussian", "Heights", "Sampled", "Spread", "spread_of"]
+__all__ = ["Gaussian", "Heights", "PanelLengths", "Sampled", "Spread", "spread_of"]

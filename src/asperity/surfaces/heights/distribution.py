@@ -11,7 +11,7 @@ import equinox as eqx
 from ..._jax import jax, jnp
 from ...laws.law import Powers, Real, quantity
 from ...numerics.height_integrals import height_integral, integrals_at, normal_density, order_ratio
-from .panel_length import Fineness
+from .panel_length import PanelLengths
 
 
 class Heights(eqx.Module):
@@ -22,16 +22,16 @@ class Heights(eqx.Module):
     rigid paraboloid T_1.
     """
 
-    blur: ClassVar[float] = 0.0
+    error_floor: ClassVar[float] = 0.0
     """Relative error of curves below which nothing is gained: of what is known of the heights."""
 
     cuts: ClassVar[int] = 1
     """Into how many each piece of a quadrature over Gaussian heights is cut."""
 
     @property
-    def fineness(self) -> Fineness:
+    def panel_lengths(self) -> PanelLengths:
         """How finely the curves are cut that it makes. Without values."""
-        return Fineness()
+        return PanelLengths()
 
     @property
     @abc.abstractmethod

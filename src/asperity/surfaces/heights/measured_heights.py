@@ -15,7 +15,7 @@ from ...numerics.height_integrals import order_ratio
 from ...numerics.polynomials import quintic
 from ...numerics.splines import kernel_rule, kernels
 from .distribution import Heights
-from .panel_length import Fineness, fineness_of
+from .panel_length import PanelLengths, fineness_of
 
 SIZES = (0.0, 0.5, 1.0)
 """Powers of the tip radius by which means are weighted."""
@@ -26,7 +26,7 @@ _KEPT = (-1.0, 0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5)
 _NARROW = 0.4
 """Distance of the nodes, in rms times the number of heights to the power -1/5."""
 
-_FINE = Fineness(0.45, (0.05, 0.1, 0.45, 0.6))
+_FINE = PanelLengths(0.45, (0.05, 0.1, 0.45, 0.6))
 """What most measured heights need."""
 
 _MARGIN = 4  # nodes above the highest and below the lowest
@@ -44,7 +44,7 @@ class Spread(NamedTuple):
         Distance of the nodes [m].
     nodes
         Their number (static).
-    fineness
+    panel_lengths
         How finely the curves are cut (static): by default enough for most heights, not for heaps
         of them; :func:`spread_of` finds it by trial.
     """
@@ -52,7 +52,7 @@ class Spread(NamedTuple):
     first: float
     step: float
     nodes: int
-    fineness: Fineness = _FINE
+    panel_lengths: PanelLengths = _FINE
 
 
 class Sampled(Heights):
@@ -79,13 +79,13 @@ class Sampled(Heights):
     ``spread`` is given.
     """
 
-    blur: ClassVar[float] = 1e-3
+    error_floor: ClassVar[float] = 1e-3
     cuts: ClassVar[int] = 5
 
     share: jax.Array
     tables: jax.Array
     moments: jax.Array
-    told: Fineness = eqx.field(static=True)
+    longest_panels: PanelLengths = eqx.field(static=True)
     first: Real = quantity()
     step: Real = quantity()
     mean: Real = quantity()
@@ -96,7 +96,7 @@ class Sampled(Heights):
     ) -> None:
         on = spread or spread_of(np.asarray(heights))
         self.first, self.step = (jnp.asarray(x, jnp.float64) for x in (on.first, on.step))
-        self.told = on.fineness
+        self.longest_panels = on.panel_lengths
         # In lengths of powers of two, so that few of them are compiled, and padding never.
         traced = any(isinstance(x, jax.Array) for x in (heights, radii, radius))
         on_host: Any = jnp if traced else np
@@ -110,8 +110,8 @@ class Sampled(Heights):
         self.tables, self.moments = _tabulated(self.share, self.step, kernels(on.nodes, _KEPT))
 
     @property
-    def fineness(self) -> Fineness:
-        return self.told
+    def panel_lengths(self) -> PanelLengths:
+        return self.longest_panels
 
     @property
     def rms(self) -> jax.Array | float:
@@ -188,9 +188,9 @@ class Sampled(Heights):
         ratio, series = self.nodes / depth, jnp.zeros_like(depth)
         for k in range(count, -1, -1):
             series = series * ratio + binom(order, k) * moments[k]
-        reach = depth * self.step
-        root = jnp.sqrt(reach) if order % 1.0 else 1.0
-        return reach ** int(order) * root * series
+        interaction_range = depth * self.step
+        root = jnp.sqrt(interaction_range) if order % 1.0 else 1.0
+        return interaction_range ** int(order) * root * series
 
     def _quintic(self, cells: jax.Array, row: np.ndarray, x: jax.Array) -> jax.Array:
         """Polynomials of the cells in which ``x`` lies, 0 above all of them."""

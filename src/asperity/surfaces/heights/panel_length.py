@@ -15,32 +15,32 @@ from ...numerics.polynomials import from_points
 PANEL_NODES = 16
 """Nodes of a panel of a curve."""
 
-WAY_NODES = (6, 8, 12, 16)
-"""Nodes of a piece of the way from a reversal to the outermost branch, one of these."""
+SCANNING_NODES = (6, 8, 12, 16)
+"""Nodes of a piece of the way from a reversal to the major branch, one of these."""
 
 _PANEL = 2.2  # rms heights
-_WAYS = (0.1, 0.5, 2.0, 4.5)
-_WAYS_OF_MEASURED = (0.05, 0.1, 2.0, 4.5)  # many may be as high as the highest
+_SCANNING = (0.1, 0.5, 2.0, 4.5)
+_SCANNING_OF_MEASURED = (0.05, 0.1, 2.0, 4.5)  # many may be as high as the highest
 _CLOSE = 4e-6  # of the trial at the mean height: its error, on panels
-_CLOSE_ON_WAYS = 2e-5  # a way is a small part of a motion
+_CLOSE_ON_SCANNING = 2e-5  # a way is a small part of a motion
 _TRIED = 0.85 ** np.arange(24.0)
 _BEGINS = 3  # places in a piece where others begin
 _LEAST = 0.1  # nodes; a single height has no rms height
 
 
-class Fineness(NamedTuple):
+class PanelLengths(NamedTuple):
     """Longest pieces on which polynomials read the curves of heights, in rms heights.
 
     Attributes
     ----------
     panel
         Of a panel.
-    ways
-        Of a piece of a way back, for each of :data:`WAY_NODES`.
+    scanning
+        Of a piece of a scanning curve, for each of :data:`SCANNING_NODES`.
     """
 
     panel: float = _PANEL
-    ways: tuple[float, ...] = _WAYS
+    scanning: tuple[float, ...] = _SCANNING
 
     @property
     def grain(self) -> float:
@@ -49,17 +49,17 @@ class Fineness(NamedTuple):
 
     def along(self, share: float) -> tuple[int, int]:
         """Nodes of a piece, and pieces, on a way of so many rms heights: the fewest in all."""
-        each = zip(WAY_NODES, self.ways, strict=True)
+        each = zip(SCANNING_NODES, self.scanning, strict=True)
         choices = [(nodes, max(ceil(share / longest), 1)) for nodes, longest in each]
         return min(choices, key=lambda choice: (choice[0] * choice[1], choice[1]))
 
-    def and_of(self, other: Fineness) -> Fineness:
+    def and_of(self, other: PanelLengths) -> PanelLengths:
         """What both ask for."""
-        ways = zip(self.ways, other.ways, strict=True)
-        return Fineness(min(self.panel, other.panel), tuple(min(pair) for pair in ways))
+        scanning = zip(self.scanning, other.scanning, strict=True)
+        return PanelLengths(min(self.panel, other.panel), tuple(min(pair) for pair in scanning))
 
 
-def fineness_of(share: np.ndarray, rms: float) -> Fineness:
+def fineness_of(share: np.ndarray, rms: float) -> PanelLengths:
     """What a measured density needs, by trial.
 
     Parameters
@@ -88,10 +88,10 @@ def fineness_of(share: np.ndarray, rms: float) -> Fineness:
                 break
         return float(length)
 
-    ways = zip(WAY_NODES, _WAYS_OF_MEASURED, strict=True)
-    return Fineness(
+    scanning = zip(SCANNING_NODES, _SCANNING_OF_MEASURED, strict=True)
+    return PanelLengths(
         longest(PANEL_NODES, _PANEL, _CLOSE),
-        tuple(longest(nodes, most, _CLOSE_ON_WAYS) for nodes, most in ways),
+        tuple(longest(nodes, most, _CLOSE_ON_SCANNING) for nodes, most in scanning),
     )
 
 

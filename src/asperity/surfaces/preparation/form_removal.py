@@ -47,7 +47,7 @@ class Form:
     radius: float | None = None
 
 
-def levelled(topography: Topography, remove: str = "tilt") -> tuple[Topography, Step]:
+def levelled(topography: Topography, form_removal: str = "tilt") -> tuple[Topography, Step]:
     """A surface measured from its mean, its plane, its paraboloid or its sphere.
 
     The form has the least squares of vertical distance over all pixels that are not missing.
@@ -56,7 +56,7 @@ def levelled(topography: Topography, remove: str = "tilt") -> tuple[Topography, 
     ----------
     topography
         The surface.
-    remove
+    form_removal
         ``none``; ``mean``; ``tilt``, a plane; ``curvature``, the full polynomial of second
         order; ``sphere``, a true sphere, bulging up or hollow, seen from above.
 
@@ -68,25 +68,28 @@ def levelled(topography: Topography, remove: str = "tilt") -> tuple[Topography, 
     Raises
     ------
     InputError
-        If ``remove`` is unknown, if too few pixels, or only pixels on a line, are left to fit,
-        or if no sphere passes over all of them.
+        If ``form_removal`` is unknown, if too few pixels, or only pixels on a line, are left to
+        fit, or if no sphere passes over all of them.
     """
-    if remove not in FORMS:
+    if form_removal not in FORMS:
         raise InputError(
-            f"`remove` must be one of {', '.join(FORMS)}; got {remove!r}", key="remove"
+            f"`form_removal` must be one of {', '.join(FORMS)}; got {form_removal!r}",
+            key="form_removal",
         )
     before = topography.rms_height
-    if remove == "none":
+    if form_removal == "none":
         return topography, Step("form", "no form removed", before, before, {})
-    form = _sphere(topography) if remove == "sphere" else _polynomial(topography, remove)
+    form = (
+        _sphere(topography) if form_removal == "sphere" else _polynomial(topography, form_removal)
+    )
     made = topography.with_heights(topography.heights - form.heights)
-    words, values = _in_words(form, remove)
-    return made, Step("form", words, before, made.rms_height, {"removed": remove, **values})
+    words, values = _in_words(form, form_removal)
+    return made, Step("form", words, before, made.rms_height, {"removed": form_removal, **values})
 
 
-def _polynomial(topography: Topography, remove: str) -> Form:
+def _polynomial(topography: Topography, form_removal: str) -> Form:
     """The polynomial of least squares; its sums factorise into products of matrices."""
-    heights, terms = topography.heights, _TERMS[remove]
+    heights, terms = topography.heights, _TERMS[form_removal]
     along_x, along_y = (
         legendre.legvander(np.linspace(-1.0, 1.0, count), 2) for count in heights.shape[::-1]
     )
@@ -101,7 +104,7 @@ def _polynomial(topography: Topography, remove: str) -> Form:
     gram = np.array([[products[q, s, p, r] for r, s in terms] for p, q in terms])
     if np.linalg.matrix_rank(gram, hermitian=True, tol=1e-10 * finite.sum()) < len(terms):
         raise topography._error(
-            f"removing `{remove}` needs {len(terms)} pixels that do not lie on a line; got "
+            f"removing `{form_removal}` needs {len(terms)} pixels that do not lie on a line; got "
             f"{finite.sum()} pixels that are not missing; remove 'mean', or fill the gaps first"
         )
     solved = np.linalg.solve(gram, [sums[q, p] for p, q in terms])
@@ -130,17 +133,17 @@ def _sphere(topography: Topography) -> Form:
     return Form(cap.heights(topography), slopes=cap.slopes, radius=cap.radius)
 
 
-def _in_words(form: Form, remove: str) -> tuple[str, dict[str, float | str | None]]:
+def _in_words(form: Form, form_removal: str) -> tuple[str, dict[str, float | str | None]]:
     """What was removed, in words and in numbers."""
     tilt = [atan(slope) for slope in form.slopes]
     leaning = f"{degrees(tilt[0]):.3g} deg along x, {degrees(tilt[1]):.3g} deg along y"
     values: dict[str, float | str | None] = {"tilt_x": tilt[0], "tilt_y": tilt[1]}
-    if remove == "mean":
+    if form_removal == "mean":
         level = float(form.heights.mean())
         return f"mean removed: {length(level)}", {"mean": level}
-    if remove == "tilt":
+    if form_removal == "tilt":
         return f"tilt removed: {leaning}", values
-    if remove == "curvature":
+    if form_removal == "curvature":
         radii = _principal_radii(form)
         values |= {"radius_1": _or_none(radii[0]), "radius_2": _or_none(radii[1])}
         round_ = f"principal radii {length(radii[0])} and {length(radii[1])}"

@@ -22,7 +22,7 @@ _LEAST_PADDING = 32
 
 
 def band_limited(
-    topography: Topography, short: float | None = None, long: float | None = None
+    topography: Topography, s_filter: float | None = None, l_filter: float | None = None
 ) -> tuple[Topography, tuple[Step, ...]]:
     """A surface without its short or its long wavelengths.
 
@@ -43,9 +43,9 @@ def band_limited(
     ----------
     topography
         The surface.
-    short
+    s_filter
         Waves shorter than this [m] are damped; None keeps them.
-    long
+    l_filter
         Waves longer than this [m] are damped; None keeps them.
 
     Returns
@@ -58,22 +58,24 @@ def band_limited(
         If a cut is no positive length, shorter than two pixels or longer than the map's shorter
         side, or if the short cut is not below the long one.
     """
-    checked(short, long)
+    checked(s_filter, l_filter)
     steps = []
-    for name, cut in (("short", short), ("long", long)):
+    for name, cut in (("s_filter", s_filter), ("l_filter", l_filter)):
         if cut is None:
             continue
         _require_resolved(topography, name, cut)
         smooth = _gaussian(topography, cut)
-        made = topography.with_heights(smooth if name == "short" else topography.heights - smooth)
-        side = "below" if name == "short" else "above"
+        made = topography.with_heights(
+            smooth if name == "s_filter" else topography.heights - smooth
+        )
+        side = "below" if name == "s_filter" else "above"
         words = f"wavelengths {side} {length(cut)} cut by a Gaussian filter"
         steps.append(Step(name, words, topography.rms_height, made.rms_height, {"cut": cut}))
         topography = made
     return topography, tuple(steps)
 
 
-def checked(short: float | None, long: float | None) -> None:
+def checked(s_filter: float | None, l_filter: float | None) -> None:
     """Refuse cuts that are no lengths or leave nothing between them.
 
     Raises
@@ -81,12 +83,13 @@ def checked(short: float | None, long: float | None) -> None:
     InputError
         With the key at fault.
     """
-    for key, value in (("short", short), ("long", long)):
+    for key, value in (("s_filter", s_filter), ("l_filter", l_filter)):
         if value is not None and not (isfinite(value) and value > 0.0):
             raise InputError(f"`{key}` must be a positive length; got {value} m", key=key)
-    if short is not None and long is not None and short >= long:
+    if s_filter is not None and l_filter is not None and s_filter >= l_filter:
         raise InputError(
-            f"`short` must lie below `long`, {length(long)}; got {length(short)}", key="short"
+            f"`s_filter` must lie below `l_filter`, {length(l_filter)}; got {length(s_filter)}",
+            key="s_filter",
         )
 
 

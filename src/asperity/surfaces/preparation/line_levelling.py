@@ -89,7 +89,10 @@ def checked(how: str, direction: str, degree: int) -> None:
     InputError
         With the key at fault.
     """
-    for key, value, known in (("align", how, ALIGNMENTS), ("direction", direction, DIRECTIONS)):
+    for key, value, known in (
+        ("line_levelling", how, ALIGNMENTS),
+        ("direction", direction, DIRECTIONS),
+    ):
         if value not in known:
             raise InputError(f"`{key}` must be one of {', '.join(known)}; got {value!r}", key=key)
     if isinstance(degree, bool) or degree not in range(6):
@@ -117,7 +120,7 @@ def _summed_differences(topography: Topography, lines: np.ndarray) -> np.ndarray
         if steps.size == 0:
             raise topography._error(
                 f"lines {before} and {line} share no pixel, so their offset is unknown; got a map "
-                "with missing pixels; fill them first or align by 'median'"
+                "with missing pixels; fill them first or use 'median'"
             )
         offsets[line] = offsets[before] + np.median(steps)
     return offsets
@@ -136,7 +139,7 @@ def _polynomials(topography: Topography, lines: np.ndarray, degree: int) -> np.n
         if rank <= degree:
             raise topography._error(
                 f"a line needs {degree + 1} pixels for a polynomial of degree {degree}; line "
-                f"{line} has {seen.sum()}; lower the degree or align by 'median'"
+                f"{line} has {seen.sum()}; lower the degree or use 'median'"
             )
         fitted[line] = basis @ weights
     return fitted

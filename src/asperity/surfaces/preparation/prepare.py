@@ -22,15 +22,15 @@ class Preparation:
     ----------
     missing
         Missing pixels: ``refuse``, ``keep`` or ``fill``.
-    remove
+    form_removal
         Form: ``none``, ``mean``, ``tilt``, ``curvature`` or ``sphere``.
-    align
+    line_levelling
         Scan lines: ``none``, ``median``, ``median-difference`` or ``polynomial``.
     direction
         What a scan line is: ``rows`` or ``columns``.
     degree
         Degree of the polynomial of a scan line, 0 to 5.
-    short, long
+    s_filter, l_filter
         Wavelengths [m] below and above which waves are cut; None keeps them.
 
     Raises
@@ -40,37 +40,39 @@ class Preparation:
     """
 
     missing: str = "refuse"
-    remove: str = "tilt"
-    align: str = "none"
+    form_removal: str = "tilt"
+    line_levelling: str = "none"
     direction: str = "rows"
     degree: int = 1
-    short: float | None = None
-    long: float | None = None
+    s_filter: float | None = None
+    l_filter: float | None = None
 
     def __post_init__(self) -> None:
         for key, value, known in (
             ("missing", self.missing, MISSING),
-            ("remove", self.remove, FORMS),
-            ("align", self.align, ("none", *line_levelling.ALIGNMENTS)),
+            ("form_removal", self.form_removal, FORMS),
+            ("line_levelling", self.line_levelling, ("none", *line_levelling.ALIGNMENTS)),
         ):
             if value not in known:
                 raise InputError(
                     f"`{key}` must be one of {', '.join(known)}; got {value!r}", key=key
                 )
         line_levelling.checked(
-            self.align if self.align != "none" else "median", self.direction, self.degree
+            self.line_levelling if self.line_levelling != "none" else "median",
+            self.direction,
+            self.degree,
         )
-        if self.align == "none" and self.direction != "rows":
+        if self.line_levelling == "none" and self.direction != "rows":
             raise InputError(
-                f"`direction` must be absent without `align`; got {self.direction!r}",
+                f"`direction` must be absent without `line_levelling`; got {self.direction!r}",
                 key="direction",
             )
-        if self.align != "polynomial" and self.degree != 1:
+        if self.line_levelling != "polynomial" and self.degree != 1:
             raise InputError(
-                f"`degree` must be absent without align = 'polynomial'; got {self.degree}",
+                f"`degree` must be absent without line_levelling = 'polynomial'; got {self.degree}",
                 key="degree",
             )
-        gaussian_filter.checked(self.short, self.long)
+        gaussian_filter.checked(self.s_filter, self.l_filter)
 
 
 @dataclass(frozen=True)
@@ -132,15 +134,15 @@ def prepared(topography: Topography, preparation: Preparation) -> Prepared:
     steps = []
     if preparation.missing == "refuse" or count == 0:
         filled(topography, preparation.missing)
-    if preparation.align != "none":
+    if preparation.line_levelling != "none":
         topography, step = lines_aligned(
-            topography, preparation.align, preparation.direction, preparation.degree
+            topography, preparation.line_levelling, preparation.direction, preparation.degree
         )
         steps.append(step)
-    if preparation.remove != "none":
-        topography, step = levelled(topography, preparation.remove)
+    if preparation.form_removal != "none":
+        topography, step = levelled(topography, preparation.form_removal)
         steps.append(step)
-    topography, cuts = band_limited(topography, preparation.short, preparation.long)
+    topography, cuts = band_limited(topography, preparation.s_filter, preparation.l_filter)
     steps.extend(cuts)
     if count:
         topography, step = filled(topography, preparation.missing)

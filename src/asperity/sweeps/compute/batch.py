@@ -20,7 +20,7 @@ from asperity.solver import solve
 from asperity.sweeps.compute.batch_steps import Clock
 from asperity.sweeps.compute.building import Group, Values, built
 from asperity.sweeps.compute.critical_velocities import critical_velocities
-from asperity.sweeps.compute.integrate_batch import Flight, compile_ahead, fly_group
+from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
 from asperity.sweeps.study.columns import OUTCOMES, REASON_SIZE
 
@@ -39,8 +39,8 @@ class Effort(NamedTuple):
     ----------
     cases
         Number of cases.
-    lanes
-        Useful share of the vectorized lanes, 0 to 1.
+    batch_use
+        Useful share of the batch, 0 to 1: all its cases wait for the last.
     compiled
         Time in compiled code [s].
     wall
@@ -52,7 +52,7 @@ class Effort(NamedTuple):
     """
 
     cases: int
-    lanes: float
+    batch_use: float
     compiled: float
     wall: float
     looked: int = 0
@@ -123,10 +123,13 @@ def _computed(
         _fail(out, row, reason)
     compile_ahead(whole.groups)
     for group in whole.groups:
-        flight = fly_group(group, clock)
-        if any(column.name == "critical_velocity" for column in study.columns) and flight.measures:
-            flight.measures["critical_velocity"] = critical_velocities(group, flight, clock)
-        _write(study, out, group, flight)
+        solution = integrate_batch(group, clock)
+        if (
+            any(column.name == "critical_velocity" for column in study.columns)
+            and solution.measures
+        ):
+            solution.measures["critical_velocity"] = critical_velocities(group, solution, clock)
+        _write(study, out, group, solution)
         sound = out["outcome"][group.rows] != _FAILED
         for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
             row = int(group.rows[place])
@@ -135,7 +138,7 @@ def _computed(
             except InputError as error:  # a surface's file that is another one by now
                 _fail(out, row, str(error))
             else:
-                lines[row] = warnings_in(*pair, flight, place)
+                lines[row] = warnings_in(*pair, solution, place)
     for row, case in whole.alone:
         found = _solve(study, out, row, case, clock)
         if row in looked and found is not None:
@@ -143,7 +146,7 @@ def _computed(
     warned = [(first + row, line) for row, of_case in lines.items() for line in of_case]
     wall = time.perf_counter() - began
     compiled = min(clock.compiled, wall)
-    return out, Effort(count, clock.lanes, compiled, wall, len(lines), tuple(sorted(warned)))
+    return out, Effort(count, clock.batch_use, compiled, wall, len(lines), tuple(sorted(warned)))
 
 
 def _built(case: Case) -> tuple[Case, Problem]:
@@ -171,60 +174,60 @@ def _fail(out: Columns, row: int, reason: str) -> None:
     out["reason"][row, : len(kept)] = np.frombuffer(kept, np.uint8)
 
 
-def _write(study: Study, out: Columns, group: Group, flight: Flight) -> None:
-    """A flight's measures as columns."""
-    rows, made, past = group.rows, flight.made, flight.history
-    out["outcome"][rows] = flight.outcome
+def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) -> None:
+    """A solution's measures as columns."""
+    rows, made, past = group.rows, solution.made, solution.history
+    out["outcome"][rows] = solution.outcome
     out["impacts"][rows] = made
-    flown = np.flatnonzero(made > 0)
-    if flown.size:
-        at = rows[flown]
+    moved = np.flatnonzero(made > 0)
+    if moved.size:
+        at = rows[moved]
         energy_balance_error = np.full(made.size, np.nan)
-        energy_balance_error[flown] = (
-            past["energy_balance_error"][flown].max(axis=1) / past["fastest"][flown, 0]
+        energy_balance_error[moved] = (
+            past["energy_balance_error"][moved].max(axis=1) / past["maximum_kinetic"][moved, 0]
         )
         found = {
-            **flight.measures,
-            **_totals(group, flight),
+            **solution.measures,
+            **_totals(group, solution),
             "energy_balance_error": energy_balance_error,
         }
         for column in study.columns:
             if column.along == "turn":
-                out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[flown]
+                out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[moved]
             elif column.along == "impact":
-                known = found[column.name][flown][:, : out[column.name].shape[1]]
+                known = found[column.name][moved][:, : out[column.name].shape[1]]
                 out[column.name][at, : known.shape[1]] = known
             elif column.name in found:
-                out[column.name][at] = found[column.name][flown]
-    for place, reason in flight.reasons.items():
+                out[column.name][at] = found[column.name][moved]
+    for place, reason in solution.reasons.items():
         _fail(out, int(rows[place]), reason)
     for place, (case, problem) in enumerate(group.cases):
-        if place not in flight.reasons:
-            at_depth = AtDepth(*flight.at_depth[place].tolist())
+        if place not in solution.reasons:
+            at_depth = AtDepth(*solution.at_depth[place].tolist())
             try:
                 check_surface(case, problem, at_depth)
             except InputError as error:
                 _fail(out, int(rows[place]), str(error))
 
 
-def _totals(group: Group, flight: Flight) -> Columns:
+def _totals(group: Group, solution: BatchSolution) -> Columns:
     """What is read off the impacts themselves."""
-    past, contact, body = flight.history, group.flown.contact, group.flown.body
+    past, contact, body = solution.history, group.batch.contact, group.batch.body
     out = {
-        "last_apex_time": flight.last_apex_time,
-        "deepest": past["deepest"][:, 0],
-        "energy_lost": flight.lost.sum(axis=1),
+        "last_apex_time": solution.last_apex_time,
+        "minimum_separation": past["closest_approach"][:, 0],
+        "energy_lost": solution.lost.sum(axis=1),
     }
     for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
         key = f"lost_{name}"
-        out[key] = out.get(key, 0.0) + flight.lost[:, k]
+        out[key] = out.get(key, 0.0) + solution.lost[:, k]
     return out
 
 
 def _turns(past: Columns, name: str, size: int) -> np.ndarray:
     """Separations or times of the turning points, in order of time."""
     what = "" if name == "turning_separation" else "_time"
-    both = np.stack([past[f"deepest{what}"], past[f"apex{what}"]], axis=2)
+    both = np.stack([past[f"closest_approach{what}"], past[f"apex{what}"]], axis=2)
     both = np.where(past["made"][..., None], both, np.nan)
     flat = both.reshape(both.shape[0], -1)[:, :size]
     return np.pad(flat, ((0, 0), (0, size - flat.shape[1])), constant_values=np.nan)
@@ -260,7 +263,7 @@ def _read(result: Result) -> dict[str, Any]:
     ledger = result.ledger
     events = result.events
     places, times = (
-        np.stack([events[f"{at}_{what}"] for at in ("deepest", "apex")], axis=1).ravel()
+        np.stack([events[f"{at}_{what}"] for at in ("closest_approach", "apex")], axis=1).ravel()
         for what in ("separation", "time")
     )
     return {
@@ -270,7 +273,7 @@ def _read(result: Result) -> dict[str, Any]:
         "energy_lost": sum(ledger["lost"].values()),
         **{f"lost_{name}": value for name, value in ledger["lost"].items()},
         "last_apex_time": times[-1],
-        "deepest": places[0],
+        "minimum_separation": places[0],
         "turning_separation": places,
         "turning_time": times,
     }

@@ -1,4 +1,4 @@
-"""Cases of one structure flown side by side, a few impacts at a time; those at rest make room."""
+"""Cases of one structure batch side by side, a few impacts at a time; those at rest make room."""
 
 from __future__ import annotations
 
@@ -11,10 +11,20 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact
-from asperity.dynamics import Body, Impacts, Limits, Motion, Progress, Table, fly, prepare, start
-from asperity.dynamics.curve_table import CENTRAL, FORCE, PULL, TOUCHING, outer_row
+from asperity.dynamics import (
+    Body,
+    Impacts,
+    Limits,
+    Motion,
+    Progress,
+    Table,
+    integrate_impacts,
+    prepare,
+    start,
+)
+from asperity.dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from asperity.dynamics.release import at_release
-from asperity.dynamics.static_equilibrium import Datum
+from asperity.dynamics.static_equilibrium import Reference
 from asperity.numerics.compilation import Program, kept
 from asperity.results.measures import (
     FirstContact,
@@ -24,12 +34,12 @@ from asperity.results.measures import (
     measure,
     passing_at,
 )
-from asperity.sweeps.compute.building import Flown
+from asperity.sweeps.compute.building import Batch
 
 IMPACTS = 16
 """Impacts of a compiled call."""
 
-_FEW = 32  # lanes for a few cases, most of which would be empty in a wide call
+_FEW = 32  # cases in a batch of few, most of which would be empty in a wide call
 _FAST: dict[str, bool | int] = {"xla_cpu_multi_thread_eigen": False}
 """XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
 
@@ -40,7 +50,7 @@ class Begun(NamedTuple):
 
     Attributes
     ----------
-    table, datum, origin
+    table, reference, origin
         Curves, static equilibrium, and mechanical energy at the release [J].
     progress
         The motion at its last apex.
@@ -49,7 +59,7 @@ class Begun(NamedTuple):
     """
 
     table: Table
-    datum: Datum
+    reference: Reference
     origin: jax.Array
     progress: Progress
     first: FirstContact | None
@@ -82,41 +92,43 @@ Rows = tuple[Impacts, Passing | None]
 """Impacts without their phases, and the energies with which each passes the end of contact."""
 
 
-def _begin(flown: Flown) -> tuple[Begun, Checks, Rows]:
+def _begin(batch: Batch) -> tuple[Begun, Checks, Rows]:
     """The curves of each case and its first impacts."""
 
-    def one(flown: Flown) -> tuple[Begun, Checks, Rows]:
-        contact, body = flown.contact, flown.body
-        table, datum = prepare(contact, body, True)
+    def one(batch: Batch) -> tuple[Begun, Checks, Rows]:
+        contact, body = batch.contact, batch.body
+        table, reference = prepare(contact, body, True)
         progress, origin = start(contact, body, table)
         force, power, largest = at_release(table, body)
-        begun = Begun(table, datum, origin, progress, None)
-        progress, impacts = _flight(flown, begun)
-        deepest = outer_row(table, 0, impacts.deepest[0])
-        at_depth = jnp.stack([deepest[TOUCHING], deepest[FORCE] - deepest[PULL], deepest[CENTRAL]])
+        begun = Begun(table, reference, origin, progress, None)
+        progress, impacts = _integrated(batch, begun)
+        deepest = outer_row(table, 0, impacts.closest_approach[0])
+        at_depth = jnp.stack(
+            [deepest[CONTACTING], deepest[FORCE] - deepest[ATTRACTION], deepest[CENTRAL]]
+        )
         checks = Checks(table.error, table.residual, force, power, largest, at_depth)
         begun = begun._replace(progress=progress, first=first_contact(table, impacts, body))
         return begun, checks, _slim(body, begun, impacts)
 
-    return _over(flown)(one)(flown)
+    return _over(batch)(one)(batch)
 
 
-def _go_on(flown: Flown, begun: Begun) -> tuple[Progress, Rows]:
+def _go_on(batch: Batch, begun: Begun) -> tuple[Progress, Rows]:
     """The next impacts of each case."""
 
-    def one(pair: tuple[Flown, Begun]) -> tuple[Progress, Rows]:
-        flown, begun = pair
-        progress, impacts = _flight(flown, begun)
-        return progress, _slim(flown.body, begun, impacts)
+    def one(pair: tuple[Batch, Begun]) -> tuple[Progress, Rows]:
+        batch, begun = pair
+        progress, impacts = _integrated(batch, begun)
+        return progress, _slim(batch.body, begun, impacts)
 
-    return _over(flown)(one)((flown, begun))
+    return _over(batch)(one)((batch, begun))
 
 
-def _flight(flown: Flown, begun: Begun) -> tuple[Progress, Impacts]:
-    limits = Limits(*(jnp.asarray(end) for end in flown[2:]))
-    return fly(
-        flown.contact, flown.body, begun.table, begun.datum, begun.origin, begun.progress, limits,
-        IMPACTS,
+def _integrated(batch: Batch, begun: Begun) -> tuple[Progress, Impacts]:
+    limits = Limits(*(jnp.asarray(end) for end in batch[2:]))
+    return integrate_impacts(
+        batch.contact, batch.body, begun.table, begun.reference, begun.origin, begun.progress,
+        limits, IMPACTS,
     )  # fmt: skip
 
 
@@ -129,23 +141,23 @@ def _slim(body: Body, begun: Begun, impacts: Impacts) -> Rows:
 
 
 def _measure(
-    flown: Flown, ends: tuple[Datum, jax.Array, Progress, FirstContact], rows: Rows
+    batch: Batch, ends: tuple[Reference, jax.Array, Progress, FirstContact], rows: Rows
 ) -> Measures:
     """Measures of motions that have ended."""
 
-    def one(flown: Flown, ends: Any, rows: Rows) -> Measures:
-        datum, origin, progress, first = ends
+    def one(batch: Batch, ends: Any, rows: Rows) -> Measures:
+        reference, origin, progress, first = ends
         impacts, passing = rows
         # The table is not needed where the first contact is known.
-        motion = Motion(impacts, progress, None, datum, origin)  # type: ignore[arg-type]
-        return measure(motion, flown.body, passing, first)
+        motion = Motion(impacts, progress, None, reference, origin)  # type: ignore[arg-type]
+        return measure(motion, batch.body, passing, first)
 
-    return jax.vmap(one)(flown, ends, rows)
+    return jax.vmap(one)(batch, ends, rows)
 
 
-def _over(flown: Flown) -> Callable[[Any], Any]:
+def _over(batch: Batch) -> Callable[[Any], Any]:
     """Side by side, or one after the other where each is a large computation of its own."""
-    if isinstance(flown.contact, ElasticContact):
+    if isinstance(batch.contact, ElasticContact):
         return lambda one: lambda values: jax.lax.map(one, values)
     return jax.vmap
 
@@ -155,9 +167,9 @@ _go_on_program = Program(_go_on, _FAST)
 _measure_program = Program(_measure, _FAST)
 
 
-def width(flown: Flown, count: int) -> int:
+def width(batch: Batch, count: int) -> int:
     """Number of cases of a compiled call, for so many in all."""
-    if isinstance(flown.contact, ElasticContact):
+    if isinstance(batch.contact, ElasticContact):
         return 8
     if count <= 2 * _FEW:
         return _FEW
@@ -169,7 +181,7 @@ class Stopped(Exception):
 
 
 class Clock:
-    """Time in compiled code [s], and how many lanes of it did something.
+    """Time in compiled code [s], and the share of the batch that did something.
 
     Parameters
     ----------
@@ -198,11 +210,11 @@ class Clock:
             raise Stopped
 
     def count(self, made: np.ndarray) -> None:
-        """Count the impacts that lanes made in a call: all wait for the last."""
+        """Count the impacts that the batch made in a call: all wait for the last."""
         self.useful += int(made.sum())
         self.all += made.shape[0] * int(made.sum(axis=1).max(initial=0))
 
     @property
-    def lanes(self) -> float:
-        """Share of the lanes' time that was of use."""
+    def batch_use(self) -> float:
+        """Share of the batch's time that was of use."""
         return self.useful / self.all if self.all else 1.0

@@ -1,4 +1,4 @@
-"""Cases as objects, many at once: groups of one structure, ready to be flown side by side."""
+"""Cases as objects, many at once: groups of one structure, ready to be batch side by side."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ _ROUNDING = 1e-12  # relative, between one case built alone and among others
 _UNRESOLVED = Resolution(1, 8, 1)
 
 
-class Flown(NamedTuple):
-    """What is flown side by side: each array has the cases along its first axis.
+class Batch(NamedTuple):
+    """What is batch side by side: each array has the cases along its first axis.
 
     Attributes
     ----------
@@ -64,8 +64,8 @@ class Group(NamedTuple):
     ----------
     rows
         Their places among the values that were asked for.
-    flown
-        What is flown.
+    batch
+        What is batch.
     tolerance
         Relative error allowed to each one's force curves [-].
     cases
@@ -75,7 +75,7 @@ class Group(NamedTuple):
     """
 
     rows: np.ndarray
-    flown: Flown
+    batch: Batch
     tolerance: np.ndarray
     cases: tuple[tuple[Case, Problem], ...] = ()
     launched: bool = False
@@ -87,7 +87,7 @@ class Built(NamedTuple):
     Attributes
     ----------
     groups
-        Those that are flown side by side.
+        Those that are batch side by side.
     alone
         Places of those that are solved one by one, with their cases.
     refused
@@ -143,14 +143,14 @@ def _together(study: Study, values: Values, rows: np.ndarray, out: Built) -> Non
         _each(study, values, rows, out)
         return
     try:
-        group, late = _as_one(study, values, rows)
+        group, delayed = _as_one(study, values, rows)
     except Split as split:
         _together(study, values, rows[split.holds], out)
         _together(study, values, rows[~split.holds], out)
     except (InputError, _Differs):
         _each(study, values, rows, out)  # for each one's own message, too
     else:
-        if late:
+        if delayed:
             out.alone.extend((int(row), _case(study, values, row)) for row in rows)
         else:
             out.groups.extend(_by_resolution(group))
@@ -169,19 +169,19 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
         raise
     except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
         raise _Differs from error
-    ends = _flown(case, problem)
+    ends = _batch_of(case, problem)
     both = [_case(study, values, row) for row in (rows[0], rows[-1])]
-    alone = [_flown(each, build(each, _UNRESOLVED)) for each in both]
-    flown = _spread(ends, alone, rows.size)
+    alone = [_batch_of(each, build(each, _UNRESOLVED)) for each in both]
+    batch = _spread(ends, alone, rows.size)
     tolerance = np.broadcast_to(np.asarray(case.tolerance.relative, float), rows.shape)
     launched = case.launch.release_separation is None
-    group = Group(rows, flown, tolerance, launched=launched)
-    return group, problem.late is not None or problem.creep is not None
+    group = Group(rows, batch, tolerance, launched=launched)
+    return group, problem.delayed is not None or problem.relaxation is not None
 
 
-def _spread(flown: Flown, alone: list[Flown], count: int) -> Flown:
+def _spread(batch: Batch, alone: list[Batch], count: int) -> Batch:
     """Each array with all cases along its first axis; the first and the last are checked."""
-    leaves, structure = jax.tree_util.tree_flatten(flown)
+    leaves, structure = jax.tree_util.tree_flatten(batch)
     first, last = (jax.tree_util.tree_flatten(each) for each in alone)
     if [structure] * 2 != [first[1], last[1]]:
         raise _Differs
@@ -198,7 +198,7 @@ def _spread(flown: Flown, alone: list[Flown], count: int) -> Flown:
         if array.shape != (count, *shape) or not (_near(array[0], one) and _near(array[-1], other)):
             raise _Differs
         out.append(array)
-    spread: Flown = jax.tree_util.tree_unflatten(structure, out)
+    spread: Batch = jax.tree_util.tree_unflatten(structure, out)
     return spread
 
 
@@ -215,13 +215,13 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         except InputError as error:
             out.refused[row] = str(error)
             continue
-        if problem.late is not None or problem.creep is not None:
+        if problem.delayed is not None or problem.relaxation is not None:
             out.alone.append((row, case))
             continue
-        flown = jax.tree_util.tree_map(_raised, _flown(case, problem), is_leaf=_is_array)
+        batch = jax.tree_util.tree_map(_raised, _batch_of(case, problem), is_leaf=_is_array)
         tolerance = np.asarray([case.tolerance.relative])
         launched = case.launch.release_separation is None
-        group = Group(np.asarray([row]), flown, tolerance, ((case, problem),), launched)
+        group = Group(np.asarray([row]), batch, tolerance, ((case, problem),), launched)
         out.groups.append(_coarser(group))
 
 
@@ -229,11 +229,11 @@ def _case(study: Study, values: Values, row: int) -> Case:
     return study.case_of({key: array[row : row + 1].tolist()[0] for key, array in values.items()})
 
 
-def _flown(case: Case, problem: Problem) -> Flown:
+def _batch_of(case: Case, problem: Problem) -> Batch:
     ends = case.tolerance
     rest, time_limit = (np.asarray(x, float) for x in (ends.rest, ends.time_limit))
     impacts = np.asarray(ends.max_impacts)
-    return Flown(problem.contact, problem.body, rest, time_limit, impacts)
+    return Batch(problem.contact, problem.body, rest, time_limit, impacts)
 
 
 def _is_array(leaf: Any) -> bool:
@@ -246,7 +246,7 @@ def _raised(leaf: Any) -> Any:
 
 def _by_resolution(group: Group) -> list[Group]:
     """A group cut by how finely the curves are cut: as finely as each case asks for, and evenly."""
-    contact = group.flown.contact
+    contact = group.batch.contact
     if not isinstance(contact, RigidContact | ElasticContact):
         return [group]
     deforms = isinstance(contact, ElasticContact)
@@ -269,7 +269,7 @@ _lengths = Program(_lengths_of_each)
 
 
 def _coarser(group: Group) -> Group:
-    contact = group.flown.contact
+    contact = group.batch.contact
     if not isinstance(contact, RigidContact | ElasticContact):
         return group
     return _resolved(group, _even(contact.resolved))
@@ -289,23 +289,23 @@ def _fits(found: Resolution, kind: Resolution) -> bool:
 
 def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:
     take: Callable[[Any], Any] = lambda leaf: leaf[places] if _is_array(leaf) else leaf  # noqa: E731
-    flown = jax.tree_util.tree_map(take, group.flown)
-    part = Group(group.rows[places], flown, group.tolerance[places], launched=group.launched)
+    batch = jax.tree_util.tree_map(take, group.batch)
+    part = Group(group.rows[places], batch, group.tolerance[places], launched=group.launched)
     return _resolved(part, kind)
 
 
 def _resolved(group: Group, kind: Resolution) -> Group:
-    contact = group.flown.contact
+    contact = group.batch.contact
     assert isinstance(contact, RigidContact | ElasticContact)
     contact = dataclasses.replace(contact, resolved=kind)
-    return group._replace(flown=group.flown._replace(contact=contact))
+    return group._replace(batch=group.batch._replace(contact=contact))
 
 
 def _alike(groups: list[Group]) -> list[list[Group]]:
     """Groups of the same structure, together."""
     kinds: dict[Hashable, list[Group]] = {}
     for group in groups:
-        leaves, structure = jax.tree_util.tree_flatten(group.flown)
+        leaves, structure = jax.tree_util.tree_flatten(group.batch)
         shapes = tuple(leaf.shape[1:] if _is_array(leaf) else (leaf,) for leaf in leaves)
         kinds.setdefault((structure, shapes, group.launched), []).append(group)
     return list(kinds.values())
@@ -319,9 +319,9 @@ def _joined(groups: list[Group]) -> Group:
     def joined(*leaves: Any) -> Any:
         return np.concatenate(leaves) if _is_array(leaves[0]) else leaves[0]
 
-    flown = jax.tree_util.tree_map(joined, *(group.flown for group in groups))
+    batch = jax.tree_util.tree_map(joined, *(group.batch for group in groups))
     rows = np.concatenate([group.rows for group in groups])
     tolerance = np.concatenate([group.tolerance for group in groups])
     whole = all(group.cases for group in groups)
     cases = tuple(case for group in groups for case in group.cases) if whole else ()
-    return Group(rows, flown, tolerance, cases, groups[0].launched)
+    return Group(rows, batch, tolerance, cases, groups[0].launched)

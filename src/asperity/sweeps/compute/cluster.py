@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from asperity.sweeps.compute.batch import Effort
     from asperity.sweeps.study.study import Study
 
-FLYING = 3
+IN_FLIGHT = 3
 """Tasks that a worker's thread has at once: one it computes, the others on their way."""
 
 _LISTEN = 0.1
@@ -119,7 +119,7 @@ class _Flight:
         if time.monotonic() - self._counted > _COUNT:
             with _scheduler_told():
                 threads = sum(self._client.nthreads().values())
-            self._room = FLYING * max(threads, 1)
+            self._room = IN_FLIGHT * max(threads, 1)
             self._counted = time.monotonic()
         while len(self.tasks) < self._room:
             task = next(waiting, None)

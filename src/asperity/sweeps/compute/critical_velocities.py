@@ -12,66 +12,68 @@ from asperity.dynamics.problem import CLEARANCE
 from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome
 from asperity.sweeps.compute.batch_steps import Clock
-from asperity.sweeps.compute.building import Flown, Group
-from asperity.sweeps.compute.integrate_batch import Flight, fly_group, taken
+from asperity.sweeps.compute.building import Batch, Group
+from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch, taken
 
 _TOGETHER = 256  # cases whose impacts are launched in one go
 _ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
 
 
-def critical_velocities(group: Group, flight: Flight, clock: Clock) -> np.ndarray:
+def critical_velocities(group: Group, solution: BatchSolution, clock: Clock) -> np.ndarray:
     """Critical velocity of each case of a group [m/s]; NaN where there is none.
 
     Parameters
     ----------
-    group, flight
+    group, solution
         The cases, and what became of them.
     clock
         Told of the time in compiled code.
     """
     found = np.full(group.rows.size, np.nan)
-    flown = np.flatnonzero(flight.made > 0)
-    takes = group.flown.contact.mechanisms or group.flown.body.damped
-    for begin in range(0, flown.size if takes else 0, _TOGETHER):
-        some = flown[begin : begin + _TOGETHER]
-        found[some] = _of_some(group, flight, some, clock)
+    moved = np.flatnonzero(solution.made > 0)
+    takes = group.batch.contact.mechanisms or group.batch.body.damped
+    for begin in range(0, moved.size if takes else 0, _TOGETHER):
+        some = moved[begin : begin + _TOGETHER]
+        found[some] = _of_some(group, solution, some, clock)
     return found
 
 
-def _of_some(group: Group, flight: Flight, some: np.ndarray, clock: Clock) -> np.ndarray:
-    cases: Flown = taken(group.flown, some)
+def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clock) -> np.ndarray:
+    cases: Batch = taken(group.batch, some)
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
     weight = mass * np.asarray(cases.body.gravity)
-    release = _launched_from(cases, flight.measures["outset"][some])
+    release = _launched_from(cases, solution.measures["outset"][some])
 
     def launch(index: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
-        flown = taken(cases, index)
-        body = dataclasses.replace(flown.body, release=release[index], speed=speeds)
-        flown = flown._replace(
+        batch = taken(cases, index)
+        body = dataclasses.replace(batch.body, release=release[index], speed=speeds)
+        batch = batch._replace(
             body=body, time_limit=np.full(index.size, np.inf), impacts=np.ones(index.size, int)
         )
-        allowed = np.full(index.size, max(_ERROR, flown.contact.blur))
-        made = fly_group(Group(np.arange(index.size), flown, allowed), clock, checked=False)
+        allowed = np.full(index.size, max(_ERROR, batch.contact.error_floor))
+        made = integrate_batch(Group(np.arange(index.size), batch, allowed), clock, checked=False)
         return _first_impacts(made, mass[index], weight[index])
 
-    past = flight.history
+    past = solution.history
     leaving, lost = past["leaving"][some, 0], np.sum(past["lost"][some, 0], axis=1)
-    lost = np.where(np.isfinite(leaving), flight.release[some] - leaving, lost)
-    edges = capture_edges(launch, *speeds_about(past["fastest"][some, 0], lost, mass))
+    lost = np.where(np.isfinite(leaving), solution.release[some] - leaving, lost)
+    edges = capture_edges(launch, *speeds_about(past["maximum_kinetic"][some, 0], lost, mass))
     return np.array([each.speeds[0] if each.speeds else np.nan for each in edges])
 
 
-def _launched_from(cases: Flown, outset: np.ndarray) -> np.ndarray:
+def _launched_from(cases: Batch, outset: np.ndarray) -> np.ndarray:
     """As for one case, :mod:`asperity.critical_velocity`: just outside where forces end [m]."""
-    reach = np.asarray(jax.vmap(lambda flown: jnp.asarray(flown.contact.reach))(cases))
+    interaction_range = np.asarray(
+        jax.vmap(lambda batch: jnp.asarray(batch.contact.interaction_range))(cases)
+    )
     if cases.contact.yields:
-        return reach + CLEARANCE
+        return interaction_range + CLEARANCE
     known = outset < np.asarray(cases.body.release)
-    return np.where(known, np.minimum(reach, outset), reach) + CLEARANCE
+    return np.where(known, np.minimum(interaction_range, outset), interaction_range) + CLEARANCE
 
 
-def _first_impacts(made: Flight, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
-    """What became of bodies that were launched; those that were not flown are not known."""
+def _first_impacts(made: BatchSolution, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
+    """What became of bodies that were launched; those that were not batch are not known."""
     failed = ENDS.index(Outcome.FAILED)
     reference = made.measures["reference"]
     known = (made.made > 0) & (made.outcome != failed) & np.isfinite(reference)

@@ -10,20 +10,20 @@ import numpy as np
 
 from asperity._jax import jax
 from asperity.dynamics import Impacts
-from asperity.dynamics.record import ENDS, FLYING
+from asperity.dynamics.record import ENDS, IN_MOTION
 from asperity.dynamics.release import TRIES, farther, negligible_force
 from asperity.errors import Outcome
 from asperity.results.measures import Measures
 from asperity.sweeps.compute import batch_steps
 from asperity.sweeps.compute.batch_steps import Begun, Checks, Clock
-from asperity.sweeps.compute.building import Flown, Group
+from asperity.sweeps.compute.building import Batch, Group
 
 _REFINEMENTS = (1, 2, 4, 8)
 _RESIDUAL = 1e-6
 _LEAST = 16
 
 
-class Flight(NamedTuple):
+class BatchSolution(NamedTuple):
     """What became of the cases of a group, each array with the cases along its first axis.
 
     Attributes
@@ -59,15 +59,15 @@ class Flight(NamedTuple):
     release: np.ndarray
 
 
-class _Lanes(NamedTuple):
-    """Cases in the lanes of a compiled call; places beyond the last are -1 and repeat it."""
+class _Filled(NamedTuple):
+    """Cases of a compiled call; places beyond the last are -1 and repeat it."""
 
     places: np.ndarray
-    flown: Flown
+    batch: Batch
     begun: Begun
 
 
-def fly_group(group: Group, clock: Clock, *, checked: bool = True) -> Flight:
+def integrate_batch(group: Group, clock: Clock, *, checked: bool = True) -> BatchSolution:
     """Fly all cases of a group.
 
     Parameters
@@ -80,34 +80,34 @@ def fly_group(group: Group, clock: Clock, *, checked: bool = True) -> Flight:
         Whether they must be released outside contact. Nothing finer is compiled for others, which
         are launched where forces begin.
     """
-    flying = _Flying(group, clock, checked=checked)
+    cases = _Cases(group, clock, checked=checked)
     places = np.arange(group.rows.size)
     refinements = _REFINEMENTS if checked else _REFINEMENTS[:1]
     for factor in refinements:
-        places = flying.begin(places, factor, last=factor == refinements[-1])
+        places = cases.begin(places, factor, last=factor == refinements[-1])
         if not places.size:
             break
-    return flying.flight()
+    return cases.solution()
 
 
 def compile_ahead(groups: list[Group]) -> None:
-    """Compile what the groups are flown by side by side, where it is not yet."""
+    """Compile what the groups are batch by side by side, where it is not yet."""
     for group in groups:
         count = group.rows.size
-        some = next(_slices(np.arange(count), batch_steps.width(group.flown, count)))
-        here = taken(group.flown, some)
+        some = next(_slices(np.arange(count), batch_steps.width(group.batch, count)))
+        here = taken(group.batch, some)
         begun, _checks, _rows = batch_steps._begin_program.ahead(here)
         batch_steps._go_on_program.ahead(here, begun)
 
 
-class _Flying:
+class _Cases:
     """Cases on their way."""
 
     def __init__(self, group: Group, clock: Clock, *, checked: bool) -> None:
         self.group, self.clock, self.checked = group, clock, checked
         count = group.rows.size
         self.tries = np.zeros(count, int)
-        self.width = batch_steps.width(group.flown, count)
+        self.width = batch_steps.width(group.batch, count)
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
         self.made = np.zeros(count, int)
@@ -128,14 +128,14 @@ class _Flying:
         self, places: np.ndarray, factor: int, *, last: bool
     ) -> tuple[np.ndarray, np.ndarray]:
         """The same; of the others, those that need a release further out."""
-        flown = self.group.flown
-        contact = flown.contact.refined(factor) if factor > 1 else flown.contact
-        flown = flown._replace(contact=contact)
+        batch = self.group.batch
+        contact = batch.contact.refined(factor) if factor > 1 else batch.contact
+        batch = batch._replace(contact=contact)
         moved = []
-        wanted = np.maximum(self.group.tolerance, contact.blur)
+        wanted = np.maximum(self.group.tolerance, contact.error_floor)
         coarse, pool = [], []
         for some in _slices(places, self.width):
-            here = taken(flown, some)
+            here = taken(batch, some)
             begun, checks, rows = self.clock.run(batch_steps._begin_program, here)
             error = np.asarray(checks.error)
             fine = ~(error > wanted[some]) & (some >= 0)
@@ -151,12 +151,12 @@ class _Flying:
             some = np.where(self._sound(some, here, checks), some, -1)
             self.at_depth[some[some >= 0]] = np.asarray(checks.at_depth)[some >= 0]
             self._keep(some, begun, rows)
-            pool.append(self._on(_Lanes(some, here, begun)))
-        self._finish([lane for lane in pool if lane is not None])
+            pool.append(self._on(_Filled(some, here, begun)))
+        self._finish([slot for slot in pool if slot is not None])
         none = np.zeros(0, int)
         return np.concatenate([none, *coarse]), np.concatenate([none, *moved])
 
-    def _move_out(self, places: np.ndarray, here: Flown, checks: Checks) -> np.ndarray:
+    def _move_out(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
         """Whether each case is begun anew, from a release further out, where none was given."""
         if not self.group.launched:
             return np.zeros(places.shape, bool)
@@ -168,17 +168,17 @@ class _Flying:
         at = places[again]
         self.tries[at] += 1
         further = farther(np.asarray(here.body.release), force, power, limit)
-        flown = self.group.flown
-        release = np.array(flown.body.release)
+        batch = self.group.batch
+        release = np.array(batch.body.release)
         release[at] = further[again]
-        body = dataclasses.replace(flown.body, release=release)
-        self.group = self.group._replace(flown=flown._replace(body=body))
+        body = dataclasses.replace(batch.body, release=release)
+        self.group = self.group._replace(batch=batch._replace(body=body))
         return again
 
-    def _finish(self, pool: list[_Lanes]) -> None:
+    def _finish(self, pool: list[_Filled]) -> None:
         """Fly what is left of several calls in fewer."""
         while pool:
-            gathered: list[_Lanes] = []
+            gathered: list[_Filled] = []
             count = 0
             while pool and (not gathered or count + _real(pool[-1]) <= self.width):
                 count += _real(pool[-1])
@@ -187,17 +187,17 @@ class _Flying:
             if left is not None:
                 pool.append(left)
 
-    def _on(self, here: _Lanes, *, patient: bool = False) -> _Lanes | None:
-        """Go on until half of the lanes are empty, or all; the rest."""
+    def _on(self, here: _Filled, *, patient: bool = False) -> _Filled | None:
+        """Go on until half of the cases are at rest, or all; the others."""
         while True:
-            going = np.asarray(here.begun.progress.outcome) == FLYING
+            going = np.asarray(here.begun.progress.outcome) == IN_MOTION
             here = here._replace(places=np.where(going, here.places, -1))
             active = _real(here)
             if active == 0:
                 return None
             if active <= self.width // 2 and not patient:
                 return here
-            progress, rows = self.clock.run(batch_steps._go_on_program, here.flown, here.begun)
+            progress, rows = self.clock.run(batch_steps._go_on_program, here.batch, here.begun)
             begun = here.begun._replace(progress=progress)
             here = here._replace(begun=begun)
             self._keep(here.places, begun, rows)
@@ -219,7 +219,7 @@ class _Flying:
             self.history[name][at[row], column_there] = np.asarray(value)[real][row, column]
         self.made[at] += made.sum(axis=1)
         progress = begun.progress._replace(memory=(), bonds=begun.progress.place)
-        ends = begun.datum, begun.origin, progress, begun.first
+        ends = begun.reference, begun.origin, progress, begun.first
         leaves = [np.asarray(leaf) for leaf in jax.tree_util.tree_leaves(ends)]
         if self._ends is None:
             self._shape = jax.tree_util.tree_structure(ends)
@@ -241,7 +241,7 @@ class _Flying:
                 wider[:, :there] = self.history[name]
             self.history[name] = wider
 
-    def _sound(self, places: np.ndarray, here: Flown, checks: Checks) -> np.ndarray:
+    def _sound(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
         """Whether each case is released outside contact, and in equilibrium; reasons else."""
         body = here.body
         force, release = np.asarray(checks.at_release), np.asarray(body.release)
@@ -250,14 +250,14 @@ class _Flying:
         inside = ~(force <= limit) & self.checked
         residual = np.asarray(checks.residual)
         unsolved = ~(residual <= _RESIDUAL)
-        for lane in np.flatnonzero((inside | unsolved) & (places >= 0)).tolist():
-            self.reasons[int(places[lane])] = (
+        for slot in np.flatnonzero((inside | unsolved) & (places >= 0)).tolist():
+            self.reasons[int(places[slot])] = (
                 f"`release_separation` must lie outside contact: the force there must be below "
-                f"{limit[lane]:.3g} N, and is {force[lane]:.3g} N; "
-                f"got {release[lane] * 1e9:.6g} nm"
-                if inside[lane]
+                f"{limit[slot]:.3g} N, and is {force[slot]:.3g} N; "
+                f"got {release[slot] * 1e9:.6g} nm"
+                if inside[slot]
                 else "pressure and deformation do not agree: relative force error "
-                f"{residual[lane]:.1e}"
+                f"{residual[slot]:.1e}"
             )
         return np.asarray(~(inside | unsolved))
 
@@ -268,10 +268,10 @@ class _Flying:
                 f"not `numerics.tolerance` = {wanted[place]:.1e}"
             )
 
-    def flight(self) -> Flight:
+    def solution(self) -> BatchSolution:
         """What became of all cases."""
-        flown = np.flatnonzero(self.made > 0)
-        measures = self._measured(flown)
+        moved = np.flatnonzero(self.made > 0)
+        measures = self._measured(moved)
         ends: Any = (None,) * 4
         count = self.made.size
         lost, release = np.zeros((count, 0)), np.full(count, np.nan)
@@ -283,15 +283,15 @@ class _Flying:
             last_apex_time = np.where(self.made > 0, progress.time, np.nan)
             lost = progress.lost
         failed = ENDS.index(Outcome.FAILED)
-        for place in flown[outcome[flown] == failed].tolist():
+        for place in moved[outcome[moved] == failed].tolist():
             self.reasons[place] = "the motion left the tabulated separations"
-        return Flight(
+        return BatchSolution(
             outcome, self.made, last_apex_time, lost, self.history, measures, self.at_depth,
             self.reasons, release,
         )  # fmt: skip
 
     def _measured(self, places: np.ndarray) -> dict[str, np.ndarray]:
-        """The measures of cases that were flown, in calls of like lengths."""
+        """The measures of cases that were batch, in calls of like lengths."""
         out: dict[str, np.ndarray] = {}
         for some in _slices(places, self.width):
             found = self._measures_of(some)
@@ -316,7 +316,7 @@ class _Flying:
         if "passing_in" in past:
             passing = past.pop("passing_in"), past.pop("passing_out")
         impacts = Impacts(**past, fall=None, rise=None)  # type: ignore[arg-type]
-        here = taken(self.group.flown, some)
+        here = taken(self.group.batch, some)
         answer: Measures = self.clock.run(
             batch_steps._measure_program, here, ends, (impacts, passing)
         )
@@ -347,12 +347,12 @@ def _is_array(leaf: Any) -> bool:
     return isinstance(leaf, np.ndarray | jax.Array)
 
 
-def _real(here: _Lanes) -> int:
+def _real(here: _Filled) -> int:
     return int(np.sum(here.places >= 0))
 
 
-def _packed(parts: list[_Lanes], width: int) -> _Lanes:
-    """The cases that still fly, side by side."""
+def _packed(parts: list[_Filled], width: int) -> _Filled:
+    """The cases still in motion, side by side."""
     places = np.concatenate([part.places[part.places >= 0] for part in parts])
     index = np.append(np.arange(places.size), np.zeros(width - places.size, int))
 
@@ -362,6 +362,6 @@ def _packed(parts: list[_Lanes], width: int) -> _Lanes:
         kept = [np.asarray(x)[p.places >= 0] for x, p in zip(leaves, parts, strict=True)]
         return np.concatenate(kept)[index]
 
-    flown, begun = (jax.tree_util.tree_map(packed, *(part[k] for part in parts)) for k in (1, 2))
+    batch, begun = (jax.tree_util.tree_map(packed, *(part[k] for part in parts)) for k in (1, 2))
     filled = np.concatenate([places, np.full(width - places.size, -1, int)])
-    return _Lanes(filled, flown, begun)
+    return _Filled(filled, batch, begun)

@@ -40,6 +40,6 @@ class Log:
         """Say that a task is kept, what it took, and how far the run is."""
         self.write(
             f"task {task}: {effort.cases} cases in {effort.wall:.3f} s, "
-            f"{effort.compiled:.3f} s of it compiled, lanes {effort.lanes:.3f}; "
+            f"{effort.compiled:.3f} s of it compiled, batch use {effort.batch_use:.3f}; "
             f"{tally.cases} of {tally.cases_wanted} at {tally.rate:.1f} a second"
         )

@@ -65,7 +65,7 @@ class Tally:
     tasks_wanted, cases_wanted : int
         To be computed in this run.
     useful : float
-        Sum over the cases of the useful share of the lanes of their batch.
+        Sum over the cases of the useful share of their batch.
     compiled : float
         Time in compiled code, summed over all workers [s].
     busy : float
@@ -90,8 +90,8 @@ class Tally:
     warned: tuple[Warned, ...] = ()
 
     @property
-    def lanes(self) -> float:
-        """Useful share of the vectorised lanes [-]; 1 before anything is computed."""
+    def batch_use(self) -> float:
+        """Useful share of the batches [-]; 1 before anything is computed."""
         return self.useful / self.cases if self.cases else 1.0
 
     @property
@@ -133,7 +133,7 @@ class Tally:
             self.cases + effort.cases,
             self.tasks_wanted,
             self.cases_wanted,
-            self.useful + effort.cases * effort.lanes,
+            self.useful + effort.cases * effort.batch_use,
             self.compiled + effort.compiled,
             self.busy + effort.wall,
             wall,

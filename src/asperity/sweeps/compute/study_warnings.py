@@ -9,32 +9,32 @@ from asperity.dynamics import Impacts, Motion
 from asperity.dynamics.problem import Problem
 from asperity.regimes.validity import AtDepth, pull_warnings, release_warnings, warnings_of
 from asperity.results.conversion import regime_of
-from asperity.sweeps.compute.integrate_batch import Flight
+from asperity.sweeps.compute.integrate_batch import BatchSolution
 
 Warned = tuple[int, str]
 """The number of a case, and a line on where it leaves the validity of its models."""
 
 
-def warnings_in(case: Case, problem: Problem, flight: Flight, place: int) -> list[str]:
-    """One line for each way in which a case of a flight leaves the validity of its models.
+def warnings_in(case: Case, problem: Problem, solution: BatchSolution, place: int) -> list[str]:
+    """One line for each way in which a case of a solution leaves the validity of its models.
 
     Parameters
     ----------
     case, problem
         The case, and what was built from it.
-    flight
-        The flight, in which it made an impact.
+    solution
+        The solution, in which it made an impact.
     place
-        Its place in the flight.
+        Its place in the solution.
     """
-    at_depth = AtDepth(*flight.at_depth[place].tolist())
-    rows: Any = {name: array[place] for name, array in flight.history.items()}
+    at_depth = AtDepth(*solution.at_depth[place].tolist())
+    rows: Any = {name: array[place] for name, array in solution.history.items()}
     rows.pop("passing_in", None), rows.pop("passing_out", None)
     none: Any = None
-    release: Any = flight.release[place]
+    release: Any = solution.release[place]
     motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
     pull_off, held, reference = (
-        float(flight.measures[name][place])
+        float(solution.measures[name][place])
         for name in ("pull_off", "held_at_pull_off", "reference")
     )
     return [

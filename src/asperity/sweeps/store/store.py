@@ -191,7 +191,7 @@ class Store:
             content = self._codec.encode(array.chunk(task, columns[name]))
             self._put(name, task, content)
             hashes[name] = hashlib.sha256(content).hexdigest()
-        self._count(task, hashes)
+        self._mark_complete(task, hashes)
 
     def adopt(self, task: int, chunks: Mapping[str, bytes], hashes: dict[str, str]) -> None:
         """Keep chunks as another store of the study has them.
@@ -203,12 +203,12 @@ class Store:
         """
         for name in self.arrays:
             self._put(name, task, chunks[name])
-        self._count(task, hashes)
+        self._mark_complete(task, hashes)
 
     def _put(self, name: str, task: int, content: bytes) -> None:
         put(self.chunk_file(task, name), content, beside(self.path, ".part"))
 
-    def _count(self, task: int, hashes: dict[str, str]) -> None:
+    def _mark_complete(self, task: int, hashes: dict[str, str]) -> None:
         for name in self.arrays:
             settle(self.path / name)
         self.manifest.append(task, hashes)

@@ -19,7 +19,7 @@ const MEASURES = [
   ["energy at release", (a) => amount(a.ledger.initial, "J")],
   ["balance closes to", (a) => `${(a.ledger.energy_balance_error ?? NaN).toExponential(1)} of the impact energy`],
   ["adhesion law", (a) => a.regime.adhesion_law ?? "–"],
-  ["liquid", (a) => a.regime.wetting ?? "–"],
+  ["liquid", (a) => a.regime.liquid_regime ?? "–"],
 ];
 
 const text = (tag, words, properties = {}) => Object.assign(document.createElement(tag), { textContent: words, ...properties });
