@@ -25,7 +25,7 @@ from asperity.dynamics import (
 from asperity.dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from asperity.dynamics.release import at_release
 from asperity.dynamics.static_equilibrium import Reference
-from asperity.numerics.compilation import Program, kept
+from asperity.numerics.compilation import QUICKLY, Program, kept
 from asperity.results.measures import (
     FirstContact,
     Measures,
@@ -42,6 +42,9 @@ IMPACTS = 16
 _FEW = 32  # cases in a batch of few, most of which would be empty in a wide call
 _FAST: dict[str, bool | int] = {"xla_cpu_multi_thread_eigen": False}
 """XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
+
+_SOON: dict[str, bool | int] = {**QUICKLY, **_FAST}
+"""For a few cases, which take less time than it takes to compile for them."""
 
 
 @kept
@@ -162,9 +165,25 @@ def _over(batch: Batch) -> Callable[[Any], Any]:
     return jax.vmap
 
 
-_begin_program = Program(_begin, _FAST)
-_go_on_program = Program(_go_on, _FAST)
-_measure_program = Program(_measure, _FAST)
+class Steps(NamedTuple):
+    """The compiled steps of a batch: its first impacts, the next ones, the measures."""
+
+    begin: Program[..., Any]
+    go_on: Program[..., Any]
+    measure: Program[..., Any]
+
+    @classmethod
+    def compiled(cls, options: dict[str, bool | int]) -> Steps:
+        """Each step with XLA's ``options``."""
+        return cls(*(Program(step, options) for step in (_begin, _go_on, _measure)))
+
+
+_OF_MANY, _OF_FEW = Steps.compiled(_FAST), Steps.compiled(_SOON)
+
+
+def steps(width: int) -> Steps:
+    """The compiled steps of batches of so many cases."""
+    return _OF_FEW if width == _FEW else _OF_MANY
 
 
 def width(batch: Batch, count: int) -> int:

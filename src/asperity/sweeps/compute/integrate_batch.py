@@ -68,7 +68,7 @@ class _Filled(NamedTuple):
 
 
 def integrate_batch(group: Group, clock: Clock, *, checked: bool = True) -> BatchSolution:
-    """Fly all cases of a group.
+    """Integrate all cases of a group.
 
     Parameters
     ----------
@@ -91,13 +91,14 @@ def integrate_batch(group: Group, clock: Clock, *, checked: bool = True) -> Batc
 
 
 def compile_ahead(groups: list[Group]) -> None:
-    """Compile what the groups are batch by side by side, where it is not yet."""
+    """Compile the steps of groups of cases, where they are not yet."""
     for group in groups:
         count = group.rows.size
-        some = next(_slices(np.arange(count), batch_steps.width(group.batch, count)))
-        here = taken(group.batch, some)
-        begun, _checks, _rows = batch_steps._begin_program.ahead(here)
-        batch_steps._go_on_program.ahead(here, begun)
+        width = batch_steps.width(group.batch, count)
+        here = taken(group.batch, next(_slices(np.arange(count), width)))
+        steps = batch_steps.steps(width)
+        begun, _checks, _rows = steps.begin.ahead(here)
+        steps.go_on.ahead(here, begun)
 
 
 class _Cases:
@@ -108,6 +109,7 @@ class _Cases:
         count = group.rows.size
         self.tries = np.zeros(count, int)
         self.width = batch_steps.width(group.batch, count)
+        self.steps = batch_steps.steps(self.width)
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
         self.made = np.zeros(count, int)
@@ -117,7 +119,7 @@ class _Cases:
         self._ends: list[Any] | None = None
 
     def begin(self, places: np.ndarray, factor: int, *, last: bool) -> np.ndarray:
-        """Fly these cases with so many times the panels; those that need more yet."""
+        """Integrate these cases with so many times the panels; those that need more yet."""
         coarse = []
         while places.size:
             coarser, places = self._begin(places, factor, last=last)
@@ -136,7 +138,7 @@ class _Cases:
         coarse, pool = [], []
         for some in _slices(places, self.width):
             here = taken(batch, some)
-            begun, checks, rows = self.clock.run(batch_steps._begin_program, here)
+            begun, checks, rows = self.clock.run(self.steps.begin, here)
             error = np.asarray(checks.error)
             fine = ~(error > wanted[some]) & (some >= 0)
             rough = ~fine & (some >= 0)
@@ -176,7 +178,7 @@ class _Cases:
         return again
 
     def _finish(self, pool: list[_Filled]) -> None:
-        """Fly what is left of several calls in fewer."""
+        """Integrate what is left of several calls in fewer."""
         while pool:
             gathered: list[_Filled] = []
             count = 0
@@ -197,7 +199,7 @@ class _Cases:
                 return None
             if active <= self.width // 2 and not patient:
                 return here
-            progress, rows = self.clock.run(batch_steps._go_on_program, here.batch, here.begun)
+            progress, rows = self.clock.run(self.steps.go_on, here.batch, here.begun)
             begun = here.begun._replace(progress=progress)
             here = here._replace(begun=begun)
             self._keep(here.places, begun, rows)
@@ -317,9 +319,7 @@ class _Cases:
             passing = past.pop("passing_in"), past.pop("passing_out")
         impacts = Impacts(**past, fall=None, rise=None)  # type: ignore[arg-type]
         here = taken(self.group.batch, some)
-        answer: Measures = self.clock.run(
-            batch_steps._measure_program, here, ends, (impacts, passing)
-        )
+        answer: Measures = self.clock.run(self.steps.measure, here, ends, (impacts, passing))
         return answer
 
 
