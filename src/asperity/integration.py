@@ -12,19 +12,19 @@ import numpy as np
 from ._jax import jax, jnp
 from .config import Case
 from .contact import Contact, ElasticContact, RigidContact
+from .contact.delayed_formation import DelayedContact
 from .contact.resolution import in_steps
 from .contact.viscoelastic import Relaxation, RelaxedContact
 from .dynamics import Body, Impacts, Limits, Motion, Table, integrate_impacts, prepare, start
 from .dynamics.curve_table import FORCE, read_row
-from .dynamics.delayed_motion import integrate_delayed
 from .dynamics.output_shapes import shapes_of_curves
 from .dynamics.problem import CLEARANCE, Problem
 from .dynamics.record import ENDS, IN_MOTION
 from .dynamics.release import TRIES, at_release, farther, negligible_force
 from .dynamics.static_equilibrium import Reference
+from .dynamics.stepped_motion import integrate_stepped
 from .dynamics.stepped_phase import Ended
 from .dynamics.time_series import compile_ahead
-from .dynamics.viscoelastic import integrate_viscoelastic
 from .errors import InputError, Outcome, SimulationError
 from .numerics.compilation import AT_ONCE, Program, signature
 from .results.conversion import Solution, measure_ahead
@@ -345,23 +345,19 @@ def _integrate_in_time(
     stop: threading.Event | None,
 ) -> Solution:
     """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
-    body, relaxation, delayed = problem.body, problem.relaxation, problem.delayed
-    if delayed is not None and isinstance(contact, ElasticContact):
-        relaxation = Relaxation.none(delayed)
+    mechanism: Relaxation | DelayedContact | None = problem.relaxation or problem.delayed
+    if isinstance(mechanism, DelayedContact) and isinstance(contact, ElasticContact):
+        mechanism = Relaxation.none(mechanism)
+    assert mechanism is not None
     report(0.1, "motion")
 
     def made(count: int) -> None:
         report(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
 
     try:
-        if relaxation is not None:
-            integrate = integrate_viscoelastic(
-                contact, relaxation, body, prepared, limits, made, stop
-            )
-        else:
-            assert delayed is not None
-            integrate = integrate_delayed(contact, delayed, body, prepared, limits, made, stop)
+        motion, trajectory, outcome = integrate_stepped(
+            contact, mechanism, problem.body, prepared, limits, made, stop
+        )
     except Ended as error:
         raise SimulationError("stopped before the first impact") from error
-    motion, trajectory, outcome = integrate
     return Solution(motion, contact, outcome, trajectory)

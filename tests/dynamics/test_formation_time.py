@@ -17,9 +17,9 @@ from asperity.contact import RigidContact, SmoothContact
 from asperity.contact.delayed_formation import DelayedContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, Limits, prepare
-from asperity.dynamics.delayed_motion import integrate_delayed
 from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.dynamics.motion import simulate
+from asperity.dynamics.stepped_motion import integrate_stepped
 from asperity.dynamics.time_collocation import Here, step
 from asperity.errors import Tolerance
 from asperity.interface.interface import Interface
@@ -44,7 +44,7 @@ def rough(law):
 def delayed(contact, body, time, tolerance=TWO):
     prepared = _prepare(contact, body)
     delayed = DelayedContact(contact, time)
-    return integrate_delayed(
+    return integrate_stepped(
         contact, delayed, body, prepared, Limits.of(tolerance), lambda count: None
     )
 
@@ -140,7 +140,7 @@ def test_motion_is_that_of_explicit_asperities_each_with_its_relay():
         * (norm.pdf(edges / SIGMA) - edges / SIGMA * norm.sf(edges / SIGMA))
     )
     cells, weights = 0.5 * (edges[1:] + edges[:-1]), -np.diff(above)
-    span, pull = float(WET.interaction_range), float(WET.attraction)
+    span, pull = float(WET.interaction_range), float(WET.pull)
 
     def forces(d, b):
         gap = d - cells
@@ -191,7 +191,7 @@ def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
     )
     assert series.time[wet[0] - 1] == pytest.approx(appears, rel=1e-6)
     gap = start - speed * appears
-    loss = float(SPHERE.attraction) * (0.5 * float(SPHERE.interaction_range) - gap)
+    loss = float(SPHERE.pull) * (0.5 * float(SPHERE.interaction_range) - gap)
     assert trajectory.lost[wet[0], 0] == pytest.approx(loss, rel=1e-6)
 
 

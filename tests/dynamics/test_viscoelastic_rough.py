@@ -9,7 +9,8 @@ from asperity.contact.profile import Sphere
 from asperity.contact.viscoelastic import Relaxation
 from asperity.dynamics import Body, Limits, simulate
 from asperity.dynamics.motion import prepare
-from asperity.dynamics.viscoelastic import integrate_viscoelastic, rough_phase
+from asperity.dynamics.stepped_motion import integrate_stepped
+from asperity.dynamics.viscoelastic import rough_phase
 from asperity.dynamics.viscoelastic.ring_step import step
 from asperity.dynamics.viscoelastic.ring_system import Here
 from asperity.errors import Outcome, Tolerance
@@ -33,7 +34,7 @@ def integrated(ratio, time, body=BODY, tolerance=ONE, told=None):
     relaxation = Relaxation(told or contact(), ratio, time)
     relaxed = relaxation.relaxed()
     prepared = _prepare(relaxed, body)
-    return integrate_viscoelastic(
+    return integrate_stepped(
         relaxed, relaxation, body, prepared, Limits.of(tolerance), lambda made: None
     )
 

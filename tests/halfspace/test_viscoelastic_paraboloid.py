@@ -13,7 +13,7 @@ from asperity.contact.viscoelastic import Relaxation
 from asperity.dynamics import Body, Limits
 from asperity.dynamics.curve_table import FORCE, STORED
 from asperity.dynamics.motion import prepare
-from asperity.dynamics.viscoelastic import integrate_viscoelastic
+from asperity.dynamics.stepped_motion import integrate_stepped
 from asperity.dynamics.viscoelastic.sphere_motion import LEFT, TURNED, Bounce
 from asperity.errors import Outcome, Tolerance
 from asperity.halfspace.viscoelastic_paraboloid import Solid
@@ -220,7 +220,7 @@ def integrated(ratio, time, body, tolerance):
     relaxation = Relaxation(SmoothContact(Hertz(RADIUS, MODULUS)), ratio, time)
     contact = relaxation.relaxed()
     prepared = _prepare(contact, body)
-    return integrate_viscoelastic(
+    return integrate_stepped(
         contact, relaxation, body, prepared, Limits.of(tolerance), lambda made: None
     )
 
@@ -261,9 +261,7 @@ def test_a_heavy_sphere_on_a_soft_solid_comes_to_rest_where_it_has_relaxed():
     contact = soft.relaxed()
     prepared = _prepare(contact, body)
     limits = Limits.of(Tolerance(max_impacts=100))
-    motion, _, outcome = integrate_viscoelastic(
-        contact, soft, body, prepared, limits, lambda made: None
-    )
+    motion, _, outcome = integrate_stepped(contact, soft, body, prepared, limits, lambda made: None)
     assert outcome is Outcome.REST
     still = (0.75 * float(body.weight) / (0.1 * 1e4 * math.sqrt(RADIUS))) ** (2.0 / 3.0)
     assert float(motion.end.place) == pytest.approx(-still, rel=5e-3)

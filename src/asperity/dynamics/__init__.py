@@ -1,10 +1,12 @@
 """The equation of motion of one body that falls, touches and rebounds.
 
-`problem`: what moves. `record`: what is kept of a motion. `motion`: impacts in a row.
+`problem`: what moves. `record`: what is kept of a motion. `motion`: the loop over impacts.
+`motion_end`: when and how a motion ends.
 `phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`:
 the same with gas (`gas_film`) or radiated waves (`wave_radiation`).
-`delayed_motion`, `stepped_phase`, `time_stepping`, `time_collocation`: motions stepped in time;
-`viscoelastic`: those on a viscoelastic half-space.
+`stepped_motion`: the loop over impacts of motions in time, of `delayed_bounce` (by `stepped_phase`,
+`time_stepping`, `time_collocation`) and on `viscoelastic` half-spaces.
+`stepped_record`: the records of such motions.
 `curve_table`, `scanning_table`: force curves as Chebyshev polynomials.
 `static_equilibrium`, `release`, `unloading`, `capture_edges`: single questions to the curves.
 """

@@ -8,7 +8,7 @@ from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..contact.contact import Contact, Held
-from ..errors import Outcome, Tolerance
+from ..errors import Tolerance
 from .curve_table import (
     CONTACTING,
     FORCE,
@@ -22,6 +22,7 @@ from .curve_table import (
     tabulate_again,
 )
 from .damped_phase import fall_to_rest, resolved
+from .motion_end import EndRules
 from .phase import (
     TurningPoint,
     in_order,
@@ -31,13 +32,10 @@ from .phase import (
     row_at,
     travel_time,
 )
-from .record import ENDS, IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
+from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
 from .scanning_table import inner_pieces, solve_reversals
 from .static_equilibrium import Reference, find_reference
 from .turning_point import find_turning_point
-
-LEAST_LOSS = 1e-9
-"""Share of the impact energy: a cycle that loses less repeats for ever."""
 
 LEAST_RISE = 1e-9
 """Share of the fall: a body that rises less stays where it turned."""
@@ -283,32 +281,27 @@ def _impact(
     cycle = jnp.sum(rise.lost - progress.lost)
     risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
     sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
-    outcome = _outcome(
-        (
-            (jnp.logical_not(sound), Outcome.FAILED),
-            (fall.at_rest, Outcome.REST),
-            ((fall.stopped | rise.stopped) & (rise.time < limits.time), Outcome.STOPPED),
-            # Flattened tips may pull at once by more than what they press.
-            (jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen), Outcome.REST),
-            (jnp.logical_not(rise.turn.found), Outcome.ESCAPED),
-            (rise.time >= limits.time, Outcome.TIME_LIMIT),
-            (height < limits.rest * first, Outcome.REST),
-            (cycle < LEAST_LOSS * energy, Outcome.OSCILLATING),
-            (progress.made + 1 >= limits.impacts, Outcome.MAX_IMPACTS),
-        )
+    rules = EndRules.of(
+        limits,
+        failed=jnp.logical_not(sound),
+        at_rest=fall.at_rest,
+        stopped=fall.stopped | rise.stopped,
+        # Flattened tips may pull at once by more than what they press.
+        stuck=jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen),
+        escaped=jnp.logical_not(rise.turn.found),
+        time=rise.time,
+        height=height,
+        first=first,
+        cycle=cycle,
+        energy=energy,
+        made=progress.made + 1,
     )
-    after = end._replace(first=first, impact_energy=energy, outcome=outcome, made=progress.made + 1)
+    after = end._replace(
+        first=first, impact_energy=energy, outcome=rules.code(), made=progress.made + 1
+    )
     row = Impacts(
         jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
         rise.leaving, fall.row[FORCE], fall.row[CONTACTING], fall.bonds, rise.lost,
         energy_balance_error, rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row
-
-
-def _outcome(rules: tuple[tuple[jax.Array, Outcome], ...]) -> jax.Array:
-    """Code of the first rule that holds, or IN_MOTION."""
-    code = jnp.asarray(IN_MOTION)
-    for holds, outcome in reversed(rules):
-        code = jnp.where(holds, ENDS.index(outcome), code)
-    return code

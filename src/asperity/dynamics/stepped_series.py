@@ -11,7 +11,7 @@ from .._jax import jnp
 from ..laws.law import as_float64
 from .curve_table import CENTRAL, CONTACTING, FORCE
 from .record import Body
-from .stepped_phase import Leg, Samples
+from .stepped_phase import Samples
 from .time_collocation import STAGES
 from .time_series import Series
 from .time_stepping import KNOTS, TO_SERIES
@@ -33,18 +33,20 @@ class Trajectory(NamedTuple):
     lost: np.ndarray
 
     @classmethod
-    def of(cls, body: Body, release: Samples, legs: list[Leg]) -> Trajectory:
-        """The trajectory of a motion from its release, two legs an impact."""
+    def of(cls, body: Body, release: Samples, each: list[Samples]) -> Trajectory:
+        """The trajectory from the release; two phases an impact, each without its start."""
         drags = len(body.mechanisms)
         parts, heats, phases = [release], [np.zeros((1, drags))], [np.zeros(1, int)]
         laws = release.lost.shape[1] - drags
-        for number, way in enumerate(legs):
-            begun = parts[-1].lost[-1, laws:]
-            for samples in way.samples:
-                parts.append(samples)
-                heats.append(samples.lost[:, laws:] - begun)
-                phases.append(np.full(samples.time.size, number))
+        begun = release.lost[-1, laws:]
+        for number, samples in enumerate(each):
+            parts.append(samples)
+            heats.append(samples.lost[:, laws:] - begun)
+            phases.append(np.full(samples.time.size, number))
+            begun = samples.lost[-1, laws:] if samples.time.size else begun
         whole = Samples.joined(parts)
+        # Where phases meet, rounding may set the clock back.
+        whole = whole._replace(time=np.maximum.accumulate(whole.time))
         drag = np.zeros((whole.time.size, drags))
         if body.film is not None:
             drag[:, 0] = body.film.drag(whole.rows[:, CENTRAL])

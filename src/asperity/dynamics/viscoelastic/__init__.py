@@ -1,5 +1,6 @@
-"""Motions on a bulk that creeps: stepped in time, with the usual records."""
+"""Bodies on a bulk that relaxes, from one turning point to the next.
 
-from .viscoelastic_motion import integrate_viscoelastic
-
-__all__ = ["integrate_viscoelastic"]
+`rough_phase`: a rough body, by rings (`ring_system`, `ring_step`, `ring_menisci`).
+`smooth_sphere`: a smooth one, exactly (`sphere_motion`).
+`sample_times`: when a free flight is sampled.
+"""

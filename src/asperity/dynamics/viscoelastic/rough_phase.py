@@ -17,6 +17,7 @@ from ...numerics.compilation import Program
 from ..curve_table import CENTRAL, STORED, quantities
 from ..record import Body
 from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples
+from ..stepped_record import Ledger, SteppedPhase
 from .ring_menisci import FreeFlight
 from .ring_step import Step, step
 from .ring_system import Freed, Here, freed
@@ -26,6 +27,8 @@ TOLERANCE = 1e-9
 """Error of a step, relative to heights, speed and energy of the impact."""
 
 _MOST = 20_000  # steps of a way
+_FIT = 0.05  # how closely the mesh fits the pressure of the first impact
+_PASSES = 5  # of that fit
 _FIRST = 0.02  # rms heights: the way of the first step into the forces
 _STRIDE = 0.5  # rms heights: the longest way of one step
 _POLISH = 12  # of the length of a step that ends at a turn
@@ -100,8 +103,8 @@ class RoughBounce:
         self.here = done.here
         return sample._replace(rows=done.row[None])
 
-    def way(self, inwards: bool) -> tuple[str, Samples]:
-        """The samples until the body turns, and how they end."""
+    def phase(self, inwards: bool) -> SteppedPhase:
+        """The phase until the body turns."""
         parts: list[Samples] = [self._free_flight_samples(self._left(), np.zeros(0))]
         for _ in range(_MOST):
             self._asked()
@@ -109,8 +112,8 @@ class RoughBounce:
             fate, samples = (self._free_flight if free else self._go)(inwards)
             parts.append(samples)
             if fate:
-                return fate, Samples.joined(parts)
-        return FAILED, Samples.joined(parts)
+                return SteppedPhase(fate, Samples.joined(parts))
+        return SteppedPhase(FAILED, Samples.joined(parts))
 
     def _left(self) -> Freed:
         """What creep has left."""
@@ -299,7 +302,16 @@ def _rise_of(contact: ElasticContact, size: Any) -> Any:
 _rise = Program(_rise_of)
 
 
-def first_mesh(relaxation: Relaxation, lowest: float) -> float:
-    """Size of a mesh [m] to begin with, for a body that may come as low as a separation [m]."""
+def fitted_bounce(relaxation: Relaxation, ledger: Ledger, asked: Callable[[], None]) -> RoughBounce:
+    """The body at its release, on a mesh that fits the pressure of its first impact."""
     contact: Any = relaxation.contact
-    return float(first_size(contact, jnp.asarray(lowest)))
+    lowest = ledger.prepared[0].ends[0]
+    size = float(first_size(contact, jnp.asarray(float(lowest))))
+    for _ in range(_PASSES):
+        trial = RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)
+        trial.start()
+        end = trial.phase(inwards=True).end
+        if end == FAILED or abs(trial.fit - 1.0) <= _FIT:
+            break
+        size *= trial.fit
+    return RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)

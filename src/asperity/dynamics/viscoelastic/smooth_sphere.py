@@ -13,8 +13,8 @@ from ...halfspace.viscoelastic_paraboloid import Solid
 from ...laws import Hertz
 from ..curve_table import CENTRAL, CONTACTING, FORCE, STORED, quantities
 from ..stepped_phase import Samples
+from ..stepped_record import Ledger, SteppedPhase
 from .sphere_motion import Bounce, Track
-from .viscoelastic_record import Ledger
 
 
 class SmoothBounce:
@@ -66,10 +66,10 @@ class SmoothBounce:
         first = (0.0, depth, speed, 0.0, 0.0, 0.0, 0.0)
         return self._samples([Track(*(np.array([x]) for x in first))])
 
-    def way(self, inwards: bool) -> tuple[str, Samples]:
-        """The samples until the body turns, and how they end."""
+    def phase(self, inwards: bool) -> SteppedPhase:
+        """The phase until the body turns."""
         fate, tracks = self._bounce.way(inwards)
-        return fate, self._samples(tracks)
+        return SteppedPhase(fate, self._samples(tracks))
 
     def _samples(self, tracks: Sequence[Track]) -> Samples:
         """Tracks in SI units, one row a sample."""

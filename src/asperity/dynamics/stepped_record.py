@@ -1,4 +1,4 @@
-"""The usual records of a motion on a bulk that creeps."""
+"""The records of a motion that was stepped in time: energies, ends, impacts, phases."""
 
 from __future__ import annotations
 
@@ -7,36 +7,46 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._jax import jax, jnp
-from ...contact.contact import Contact
-from ...errors import Outcome
-from ...numerics.polynomials import NODES
-from ..curve_table import ATTRACTION, CONTACTING, FORCE, STORED, Pieces, Table, quantities
-from ..motion import LEAST_LOSS
-from ..record import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
-from ..static_equilibrium import Reference
-from ..stepped_phase import AT_REST, FAILED, LEFT, Samples
-from ..stepped_series import Trajectory
-from ..time_series import Series
+from .._jax import jax, jnp
+from ..contact.contact import Contact
+from ..errors import Outcome
+from ..numerics.polynomials import NODES
+from .curve_table import ATTRACTION, CONTACTING, FORCE, STORED, Pieces, Table, quantities
+from .motion_end import LEAST_LOSS, EndRules
+from .record import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
+from .static_equilibrium import Reference
+from .stepped_phase import AT_REST, FAILED, LEFT, STOPPED, Samples
+from .stepped_series import Trajectory
 
 
-class Way(NamedTuple):
-    """The way from one turning point to the next: how it ends, and its samples past the start."""
+class SteppedPhase(NamedTuple):
+    """A phase of an impact, from one turning point to the next.
 
-    fate: str
+    Attributes
+    ----------
+    end
+        How it ends: TURNED, LEFT, AT_REST, FAILED or STOPPED.
+    samples
+        Its samples, without its start.
+    pull_work
+        Work against the attractive forces [J]; None where the samples give it.
+    """
+
+    end: str
     samples: Samples
+    pull_work: float | None = None
 
 
-class Bounced(NamedTuple):
-    """One impact: the sample that it starts from, the way in and the way out."""
+class SteppedImpact(NamedTuple):
+    """One impact: the sample that it starts from, the phase inwards and that outwards."""
 
     begin: Samples
-    fall: Way
-    rise: Way
+    fall: SteppedPhase
+    rise: SteppedPhase
 
     @property
     def middle(self) -> Samples:
-        """The sample at the deepest point."""
+        """The sample at closest approach."""
         return _last(self.fall, self.begin)
 
     @property
@@ -45,8 +55,9 @@ class Bounced(NamedTuple):
         return _last(self.rise, self.middle)
 
 
-def _last(way: Way, before: Samples) -> Samples:
-    return Samples(*(c[-1:] for c in way.samples)) if way.samples.time.size else before
+def _last(phase: SteppedPhase, before: Samples) -> Samples:
+    samples = phase.samples
+    return Samples(*(column[-1:] for column in samples)) if samples.time.size else before
 
 
 class Ledger(NamedTuple):
@@ -55,9 +66,9 @@ class Ledger(NamedTuple):
     Attributes
     ----------
     contact, body
-        What moves on what; the contact has a ``viscous`` loss where its bulk creeps.
+        What moves on what; the contact has a ``viscous`` loss where its bulk relaxes.
     prepared
-        The table of the contact when its bulk has relaxed, and the reference separation.
+        The table of the contact when its bulk has relaxed, and the static equilibrium.
     limits
         Ends of the motion.
     """
@@ -91,49 +102,56 @@ class Ledger(NamedTuple):
         indentation = sample.rows[0, STORED] if sample.rows[0, FORCE] == 0.0 else 0.0
         return float(self.energy(sample)[0] - indentation)
 
-    def maximum_kinetic(self, bounced: Bounced) -> float:
-        """Largest kinetic energy on the way in [J]."""
-        joined = Samples.joined([bounced.begin, bounced.fall.samples])
+    def maximum_kinetic(self, impact: SteppedImpact) -> float:
+        """Largest kinetic energy inwards [J]."""
+        joined = Samples.joined([impact.begin, impact.fall.samples])
         return float(np.max(self.kinetic(joined)))
 
-    def height(self, bounced: Bounced) -> float:
+    def height(self, impact: SteppedImpact) -> float:
         """Height of the next apex above the equilibrium [m]."""
-        return float(bounced.end.separation[0]) - float(self.prepared[1].equilibrium)
+        return float(impact.end.separation[0]) - float(self.prepared[1].equilibrium)
 
-    def outcome(self, done: Sequence[Bounced], waits: float) -> Outcome | None:
+    def outcome(self, done: Sequence[SteppedImpact], waits: float) -> Outcome | None:
         """How the motion ends with its last impact; None where it goes on.
 
-        Menisci that are on their way, by a threshold that ``waits`` [m], change the cycles to come.
+        Menisci that are still forming, by a threshold that ``waits`` [m], change later cycles.
         """
-        last, limits = done[-1], self.limits
-        cycle = np.sum(last.end.lost - last.begin.lost)
-        repeats = waits <= LEAST_LOSS * float(self.contact.interaction_range)
-        rules = (
-            (FAILED in (last.fall.fate, last.rise.fate), Outcome.FAILED),
-            (AT_REST in (last.fall.fate, last.rise.fate), Outcome.REST),
-            (last.rise.fate == LEFT, Outcome.ESCAPED),
-            (last.end.time[0] >= limits.time, Outcome.TIME_LIMIT),
-            (self.height(last) < limits.rest * self.height(done[0]), Outcome.REST),
-            (repeats and cycle < LEAST_LOSS * self.maximum_kinetic(done[0]), Outcome.OSCILLATING),
-            (len(done) >= limits.impacts, Outcome.MAX_IMPACTS),
-        )
-        return next((outcome for holds, outcome in rules if holds), None)
+        last, both = done[-1], (done[-1].fall.end, done[-1].rise.end)
+        return EndRules.of(
+            self.limits,
+            failed=FAILED in both,
+            at_rest=AT_REST in both,
+            stopped=STOPPED in both,
+            stuck=False,
+            escaped=last.rise.end == LEFT,
+            time=last.end.time[0],
+            height=self.height(last),
+            first=self.height(done[0]),
+            cycle=np.sum(last.end.lost - last.begin.lost),
+            energy=self.maximum_kinetic(done[0]),
+            made=len(done),
+            settled=waits <= LEAST_LOSS * float(self.contact.interaction_range),
+        ).outcome()
 
-    def motion(self, done: Sequence[Bounced], outcome: Outcome) -> tuple[Motion, Trajectory]:
+    def motion(self, done: Sequence[SteppedImpact], outcome: Outcome) -> tuple[Motion, Trajectory]:
         """The records of a motion."""
         table, reference = self.prepared
         origin = float(self.energy(done[0].begin)[0])
-        maximum_kinetic = self.maximum_kinetic(done[0])
-        rows = [self._row(one, origin, maximum_kinetic) for one in done]
+        largest = self.maximum_kinetic(done[0])
+        rows = [self._row(one, origin, largest) for one in done]
         impacts: Impacts = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *rows)
-        end = self._progress(done, outcome)
-        motion = Motion(impacts, end, table, reference, jnp.asarray(origin))
-        return motion, self._trajectory(done)
+        motion = Motion(
+            impacts, self._progress(done, outcome), table, reference, jnp.asarray(origin)
+        )
+        phases = [phase.samples for one in done for phase in (one.fall, one.rise)]
+        return motion, Trajectory.of(self.body, done[0].begin, phases)
 
-    def _row(self, one: Bounced, origin: float, maximum_kinetic: float) -> Impacts:
+    def _row(self, one: SteppedImpact, origin: float, largest: float) -> Impacts:
         samples = Samples.joined([one.begin, one.fall.samples, one.rise.samples])
         energy = self.energy(samples) + np.sum(samples.lost, axis=1)
-        middle, end = one.middle, one.end
+        middle, end, work = one.middle, one.end, one.rise.pull_work
+        if work is None:
+            work = _pull_work(Samples.joined([middle, one.rise.samples]))
         columns: dict[str, Any] = {
             "made": np.asarray(True),
             "closest_approach": middle.separation[0],
@@ -147,15 +165,15 @@ class Ledger(NamedTuple):
             "bonds": middle.rows[0, quantities(self.contact).bonds],
             "lost": end.lost[0],
             "energy_balance_error": np.max(np.abs(energy - origin)),
-            "pull_work": np.asarray(_pull_work(Samples.joined([middle, one.rise.samples]))),
-            "maximum_kinetic": np.asarray(maximum_kinetic),
+            "pull_work": np.asarray(work),
+            "maximum_kinetic": np.asarray(largest),
             "fall": self._phase(one.begin, middle),
             "rise": self._phase(middle, end),
         }
         return Impacts(**columns)
 
     def _phase(self, start: Samples, stop: Samples) -> Phase:
-        """What a way started from; it is drawn from its samples, not from pieces."""
+        """What a phase started from; it is drawn from its samples, not from pieces."""
         layout = quantities(self.contact)
         none: Any = np.zeros(0)
         values: Any = np.zeros((0, NODES, layout.components.stop))
@@ -171,7 +189,7 @@ class Ledger(NamedTuple):
         }
         return Phase(**columns)
 
-    def _progress(self, done: Sequence[Bounced], outcome: Outcome) -> Progress:
+    def _progress(self, done: Sequence[SteppedImpact], outcome: Outcome) -> Progress:
         last = done[-1].end
         end: dict[str, Any] = {
             "memory": self.contact.initial_memory(),
@@ -187,25 +205,8 @@ class Ledger(NamedTuple):
         }
         return Progress(**jax.tree_util.tree_map(jnp.asarray, end))
 
-    def _trajectory(self, done: Sequence[Bounced]) -> Trajectory:
-        parts = [done[0].begin]
-        phases = [np.zeros(1, int)]
-        for number, one in enumerate(done):
-            for inwards, way in ((0, one.fall), (1, one.rise)):
-                parts.append(way.samples)
-                phases.append(np.full(way.samples.time.size, 2 * number + inwards))
-        whole = Samples.joined(parts)
-        # Where stretches meet rounding may set the clock back.
-        whole = whole._replace(time=np.maximum.accumulate(whole.time))
-        none = np.zeros((whole.time.size, len(self.body.mechanisms)))
-        series = Series(
-            whole.time, whole.separation, whole.speed, whole.rows, none, none,
-            np.concatenate(phases),
-        )  # fmt: skip
-        return Trajectory(series, whole.lost)
-
 
 def _pull_work(samples: Samples) -> float:
-    """Work against the attractive forces along a way [J]."""
+    """Work against the attractive forces along a phase [J], by trapezoids."""
     attraction, step = samples.rows[:, ATTRACTION], np.diff(samples.separation)
     return float(0.0 - np.sum(0.5 * (attraction[1:] + attraction[:-1]) * step))

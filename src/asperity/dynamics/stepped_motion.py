@@ -1,0 +1,114 @@
+"""The motion of a body that is stepped in time: impacts from the release to the end.
+
+For menisci that take time to form, and for a bulk that relaxes: there the force depends on time.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Protocol
+
+from ..contact.contact import Contact
+from ..contact.delayed_formation import DelayedContact
+from ..contact.elastic import ElasticContact
+from ..contact.viscoelastic import Relaxation
+from ..errors import Outcome
+from .curve_table import Table
+from .delayed_bounce import DelayedBounce
+from .record import Body, Limits, Motion
+from .static_equilibrium import Reference
+from .stepped_phase import TURNED, Ended, Samples
+from .stepped_record import Ledger, SteppedImpact, SteppedPhase
+from .stepped_series import Trajectory
+from .viscoelastic.rough_phase import fitted_bounce
+from .viscoelastic.smooth_sphere import SmoothBounce
+
+
+class Bouncing(Protocol):
+    """A body that is followed from one turning point to the next."""
+
+    def start(self) -> Samples:
+        """The sample of the release."""
+
+    @property
+    def threshold(self) -> float:
+        """Threshold of menisci that are still forming [m], 0 where none are."""
+
+    def phase(self, inwards: bool) -> SteppedPhase:
+        """The phase until the body turns."""
+
+
+def integrate_stepped(
+    contact: Contact,
+    mechanism: Relaxation | DelayedContact,
+    body: Body,
+    prepared: tuple[Table, Reference],
+    limits: Limits,
+    report: Callable[[int], None],
+    stop: threading.Event | None = None,
+) -> tuple[Motion, Trajectory, Outcome]:
+    """Motion of a body from its release until it rests, escapes, reaches a limit or is stopped.
+
+    Parameters
+    ----------
+    contact
+        The contact that slow motions meet: with menisci that form at once, or with a bulk that has
+        relaxed and a ``viscous`` loss.
+    mechanism
+        What takes time: the menisci of a rigid or smooth body, or the bulk and what is on it.
+    body
+        The body and its release, outside contact.
+    prepared
+        The table of ``contact``, and the static equilibrium.
+    limits
+        Ends of the motion.
+    report
+        Called with the number of impacts, after each.
+    stop
+        Set from another thread, it ends the motion at the last whole impact.
+
+    Raises
+    ------
+    Ended
+        If it is stopped before the first impact is over.
+    """
+
+    def asked() -> None:
+        if stop is not None and stop.is_set():
+            raise Ended
+
+    ledger = Ledger(contact, body, prepared, limits)
+    bouncing = _bouncing(mechanism, ledger, asked)
+    last = bouncing.start()
+    done: list[SteppedImpact] = []
+    outcome = None
+    while outcome is None:
+        try:
+            asked()
+            before = bouncing.threshold
+            fall = bouncing.phase(inwards=True)
+            rise = SteppedPhase(fall.end, Samples(*(column[:0] for column in last)))
+            if fall.end == TURNED:
+                rise = bouncing.phase(inwards=False)
+        except Ended:
+            if not done:
+                raise
+            outcome = Outcome.INTERRUPTED
+            break
+        done.append(SteppedImpact(last, fall, rise))
+        last = done[-1].end
+        outcome = ledger.outcome(done, abs(before - bouncing.threshold))
+        report(len(done))
+    return *ledger.motion(done, outcome), outcome
+
+
+def _bouncing(
+    mechanism: Relaxation | DelayedContact, ledger: Ledger, asked: Callable[[], None]
+) -> Bouncing:
+    """The body at its release."""
+    if isinstance(mechanism, DelayedContact):
+        return DelayedBounce(mechanism, ledger, asked)
+    if isinstance(mechanism.contact, ElasticContact):
+        return fitted_bounce(mechanism, ledger, asked)
+    return SmoothBounce(mechanism, ledger)
