@@ -11,6 +11,7 @@ from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_
 from asperity.dynamics.problem import CLEARANCE
 from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome
+from asperity.sweeps.compute import batch_steps
 from asperity.sweeps.compute.batch_steps import Clock
 from asperity.sweeps.compute.building import Batch, Group
 from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch, taken
@@ -43,6 +44,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
     weight = mass * np.asarray(cases.body.gravity)
     release = _launched_from(cases, solution.measures["outset"][some])
+    width = batch_steps.width(group.batch, group.rows.size)
 
     def launch(index: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
         batch = taken(cases, index)
@@ -51,7 +53,9 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
             body=body, time_limit=np.full(index.size, np.inf), impacts=np.ones(index.size, int)
         )
         allowed = np.full(index.size, max(_ERROR, batch.contact.error_floor))
-        made = integrate_batch(Group(np.arange(index.size), batch, allowed), clock, checked=False)
+        launched = Group(np.arange(index.size), batch, allowed)
+        # In calls of the width of the cases' own: those are compiled already.
+        made = integrate_batch(launched, clock, checked=False, width=width)
         return _first_impacts(made, mass[index], weight[index])
 
     past = solution.history

@@ -67,7 +67,9 @@ class _Filled(NamedTuple):
     begun: Begun
 
 
-def integrate_batch(group: Group, clock: Clock, *, checked: bool = True) -> BatchSolution:
+def integrate_batch(
+    group: Group, clock: Clock, *, checked: bool = True, width: int | None = None
+) -> BatchSolution:
     """Integrate all cases of a group.
 
     Parameters
@@ -79,8 +81,10 @@ def integrate_batch(group: Group, clock: Clock, *, checked: bool = True) -> Batc
     checked
         Whether they must be released outside contact. Nothing finer is compiled for others, which
         are launched where forces begin.
+    width
+        Cases of a compiled call; without it, what suits the group.
     """
-    cases = _Cases(group, clock, checked=checked)
+    cases = _Cases(group, clock, checked=checked, width=width)
     places = np.arange(group.rows.size)
     refinements = _REFINEMENTS if checked else _REFINEMENTS[:1]
     for factor in refinements:
@@ -104,11 +108,11 @@ def compile_ahead(groups: list[Group]) -> None:
 class _Cases:
     """Cases on their way."""
 
-    def __init__(self, group: Group, clock: Clock, *, checked: bool) -> None:
+    def __init__(self, group: Group, clock: Clock, *, checked: bool, width: int | None) -> None:
         self.group, self.clock, self.checked = group, clock, checked
         count = group.rows.size
         self.tries = np.zeros(count, int)
-        self.width = batch_steps.width(group.batch, count)
+        self.width = width or batch_steps.width(group.batch, count)
         self.steps = batch_steps.steps(self.width)
         self.ended: dict[str, np.ndarray] = {}
         self.history: dict[str, np.ndarray] = {}
