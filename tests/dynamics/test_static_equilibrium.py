@@ -87,7 +87,7 @@ def test_a_batch_finds_what_each_alone_does():
 
 
 @pytest.mark.parametrize("derivative", [jax.jacfwd, jax.jacrev])
-def test_the_datum_has_derivatives_in_both_modes(derivative):
+def test_the_reference_has_derivatives_in_both_modes(derivative):
     """With respect to the weight and to the force: -F_theta / F_d at the root."""
     here = table(wave, stored=np.sin)
 

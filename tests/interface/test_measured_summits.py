@@ -360,7 +360,7 @@ def test_more_classes_come_closer_to_a_relay_for_each_maugis_summit():
 
 
 def test_jkr_with_menisci_is_classes_beside_an_exact_layer():
-    """The contacting are counted once, and the parts have the names of one interface."""
+    """Contacts are counted once, and the parts have the names of one interface."""
     make = lambda radius: Jkr(radius, E, W) + POWERED["meniscus"](radius)  # noqa: E731
     surface = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=3)
     assert isinstance(surface, Layers)

@@ -19,21 +19,21 @@ MASS = DENSITY * 4.0 / 3.0 * np.pi * RADIUS**3
 STEEL = WaveRadiation.into(YOUNG, POISSON, DENSITY)
 
 
-def _flown(coefficient, speed):
+def _integrated(coefficient, speed):
     contact = SmoothContact(Hertz(RADIUS, MODULUS))
     body = Body(MASS, 0.0, 1e-9, speed, waves=WaveRadiation(coefficient))
     motion = simulate(contact, body, tolerance=Tolerance(max_impacts=1))
     return motion.impacts, measure(motion, body).restitution[0]
 
 
-_fly = jax.jit(jax.vmap(_flown))
+_batch = jax.jit(jax.vmap(_integrated))
 LITTLE = 1e-4
 
 
 @pytest.fixture(scope="module")
 def integrated():
     """One impact with a coefficient [J s/N^2] and a speed [m/s], and its restitution."""
-    return _fly
+    return _batch
 
 
 def figures():
@@ -50,7 +50,7 @@ def figures():
     power = 0.5 * float(parts.whole) * 4.0 * np.pi * 3.0**1.5
     known = "point force, ratio 0.25: power over pi^3 nu^2 a^4 P^2/(density c_p^3)"
     yield Figure(known, source, 4.836, power, "", 1e-4)
-    rows, _ = _fly(LITTLE * float(STEEL.coefficient) * np.ones(5), np.ones(5))
+    rows, _ = _batch(LITTLE * float(STEEL.coefficient) * np.ones(5), np.ones(5))
     first = 1e6 * LITTLE * hertz_share(STEEL, MODULUS, RADIUS, MASS, 1.0)
     found = 1e6 * float(_shares(rows)[0])
     yield Figure("Hertz impact: share radiated", "closed form", first, found, "1e-6", 1e-6)

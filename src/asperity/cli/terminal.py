@@ -54,13 +54,9 @@ class Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except typer.TyperException as error:
-            from asperity.config.old_words import new_name  # here: it takes 0.2 s to import
-
-            old = str(getattr(error, "option_name", ""))
-            new = new_name(old.removeprefix("--")).replace("_", "-")
-            if old in (f"--{new}", ""):
+            if (renamed := _renamed(error)) is None:
                 raise
-            code = _fail(f"no such option: {old}; it is called --{new} now", EXIT_INPUT)
+            code = _fail(renamed, EXIT_INPUT)
         except InputError as error:
             code = _fail(_with_place(error), EXIT_INPUT)
         except SimulationError as error:
@@ -70,6 +66,19 @@ class Commands(TyperGroup):
         except KeyboardInterrupt as stop:
             code = _fail("interrupted; nothing was written", exit_code_of(stop))
         raise typer.Exit(code)
+
+
+def _renamed(error: typer.TyperException) -> str | None:
+    """What is said of an option that has another name now; None where it is none."""
+    from asperity.config.old_words import RENAMED  # here: it takes 0.2 s to import
+
+    old, context = str(getattr(error, "option_name", "")), getattr(error, "ctx", None)
+    name = RENAMED.get(old.removeprefix("--").replace("-", "_"))
+    if name is None or context is None or not old.startswith("--"):
+        return None
+    new = f"--{name.replace('_', '-')}"
+    known = {option for parameter in context.command.params for option in parameter.opts}
+    return f"no such option: {old}; it is called {new} now" if new in known else None
 
 
 def exit_code_of(stop: KeyboardInterrupt) -> int:

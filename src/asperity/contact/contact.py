@@ -211,7 +211,7 @@ class Contact(eqx.Module):
 
     @property
     def reversals(self) -> int:
-        """Number of ways in each direction that stand for all; 0 where none is worth keeping."""
+        """Scanning curves in each direction that stand for all; 0 where none is worth keeping."""
         return 0
 
     @property

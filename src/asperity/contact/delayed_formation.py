@@ -190,7 +190,7 @@ class DelayedContact(eqx.Module):
 
 
 _UNUSED = Resolution(panels=1, nodes=8, pieces=1)
-"""No curves are made of a contact that is told: one program serves, however its forces reach."""
+"""No curves are made of a contact with prescribed bonds: one program serves for all of them."""
 
 
 def _base_of_smooth(contact: Any) -> SmoothContact:
@@ -238,6 +238,6 @@ def _base_of_interface(interface: Interface) -> Interface:
 
 
 def _replaced(law: Law, chosen: Callable[[Law], bool], *, holds: bool) -> Law:
-    """The law with those of its parts that are ``chosen`` told."""
+    """The law, with the bonds of its ``chosen`` parts prescribed."""
     parts = [PrescribedBonds(part, holds) if chosen(part) else part for part in terms(law)]
     return parts[0] if len(parts) == 1 else Sum(parts)

@@ -66,7 +66,7 @@ class ElasticContact(Contact):
 
     Notes
     -----
-    The separation is h(r) = d + rise(r) + u(r) with u the displacement of the pressure
+    The separation is h(r) = d + profile(r) + u(r) with u the displacement of the pressure
     p(h), solved by Newton's method on rings whose mesh follows the size of the contact
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """

@@ -1,4 +1,4 @@
-"""Equilibrium of rings: separation h = d + rise + u(p(h)) on a half-space.
+"""Equilibrium of rings: separation h = d + profile + u(p(h)) on a half-space.
 
 Newton's method, whose linear systems are solved as far as they need be. Derivatives pass by
 the implicit function theorem.
@@ -171,7 +171,7 @@ def equilibrium_displacement(
     *,
     rings: int,
 ) -> jax.Array:
-    """The displacement ``displacement`` of rings that have settled, with its derivatives.
+    """The ``displacement`` [m] of rings in equilibrium, with its derivatives.
 
     With respect to contact, separation and thresholds, on a mesh that is held.
     """

@@ -146,7 +146,7 @@ class PublishedContact(Contact):
         )
 
     def _integrals(self, separation: jax.Array) -> tuple[jax.Array, jax.Array]:
-        """Force [N] and energy [J] of each pressure from here to the edge; contacting last."""
+        """Force [N] and energy [J] of each pressure from here to the edge; contacts last."""
         p = self.pressure
         start = jnp.minimum(separation, p.end)
         marks = jnp.sort(jnp.clip(jnp.stack([start, *p.kinks, p.end]), start, p.end))

@@ -232,7 +232,7 @@ _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.
 
 
 def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: int) -> jax.Array:
-    """Ends of ``count`` panels over the reach of a rough contact, and of those beyond it.
+    """Ends of ``count`` panels over the range of a rough contact, and of those beyond it.
 
     Even over a few rms around 0 and in proportion to |d| far from it.
     """

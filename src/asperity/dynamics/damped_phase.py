@@ -144,7 +144,7 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
 def _over(
     body: Body, work: Work, gone: Gone, k: jax.Array
 ) -> tuple[Gone, tuple[jax.Array, jax.Array, jax.Array]]:
-    """Piece ``k``, passed by a body that still goes; and kinetic, time, heat at its entry."""
+    """Piece ``k``, passed by a body that still goes; and energy, time, loss at its entry."""
     piece = Stretch.of(work, k)
     course = course_on(body, piece, gone.kinetic, piece.leave)
     on = gone.going & course.passed
@@ -241,7 +241,7 @@ def slow_at(body: Body, kinetic: Real, maximum_kinetic: Real, rest: tuple[Real, 
     ----------
     body
         The body.
-    kinetic, fastest
+    kinetic, maximum_kinetic
         Kinetic energy there, and the largest on the way [J].
     rest
         Separations of the equilibrium and of what counts as there [m].

@@ -61,7 +61,7 @@ class Course(NamedTuple):
     ----------
     speed
         Speed [m/s] at SHARES of it.
-    time, heat
+    time, dissipated
         Time [s], and energy taken by each drag [J], shape (drags, POINTS), until there.
     duration, lost
         The same over all of it.

@@ -259,7 +259,7 @@ def _impact(
     progress: Progress,
     limits: Limits,
 ) -> tuple[Progress, Impacts]:
-    """Down to the deepest point and up to the next apex."""
+    """Down to closest approach and up to the next apex."""
     resting = reference.equilibrium
     rest = resting, resting + limits.rest * (body.release - resting)
 

@@ -61,8 +61,10 @@ class EndRules(NamedTuple):
         ----------
         limits
             Ends of the motion.
-        failed, at_rest, stopped, stuck, escaped
+        failed, at_rest, stuck, escaped
             See the attributes.
+        stopped
+            By the film alone; it counts before the time limit.
         time
             Of the apex [s].
         height, first

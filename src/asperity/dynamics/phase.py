@@ -89,7 +89,7 @@ class Ahead(NamedTuple):
         return self.gained(work, places - self.begin)
 
     def gained(self, work: jax.Array, distance: jax.Array) -> jax.Array:
-        """The same, by the way [m] from where the branch begins."""
+        """The same, by the ``distance`` [m] from where the branch begins."""
         return self.inner.kinetic[-1] + (work - self.before[0] - self.inner.weight * distance)
 
 

@@ -13,7 +13,7 @@ from .record import Body
 CLEARANCE = 1e-9
 """Gap [m] added to the interaction range where a case gives a speed but no release gap.
 
-A first place: a force that goes on beyond its reach has the body released further out.
+A first place: a force that goes on beyond its range has the body released further out.
 """
 
 

@@ -145,9 +145,9 @@ class Impacts(NamedTuple):
         that is captured has less than its potential energy at the end of contact. NaN with drag
         and for motions stepped in time, which tell it of no body that is captured.
     force
-        Contact force at the deepest point [N].
+        Contact force at closest approach [N].
     contacting, bonds
-        Expected asperities in contact, and bonds by law, at the deepest point.
+        Expected asperities in contact, and bonds by law, at closest approach.
     lost
         Energy lost until the apex, since the release [J]: by law, then by drag.
     energy_balance_error
@@ -190,7 +190,7 @@ class Motion(NamedTuple):
     table
         The contact's major branches.
     reference
-        Static equilibrium and the end of contact.
+        The static equilibrium, and the energy stored there.
     release
         Mechanical energy at the release [J].
     """

@@ -35,11 +35,11 @@ from .record import Body
 from .static_equilibrium import Reference
 
 CLOSE = 1e-8
-"""Error of the work along a way, over the impact energy, up to which the polynomial serves."""
+"""Error of the work along a curve, over the impact energy, up to which the polynomial serves."""
 
-_FAR = 3  # ranges of the reversals outside, at most
+_FAR = 3  # ranges of the reversals in approach, at most
 RANGES = 1 + _FAR
-"""Ranges of reversals: one where a body parts, the others outside."""
+"""Ranges of reversals: one in retraction, the others in approach."""
 
 _WIDE = 1.7  # rms heights that one of them spans, where that is enough
 _NONE = 1e-120  # contacting asperities: their logarithm and its derivatives are finite
@@ -188,7 +188,7 @@ def _over_places(values: jax.Array, nodes: np.ndarray) -> jax.Array:
 
 
 def _error(length: jax.Array, contacting: jax.Array, rows: jax.Array) -> jax.Array:
-    """Estimated error of the work along the ways [J] over the contacting, shape (ranges,)."""
+    """Estimated error of the work [J] over the contacting asperities, shape (ranges,)."""
     force = jnp.abs(rows[..., FORCE])
     last = force[:, 2:] + force[:, :1] * jnp.abs(contacting[:, 2:])
     off = jnp.maximum(last[:, -1], _FALL * last[:, -2])

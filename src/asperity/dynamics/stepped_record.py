@@ -190,6 +190,7 @@ class Ledger(NamedTuple):
         return Phase(**columns)
 
     def _progress(self, done: Sequence[SteppedImpact], outcome: Outcome) -> Progress:
+        # Without its memory: nothing goes on from there.
         last = done[-1].end
         end: dict[str, Any] = {
             "memory": self.contact.initial_memory(),

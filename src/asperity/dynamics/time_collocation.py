@@ -1,4 +1,4 @@
-"""One step in time of a body on a contact with late menisci.
+"""One step in time of a body on a contact with delayed menisci.
 
 The acceleration is a polynomial through Radau's points of the step, which meets the equation of
 motion there; speed, separation and threshold follow from it. The end of a step is of order
@@ -84,7 +84,7 @@ class Step(NamedTuple):
         [m/s], shape (STAGES + 1,).
     rows
         Quantities of the contact, shape (STAGES + 1, rows).
-    late, heat, pull
+    delayed, dissipated, attraction
         Energy [J] lost since the start on menisci that formed, left in the gas, and work of
         the attractive forces.
     defect

@@ -29,8 +29,8 @@ class Series(NamedTuple):
     time, separation, speed
         [s], [m] and [m/s], shape (samples,).
     rows
-        Quantities of the contact (see :mod:`.table`), shape (samples, rows).
-    heat, drag
+        Quantities of the contact (see :mod:`.curve_table`), shape (samples, rows).
+    dissipated, drag
         By drag: energy taken since the phase began [J], and force over speed [N s/m], shape
         (samples, drags).
     phase
@@ -134,7 +134,7 @@ _draw = Program(_draw_all)
 def _draw_one(
     body: Body, table: Table, phase: Phase, ended: jax.Array, unloading: jax.Array, places: int
 ) -> tuple[jax.Array, ...]:
-    """Time, separation, speed, rows, heat, drag and whether to keep, in the order of time."""
+    """Time, separation, speed, rows, dissipated, drag and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, unloading)
     if body.damped:
         return _draw_damped(body, resolved(body, pieces)[0], phase, unloading)

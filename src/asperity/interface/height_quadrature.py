@@ -14,7 +14,7 @@ EVEN = 7
 """Even pieces over Gaussian heights, besides those that a law's kinks ask for; of 6.4 rms at most
 where places within 27 rms of one another share them, which is good to 1e-9."""
 
-_RUNGS = 4  # of a ladder, in geometric progression from a quarter of the law's length
+_STEPS = 4  # of a ladder, in geometric progression from a quarter of the law's length
 _HALVES = 2  # pieces of the gaps between the edges of places near one another
 
 
@@ -182,10 +182,10 @@ def _pieces(
     """
     lowest, highest = between
     kink = jnp.sort(jnp.clip(kinks, lowest, highest))
-    interaction_range = highest - lowest
-    first = jnp.minimum(0.25 * shortest, interaction_range)
-    ratio = jnp.where(first > 0.0, interaction_range / jnp.where(first > 0.0, first, 1.0), 1.0)
-    ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
+    span = highest - lowest
+    first = jnp.minimum(0.25 * shortest, span)
+    ratio = jnp.where(first > 0.0, span / jnp.where(first > 0.0, first, 1.0), 1.0)
+    ladder = first * ratio ** (np.arange(_STEPS) / _STEPS)
     steps = [kink[0] - ladder] if law.only_bonded else [kink[0] - ladder, kink[-1] + ladder]
     return jnp.sort(jnp.clip(jnp.concatenate([even, kink, *steps]), lowest, highest))
 

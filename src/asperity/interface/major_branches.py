@@ -17,7 +17,7 @@ from .interface import Interface
 _OCTAVE = 8  # cells an octave of the depth, below the even ones
 _DEEP = 48 * _OCTAVE
 _STAND = 16  # heights that stand for all below, where the law falls by at least 1/5.8 each
-_RUNGS = 10  # of the ladders below a law's kinks, up to two even cells
+_STEPS = 10  # of the ladders below a law's kinks, up to two even cells
 _NODES, _WEIGHTS = legendre.leggauss(6)
 _AT = 0.5 * (_NODES + 1.0)  # places in a deep cell
 _TO_POWERS = np.linalg.inv(np.vander(_AT, increasing=True))
@@ -137,8 +137,8 @@ def _kernels(
     lowest = -2 * nodes - 4
     kinks = [jnp.asarray(gap, float) for gap in (*law.kinks, law.forming_gap, law.breaking_gap)]
     kink = (jnp.stack(kinks) - end) / step
-    rung = jnp.minimum(0.25 * shortest / step, 1.0)
-    ladder = rung * (2.0 / rung) ** (np.arange(_RUNGS) / _RUNGS)
+    first = jnp.minimum(0.25 * shortest / step, 1.0)
+    ladder = first * (2.0 / first) ** (np.arange(_STEPS) / _STEPS)
     below = jnp.stack([jnp.min(kink), jnp.max(kink)])[:, None] - ladder
     bounds = jnp.concatenate([np.arange(lowest, 1.0), kink, below.ravel()])
     place, weight = points(jnp.sort(jnp.clip(bounds, lowest, (law.breaking_gap - end) / step)))

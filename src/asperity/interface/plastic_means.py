@@ -18,7 +18,7 @@ from ..surfaces.heights.distribution import Heights
 from .height_quadrature import points
 
 _EVEN = 5  # pieces over the heights, besides those that kinks ask for
-_RUNGS = 3  # of a ladder of pieces from where contact begins
+_STEPS = 3  # of a ladder of pieces from where contact begins
 _NODES = 12
 
 
@@ -37,7 +37,7 @@ def means_at(
     edges: list[jax.Array],
     integrated: int,
 ) -> dict[str, jax.Array]:
-    """Means at one separation [m]: forces by mechanism, energy, what is kept, bonds, contacting.
+    """Means at one separation [m]: forces by mechanism, energy, what is kept, bonds, contacts.
 
     Parameters
     ----------
@@ -139,11 +139,11 @@ def _bounds(
     last = jnp.maximum(highest, first)
     uneven = jnp.maximum(first, heights.bottom)
     even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
-    interaction_range = last - begin
-    rung = jnp.minimum(0.25 * heights.rms, jnp.maximum(begin - low, contact.yield_overlap))
-    rung = jnp.clip(rung, 0.0, jnp.maximum(interaction_range, 0.0))
-    ratio = jnp.where(rung > 0.0, interaction_range / jnp.where(rung > 0.0, rung, 1.0), 1.0)
-    ladder = begin + rung * ratio ** (np.arange(_RUNGS) / _RUNGS)
+    span = last - begin
+    narrowest = jnp.minimum(0.25 * heights.rms, jnp.maximum(begin - low, contact.yield_overlap))
+    narrowest = jnp.clip(narrowest, 0.0, jnp.maximum(span, 0.0))
+    ratio = jnp.where(narrowest > 0.0, span / jnp.where(narrowest > 0.0, narrowest, 1.0), 1.0)
+    ladder = begin + narrowest * ratio ** (np.arange(_STEPS) / _STEPS)
     kinks = low + jnp.stack(contact.kinks)
     ends = [even, ladder, kinks, jnp.stack([begin, first, *marks])]
     return jnp.sort(jnp.clip(jnp.concatenate(ends), first, last))

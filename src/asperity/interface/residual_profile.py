@@ -29,7 +29,7 @@ _NODES = 14  # coefficients of the contacts' force on a panel
 _ROW = _NODES + HIGHEST + 1  # and of what is integrated from them
 _POINTS = 14  # of a quadrature over the part of a panel above a place
 _FAR_POINTS = 14  # and over the panels above
-_RUNGS = 5  # panels in geometric progression beyond the last kink of the contact
+_STEPS = 5  # panels in geometric progression beyond the last kink of the contact
 _EVEN = 7  # even panels over the heights
 _BELOW = 6  # and over those below the closest approach that laws reach
 
@@ -189,7 +189,7 @@ def _ends(contact: PlasticContact, heights: Heights, lowest: jax.Array) -> jax.A
     even = uneven + (last - uneven) * np.linspace(0.0, 1.0, _EVEN + 1) - lowest
     *_, last_kink = kinks = contact.kinks
     wide = jnp.maximum(2.0 * heights.rms, uneven - lowest)
-    ladder = last_kink * jnp.maximum(wide / last_kink, 1.0) ** (np.arange(_RUNGS + 1) / _RUNGS)
+    ladder = last_kink * jnp.maximum(wide / last_kink, 1.0) ** (np.arange(_STEPS + 1) / _STEPS)
     between = [jnp.sqrt(low * high) for low, high in pairwise(kinks)][1:]
     marks = jnp.stack([jnp.zeros(()), *kinks, *between])
     deepest = jnp.sort(jnp.clip(jnp.concatenate([even, ladder[1:], marks]), 0.0, last - lowest))

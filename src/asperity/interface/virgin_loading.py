@@ -13,7 +13,7 @@ from .height_quadrature import points
 from .residual_profile import HIGHEST
 
 _EVEN = 5  # pieces over the heights, besides those that kinks ask for
-_RUNGS = 3  # of a ladder of pieces from where contact begins
+_STEPS = 3  # of a ladder of pieces from where contact begins
 NODES = 16
 """Nodes on a piece."""
 
@@ -77,12 +77,12 @@ def first_loading(
 def _bounds(contact: PlasticContact, heights: Heights, separation: jax.Array) -> jax.Array:
     """Ends of pieces of the overlap between which everything is smooth."""
     last = heights.highest_beside(jnp.minimum(separation, heights.top))
-    interaction_range = jnp.maximum(last - separation, 0.0)
-    uneven = jnp.clip(heights.bottom - separation, 0.0, interaction_range)
-    even = uneven + (interaction_range - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
+    span = jnp.maximum(last - separation, 0.0)
+    uneven = jnp.clip(heights.bottom - separation, 0.0, span)
+    even = uneven + (span - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
     first = jnp.minimum(0.25 * heights.rms, contact.yield_overlap)
-    first = jnp.minimum(first, interaction_range)
-    ratio = jnp.where(first > 0.0, interaction_range / jnp.where(first > 0.0, first, 1.0), 1.0)
-    ladder = first * ratio ** (np.arange(_RUNGS) / _RUNGS)
+    first = jnp.minimum(first, span)
+    ratio = jnp.where(first > 0.0, span / jnp.where(first > 0.0, first, 1.0), 1.0)
+    ladder = first * ratio ** (np.arange(_STEPS) / _STEPS)
     ends = [even, ladder, jnp.stack([jnp.zeros(()), *contact.kinks])]
-    return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, interaction_range))
+    return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, span))

@@ -127,7 +127,7 @@ class PublishedPressure(eqx.Module):
         """Menisci of the asperities that do not touch, a pull being positive: eqs. 13-15 per area.
 
         Without the factor 1/(sqrt(2 pi) sigma) of eq. 14, which F_0 holds already. Eq. 12 as
-        printed pushes beyond its reach; here the bands end there.
+        printed pushes beyond its range; here the bands end there.
         """
         scale = 4.0 * pi * self.density * self.radius * self.tension
         above_mean = jnp.maximum(separation, 0.0)

@@ -54,7 +54,7 @@ def check_law(
     law
         The law, or a sum, whose laws are checked one by one.
     gaps
-        Gaps [m] at which to look; by default from deep overlap to three times the reach,
+        Gaps [m] at which to look; by default from deep overlap to three times that range,
         close together around 0, with all kinks.
     dimensions
         Powers of (length, force) of each of the law's values, such as
@@ -253,7 +253,7 @@ def _check_work(law: Law, branch: _Branch) -> None:
 
 
 def _check_far(law: Law) -> None:
-    """Free energy 0 at infinity, force negligible beyond the reach."""
+    """Free energy 0 at infinity, force negligible beyond the interaction range."""
     far = _FAR * _lengths(law)[-1]
     at = jnp.asarray([far, 100.0 * far])
     energy = np.abs(np.asarray(law.energy(at)))

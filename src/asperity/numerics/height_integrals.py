@@ -102,9 +102,9 @@ def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
     rows = (len(orders),) + (1,) * (separations.ndim - 1)
     base = 2 * _PANELS * np.arange(len(orders)).reshape(rows)
     is_right = separations >= _SPLIT
-    interaction_range = jnp.abs(separations - _SPLIT)
-    falls = 1.0 / (interaction_range + _STRETCH)
-    position = interaction_range * falls * _PANELS
+    distance = jnp.abs(separations - _SPLIT)
+    falls = 1.0 / (distance + _STRETCH)
+    position = distance * falls * _PANELS
     index = jnp.clip(jnp.floor(position).astype(int), 0, _PANELS - 1)
     panel = jnp.asarray(base) + jnp.where(is_right, index, index + _PANELS)
     smooth = _clenshaw(table, panel, 2.0 * (position - index) - 1.0)
@@ -173,9 +173,9 @@ def _tables(order: float) -> tuple[np.ndarray, ...]:
         raise ValueError(f"`order` must be above -1; got {order}")
     nodes = chebyshev.chebpts1(_DEGREE + 1)
     y = ((np.arange(_PANELS)[:, None] + 0.5 * (nodes + 1.0)) / _PANELS).ravel()
-    interaction_range = _STRETCH * y / (1.0 - y)
-    right = _quadrature(order, _SPLIT + interaction_range) * (interaction_range + _STRETCH)
-    left = _SPLIT - interaction_range
+    distance = _STRETCH * y / (1.0 - y)
+    right = _quadrature(order, _SPLIT + distance) * (distance + _STRETCH)
+    left = _SPLIT - distance
     growth = _quadrature(order, left) * (1.0 + left * left) ** (-0.5 * order)
     shape = (_PANELS, _DEGREE + 1)
     return tuple(

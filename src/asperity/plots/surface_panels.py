@@ -151,10 +151,10 @@ def draw_radii(axes: Axes, description: Description) -> None:
               color=colour("apex"), alpha=0.5, rasterized=True, label="summits")  # fmt: skip
     axes.axhline(tops.radius / up, color=colour("contact"), lw=0.8, label="of mean curvature")
     if description.nayak is not None:
-        interaction_range = 5.0 * sqrt(description.spectral.m0)
+        half_width = 5.0 * sqrt(description.spectral.m0)
         z = np.linspace(
-            max(tops.heights.min(), -interaction_range),
-            min(tops.heights.max(), interaction_range),
+            max(tops.heights.min(), -half_width),
+            min(tops.heights.max(), half_width),
             100,
         )
         sharp = description.nayak.curvature_at(z)

@@ -153,7 +153,7 @@ def _meniscus(evidence: Evidence) -> Drawing:
     kelvin = evidence.kelvin_radius(_SHOWN_HUMIDITY)
     interaction_range = 2.0 * kelvin * cos(angle)
     gap = 0.3 * interaction_range
-    # The parabola meets the filled height where its own rise has used up the rest of the reach.
+    # The parabola meets the filled height where its own rise has used up the rest of the range.
     filled = sqrt(2.0 * radius * (interaction_range - gap))
     place = np.linspace(-1.6 * filled, 1.6 * filled, 161)
     turn = np.linspace(-1.0, 1.0, 61) * (0.5 * pi - angle)

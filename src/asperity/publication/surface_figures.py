@@ -40,8 +40,8 @@ def distribution(found: Pair) -> Drawing:
     both, peaks = found.composite.heights, found.composite.summits
     shape = found.composite.height_gaussianity
     low, high = np.interp((_TAIL, 1.0 - _TAIL), both.cumulative, both.heights)
-    interaction_range = _REACH * shape.rms
-    edges = np.linspace(max(low, -interaction_range), min(high, interaction_range), _BINS + 1)
+    half_width = _REACH * shape.rms
+    edges = np.linspace(max(low, -half_width), min(high, half_width), _BINS + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
     series = {found.name: (middle, in_bins(both, edges))}
     about = {

@@ -142,15 +142,15 @@ def _criteria(elasticity: float, load: np.ndarray) -> tuple[np.ndarray, np.ndarr
     found = radius**3 - pull
     rising = int(np.argmin(found))  # a load that pulls has two contacts; none is on the map
     adhesive = 4.0 / 3.0 * elasticity * radius * root
-    interaction_range = 2.0 / (pi * elasticity)
+    scale = 2.0 / (pi * elasticity)
 
     def at_load(values: np.ndarray) -> np.ndarray:
         return np.interp(load, found[rising:], values[rising:])
 
     return (
         at_load(pull) / load,
-        at_load(radius**2) / interaction_range,
-        at_load(adhesive) / interaction_range,
+        at_load(radius**2) / scale,
+        at_load(adhesive) / scale,
     )
 
 

@@ -34,7 +34,7 @@ CLASSED = 5e-3
 
 
 class AtDepth(NamedTuple):
-    """The contact at the deepest point of the first impact.
+    """The contact at closest approach of the first impact.
 
     Attributes
     ----------

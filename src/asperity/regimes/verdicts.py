@@ -52,7 +52,7 @@ class Situation(NamedTuple):
     spacing
         Mean distance of asperities [m]; None for a smooth body.
     contacting
-        Expected number of contacting asperities at the deepest point of the first impact.
+        Expected number of contacting asperities at closest approach of the first impact.
     kelvin_radius
         Radius of curvature of the liquid [m]: Kelvin's, or less where an adsorbed film bounds
         it; 0 without menisci, infinite in saturated vapour without a film.

@@ -1,4 +1,4 @@
-"""A motion that was integrate, as the result that a user reads: units, names, plain numbers."""
+"""A motion that was integrated, as the result that a user reads: units, names, plain numbers."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
 class Solution(NamedTuple):
-    """A motion that was integrate, the contact it was integrate with, and how it ended.
+    """A motion that was integrated, the contact it was integrated with, and how it ended.
 
     The body has the release that was found, where the case gives a speed alone.
     """
@@ -137,7 +137,7 @@ def result_of(
     elastic: float | None = None,
     most: int | None = None,
 ) -> Result:
-    """The result of a motion that was integrate.
+    """The result of a motion that was integrated.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def assessment_of(
     problem
         What was built from it.
     contact, motion
-        The contact that was integrate with, and the motion.
+        The contact that it was integrated with, and the motion.
     """
     at_depth = AtDepth.of(contact, motion)
     check_surface(case, problem, at_depth)

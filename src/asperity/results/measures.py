@@ -260,7 +260,7 @@ def _captures(
 ) -> jax.Array:
     """Whether a rebound stays within the contact, per impact.
 
-    Gas alone may keep one within its reach: that is no capture, and the static equilibrium
+    Gas alone may keep one within its range: that is no capture, and the static equilibrium
     counts in place of the end of contact.
     """
     rows, still = motion.impacts, motion.reference.equilibrium
@@ -280,7 +280,7 @@ def _energies(
 ) -> tuple[jax.Array, jax.Array]:
     """Energies [J] before and after each impact, above that of a body at the end of contact.
 
-    A body released within the reach of the contact has no such place on its path: there they
+    A body released within the range of the contact has no such place on its path: there they
     count from the static equilibrium.
     """
     rows, weight = motion.impacts, body.weight

@@ -85,7 +85,7 @@ class _Examination:
     """
 
     def __init__(self, reporter: Reporter, stop: threading.Event) -> None:
-        self._voice, self._stop = reporter, stop
+        self._reporter, self._stop = reporter, stop
         self._checks: list[dict[str, Any]] = []
 
     def made(self) -> dict[str, Any]:
@@ -100,7 +100,7 @@ class _Examination:
         # What does not work may be JAX itself: then its versions are said, and the reason.
         for name, section in sections.items():
             if not self._stop.is_set():
-                with self._voice.step(name.replace("_", "-")):
+                with self._reporter.step(name.replace("_", "-")):
                     found[name] = self._attempted(name, section)
         found |= {"checks": self._checks, "ok": all(one["ok"] for one in self._checks)}
         found.pop("self_test", None)
@@ -197,7 +197,7 @@ class _Examination:
         self._say(first.rstrip(), *rest)
 
     def _say(self, *lines: str | None) -> None:
-        if not (self._voice.as_json or self._voice.quiet):
+        if not (self._reporter.as_json or self._reporter.quiet):
             for line in lines:
                 if line is not None:
                     tell(line)

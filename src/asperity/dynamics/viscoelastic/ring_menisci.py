@@ -32,7 +32,7 @@ class Waiting(NamedTuple):
     delayed
         What takes time.
     surfaces
-        The surfaces with their menisci told.
+        The surfaces with prescribed menisci.
     """
 
     delayed: DelayedContact

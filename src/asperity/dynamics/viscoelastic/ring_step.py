@@ -1,7 +1,7 @@
 r"""One step in time of a rough body on a half-space that creeps.
 
 The displacement of the rings is u = C p + (1/k - 1) C c, with C the compliance of the instantaneous
-modulus and c the pressure that has retarded, dc/dt = (p - c) k/time. A step is implicit: a diagonal
+modulus and c the retarded pressure, dc/dt = (p - c) k/time. A step is implicit: a diagonal
 Runge-Kutta method of order 4 that damps what is fast (Kennedy and Carpenter 2003, ARK4(3)6L[2]SA).
 At each of its stages mass, creep and elasticity together are one stiffer or softer half-space, so
 that the rings' separations alone are solved for, by Newton's method.
@@ -58,7 +58,7 @@ class Step(NamedTuple):
     here
         Its end.
     rates
-        Acceleration [m/s^2] and power of the creep, or lost on late menisci [W], at its end.
+        Acceleration [m/s^2] and power of the creep, or lost on delayed menisci [W], at its end.
     row
         Quantities of the contact at its end; what creep has taken is left at 0.
     lost

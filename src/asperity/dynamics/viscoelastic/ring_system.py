@@ -33,7 +33,7 @@ class Here(NamedTuple):
     gaps
         Separation of the mean planes at the rings and at the mesh's end [m].
     retarded
-        Pressure that has retarded, c, at the rings [Pa].
+        The retarded pressure c at the rings [Pa].
     thresholds
         Memory of the bonds, at the rings and at the mesh's end.
     """

@@ -26,10 +26,10 @@ from .sample_times import flight_times
 TOLERANCE = 1e-9
 """Error of a step, relative to heights, speed and energy of the impact."""
 
-_MOST = 20_000  # steps of a way
+_MOST = 20_000  # steps of a phase
 _FIT = 0.05  # how closely the mesh fits the pressure of the first impact
 _PASSES = 5  # of that fit
-_FIRST = 0.02  # rms heights: the way of the first step into the forces
+_FIRST = 0.02  # rms heights: the length of the first step into the forces
 _STRIDE = 0.5  # rms heights: the longest way of one step
 _POLISH = 12  # of the length of a step that ends at a turn
 _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
@@ -121,7 +121,7 @@ class RoughBounce:
         return jax.tree_util.tree_map(np.asarray, answer)
 
     def _edge(self) -> float:
-        """Separation beyond which nothing acts [m]: the reach, and what stands out of the bulk."""
+        """Separation beyond which nothing acts [m]: the range, and what stands out of the bulk."""
         displacement = self.here.gaps - self._rise - self.here.separation
         return self._interaction_range + max(0.0, -float(np.min(displacement)))
 
@@ -201,7 +201,7 @@ class RoughBounce:
             rows[:, self.layout.bonds.stop] = lost[:, -1]
 
     def _go(self, inwards: bool) -> tuple[str, Samples]:
-        """One step within reach of the forces, that ends where the body turns."""
+        """One step within the interaction range, that ends where the body turns."""
         done, span = self._taken(inwards)
         if done is None:
             return FAILED, self._free_flight_samples(self._left(), np.zeros(0))

@@ -24,12 +24,12 @@ from ...halfspace.viscoelastic_paraboloid import (
 from .sample_times import flight_times
 
 TURNED, LEFT, AT_REST, FAILED = "turned", "left", "at rest", "failed"
-"""How a way ends: by a turn, at the top, at rest without a turn, not at all."""
+"""How a phase ends: by a turn, at the top, at rest without a turn, not at all."""
 
 _TOLERANCE, _LEAST = 1e-11, 1e-15  # of the integration, relative and absolute
 _STIFF = 0.05  # relaxation time over that of an impact below which explicit steps are too many
 _SPAN = 30.0  # impacts' times that are integrated at once
-_MOST = 4000  # such spans on a way
+_MOST = 4000  # such spans in a phase
 _FADED = 1e-15  # an indentation that counts as gone
 _POINTS = 48  # samples of a stretch
 _SLOW = 1e-9  # an edge that counts as turning

@@ -188,9 +188,9 @@ class Sampled(Heights):
         ratio, series = self.nodes / depth, jnp.zeros_like(depth)
         for k in range(count, -1, -1):
             series = series * ratio + binom(order, k) * moments[k]
-        interaction_range = depth * self.step
-        root = jnp.sqrt(interaction_range) if order % 1.0 else 1.0
-        return interaction_range ** int(order) * root * series
+        below = depth * self.step
+        root = jnp.sqrt(below) if order % 1.0 else 1.0
+        return below ** int(order) * root * series
 
     def _quintic(self, cells: jax.Array, row: np.ndarray, x: jax.Array) -> jax.Array:
         """Polynomials of the cells in which ``x`` lies, 0 above all of them."""

@@ -1,4 +1,4 @@
-"""Alignment of scan lines: offsets between lines that the instrument made."""
+"""Levelling of scan lines: offsets between lines that the instrument made."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def lines_aligned(
     moved = float(removed[there].mean(axis=1).std())
     return made, Step(
         "lines",
-        f"{direction} aligned by their {name}",
+        f"{direction} levelled by their {name}",
         topography.rms_height,
         made.rms_height,
         {"rms_offset": moved},
@@ -82,7 +82,7 @@ def lines_aligned(
 
 
 def checked(how: str, direction: str, degree: int) -> None:
-    """Refuse an unknown alignment, direction or degree.
+    """Refuse an unknown method, direction or degree.
 
     Raises
     ------

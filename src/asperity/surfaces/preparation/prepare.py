@@ -69,7 +69,7 @@ class Preparation:
             )
         if self.line_levelling != "polynomial" and self.degree != 1:
             raise InputError(
-                f"`degree` must be absent without line_levelling = 'polynomial'; got {self.degree}",
+                f"`degree` must be absent without `line_levelling` 'polynomial'; got {self.degree}",
                 key="degree",
             )
         gaussian_filter.checked(self.s_filter, self.l_filter)
@@ -110,7 +110,7 @@ def prepared(topography: Topography, preparation: Preparation) -> Prepared:
     """A surface prepared as asked.
 
     The order is fixed. Missing pixels are counted, and refused if they are to be. Scan lines are
-    aligned, while the offsets are still all that differs from line to line. The form is removed,
+    levelled, while the offsets are still all that differs from line to line. The form is removed,
     for the filters need a surface without one at its edges. The short and the long wavelengths
     are cut. Last, missing pixels are filled, so that no invented height enters a fit.
 

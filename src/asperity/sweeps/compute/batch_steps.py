@@ -1,4 +1,4 @@
-"""Cases of one structure batch side by side, a few impacts at a time; those at rest make room."""
+"""Cases of one structure, integrated together by a few impacts; those at rest make room."""
 
 from __future__ import annotations
 
@@ -39,12 +39,15 @@ from asperity.sweeps.compute.building import Batch
 IMPACTS = 16
 """Impacts of a compiled call."""
 
-_FEW = 32  # cases in a batch of few, most of which would be empty in a wide call
+FEW_CASES = 64
+"""Cases up to which a group counts as small."""
+
+_NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
 _FAST: dict[str, bool | int] = {"xla_cpu_multi_thread_eigen": False}
 """XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
 
 _SOON: dict[str, bool | int] = {**QUICKLY, **_FAST}
-"""For a few cases, which take less time than it takes to compile for them."""
+"""For a few rigid or smooth bodies: they take less time than it takes to compile for them."""
 
 
 @kept
@@ -181,17 +184,17 @@ class Steps(NamedTuple):
 _OF_MANY, _OF_FEW = Steps.compiled(_FAST), Steps.compiled(_SOON)
 
 
-def steps(width: int) -> Steps:
+def steps(cases: int) -> Steps:
     """The compiled steps of batches of so many cases."""
-    return _OF_FEW if width == _FEW else _OF_MANY
+    return _OF_FEW if cases == _NARROW else _OF_MANY
 
 
 def width(batch: Batch, count: int) -> int:
     """Number of cases of a compiled call, for so many in all."""
     if isinstance(batch.contact, ElasticContact):
         return 8
-    if count <= 2 * _FEW:
-        return _FEW
+    if count <= FEW_CASES:
+        return _NARROW
     return 256 if jax.default_backend() == "cpu" else 4096
 
 

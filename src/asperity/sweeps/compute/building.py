@@ -1,4 +1,4 @@
-"""Cases as objects, many at once: groups of one structure, ready to be batch side by side."""
+"""Cases as objects, many at once: groups of one structure, ready to be integrated side by side."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _UNRESOLVED = Resolution(1, 8, 1)
 
 
 class Batch(NamedTuple):
-    """What is batch side by side: each array has the cases along its first axis.
+    """What is integrated side by side: each array has the cases along its first axis.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Group(NamedTuple):
     rows
         Their places among the values that were asked for.
     batch
-        What is batch.
+        What is integrated.
     tolerance
         Relative error allowed to each one's force curves [-].
     cases
@@ -87,7 +87,7 @@ class Built(NamedTuple):
     Attributes
     ----------
     groups
-        Those that are batch side by side.
+        Those that are integrated side by side.
     alone
         Places of those that are solved one by one, with their cases.
     refused

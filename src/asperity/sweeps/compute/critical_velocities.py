@@ -44,7 +44,8 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
     weight = mass * np.asarray(cases.body.gravity)
     release = _launched_from(cases, solution.measures["outset"][some])
-    width = batch_steps.width(group.batch, group.rows.size)
+    few = group.rows.size <= batch_steps.FEW_CASES
+    width = batch_steps.width(group.batch, group.rows.size) if few else None
 
     def launch(index: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
         batch = taken(cases, index)
@@ -54,7 +55,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
         )
         allowed = np.full(index.size, max(_ERROR, batch.contact.error_floor))
         launched = Group(np.arange(index.size), batch, allowed)
-        # In calls of the width of the cases' own: those are compiled already.
+        # A small study launches in calls of its cases' own width: those are compiled already.
         made = integrate_batch(launched, clock, checked=False, width=width)
         return _first_impacts(made, mass[index], weight[index])
 
@@ -77,7 +78,7 @@ def _launched_from(cases: Batch, outset: np.ndarray) -> np.ndarray:
 
 
 def _first_impacts(made: BatchSolution, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
-    """What became of bodies that were launched; those that were not batch are not known."""
+    """What became of bodies that were launched; those that were not integrated are not known."""
     failed = ENDS.index(Outcome.FAILED)
     reference = made.measures["reference"]
     known = (made.made > 0) & (made.outcome != failed) & np.isfinite(reference)

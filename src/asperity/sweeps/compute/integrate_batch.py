@@ -297,7 +297,7 @@ class _Cases:
         )  # fmt: skip
 
     def _measured(self, places: np.ndarray) -> dict[str, np.ndarray]:
-        """The measures of cases that were batch, in calls of like lengths."""
+        """The measures of cases that were integrated, in calls of like lengths."""
         out: dict[str, np.ndarray] = {}
         for some in _slices(places, self.width):
             found = self._measures_of(some)

@@ -79,7 +79,7 @@ MEASURES: tuple[Column, ...] = (
     Column("capture_time", "float64", "s", "time of the impact that captures"),
     Column("time_to_rest", "float64", "s", "time from release to rest"),
     Column("last_apex_time", "float64", "s", "time of the last apex"),
-    Column("minimum_separation", "float64", "m", "deepest rigid separation of the first impact"),
+    Column("minimum_separation", "float64", "m", "smallest rigid separation of the first impact"),
     Column("contact_time", "float64", "s", "time in contact at the first impact"),
     Column("maximum_force", "float64", "N", "largest contact force of the first impact"),
     Column("pull_off", "float64", "N", "pull-off force"),
@@ -100,7 +100,7 @@ MOTION: tuple[Column, ...] = (
     Column("turning_separation", "float64", "m", "rigid separation at a turning point", "turn"),
     Column("turning_time", "float64", "s", "time of a turning point", "turn"),
 )
-"""What ``motions = true`` keeps: deepest point and apex of each impact, in order of time."""
+"""What ``motions = true`` keeps: closest approach and apex of each impact, in order of time."""
 
 DEFAULT_KEEP = ("captured", "impact_speed", "restitution", "time_to_rest", "energy_lost")
 """Measures of a study that names none."""
