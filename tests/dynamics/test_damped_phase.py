@@ -10,7 +10,7 @@ import asperity
 from asperity._jax import jax, jnp
 from asperity.dynamics import simulate
 from asperity.dynamics.gas_film import SqueezeFilm
-from asperity.dynamics.motion import ENDS
+from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome, Tolerance
 from asperity.model import build
 from asperity.results.measures import measure
