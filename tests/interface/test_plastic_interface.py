@@ -138,7 +138,7 @@ def test_work_over_a_cycle_is_what_was_kept_and_what_bonds_lost(beside, overlap)
 
 
 def test_means_do_not_depend_on_the_pieces_of_the_heights(monkeypatch):
-    for name in ("_EVEN", "_RUNGS"):
+    for name in ("_EVEN", "_STEPS"):
         monkeypatch.setattr(module, name, 2 * getattr(module, name))
     fine = eqx.filter_jit(lambda i, h, memory, integrated: i.measure(h, memory, integrated))
     h = np.tile(np.linspace(-1.0, 3.5, BATCH // 2), 2) * SIGMA

@@ -98,7 +98,7 @@ def test_more_points_change_nothing(monkeypatch):
 
     means, first = at_places()
     monkeypatch.setattr(tabulated, "_EVEN", 14)
-    monkeypatch.setattr(tabulated, "_RUNGS", 8)
+    monkeypatch.setattr(tabulated, "_STEPS", 8)
     monkeypatch.setattr(module, "NODES", 40)
     finer, first_finer = at_places()
     for name in means._fields:

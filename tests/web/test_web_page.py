@@ -77,7 +77,7 @@ def write(page: Page, key: str, text: str) -> None:
     field = page.locator(f"#field-{key.replace('.', '-')}")
     field.fill(text)
     field.press("Enter")
-    field.press("Tab")
+    field.blur()
 
 
 def slide(page: Page, key: str, share: float) -> None:
