@@ -8,17 +8,6 @@ from collections.abc import Iterator
 
 from asperity.errors import InputError
 
-PREPARATION = (
-    "missing",
-    "form_removal",
-    "line_levelling",
-    "direction",
-    "degree",
-    "s_filter",
-    "l_filter",
-)
-"""Options that say how a map is prepared."""
-
 _OTHERWISE = {"rolloff": "roll-off", "cutoff": "cut-off"}
 
 # What follows the word `key` is the name in a case file.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import typer
 
-from asperity.cli.options import PREPARATION, in_options
+from asperity.cli.options import in_options
 from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
@@ -23,6 +23,7 @@ from asperity.units import lengths, quantity
 
 _MOST_FILES = 2
 _PACKED = ".gz"
+_PREPARATION = tuple(field.name for field in fields(Preparation))
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def pair_of(files: tuple[str, str], asked: Treatment) -> Pair:
     InputError
         Where one cannot be used.
     """
-    with in_options(*PREPARATION):
+    with in_options(*_PREPARATION):
         return pair(*(surface(file, asked) for file in files))
 
 
@@ -123,7 +124,7 @@ def _found(
     """The description, and the exit code of an interruption."""
 
     def task(stop: threading.Event, progress: Progress | None) -> Surface | Pair | None:
-        with in_options(*PREPARATION):
+        with in_options(*_PREPARATION):
             return surfaces(tuple(files), asked, progress, stop)
 
     with reporter.watch(compiles=False) as progress:

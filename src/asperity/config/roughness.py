@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -126,16 +127,7 @@ class Roughness(Table):
         # Here, since few cases have files, and SciPy's filters take 0.2 s to import.
         from asperity.surfaces.preparation.prepare import Preparation
 
-        keys = (
-            "missing",
-            "form_removal",
-            "line_levelling",
-            "direction",
-            "degree",
-            "s_filter",
-            "l_filter",
-        )
-        given = {key: getattr(self, key) for key in keys}
+        given = {field.name: getattr(self, field.name) for field in dataclasses.fields(Preparation)}
         return Preparation(**{key: value for key, value in given.items() if value is not None})
 
     @property

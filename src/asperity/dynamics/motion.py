@@ -157,15 +157,9 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     tolerance = tolerance or Tolerance()
     table, reference = prepare(contact, body, tolerance.max_impacts > FEW)
     progress, origin = start(contact, body, table)
+    limits, most = Limits.of(tolerance), tolerance.max_impacts
     end, impacts = integrate_impacts(
-        contact,
-        body,
-        table,
-        reference,
-        origin,
-        progress,
-        Limits.of(tolerance),
-        tolerance.max_impacts,
+        contact, body, table, reference, origin, progress, limits, most
     )
     return Motion(impacts, end, table, reference, origin)
 

@@ -63,17 +63,10 @@ class RoughBounce:
     ) -> None:
         base: Any = relaxation.contact
         self._contact: ElasticContact = base
-        self.relaxation, self.body, self.size, self.ends, self._asked = (
-            relaxation,
-            body,
-            size,
-            ends,
-            asked,
-        )
-        self._rms, self._interaction_range = (
-            float(base.interface.heights.rms),
-            float(base.interaction_range),
-        )
+        self.relaxation, self.body, self.size = relaxation, body, size
+        self.ends, self._asked = ends, asked
+        self._rms = float(base.interface.heights.rms)
+        self._interaction_range = float(base.interaction_range)
         self._rise = np.asarray(_rise(base, np.asarray(size, float)))
         self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
