@@ -158,7 +158,7 @@ def _meniscus(axes: Axes, drawing: Drawing) -> None:
     shown = ("asperity", "meniscus, right", "meniscus, left")
     series = {name: drawing.series[name] for name in shown}
     wide = 1e-9  # both axes alike, so that the shape is true
-    axes.set(xlabel="place [nm]", ylabel="height [nm]")
+    axes.set(xlabel="position [nm]", ylabel="height [nm]")
     right, left = series["meniscus, right"], series["meniscus, left"]
     x, y = series["asperity"]
     outline_x = np.concatenate([left[0], right[0][::-1]]) / wide
@@ -179,7 +179,7 @@ def _bands(axes: Axes, drawing: Drawing) -> None:
     wet, below = drawing.series["summits with a meniscus"]
     flat, bands = drawing.about["edge [m]"], int(drawing.about["bands drawn"])
     wide = 1e-9
-    axes.set(xlabel="place [nm]", ylabel="height [nm]")
+    axes.set(xlabel="position [nm]", ylabel="height [nm]")
     for number, (place, height) in enumerate(zip(wet, below, strict=True)):
         axes.fill_between((place / wide - 0.7, place / wide + 0.7), height / wide, flat / wide,
                           color=colour("central"), alpha=0.5, lw=0.0,

@@ -66,7 +66,7 @@ def _bodies(evidence: Evidence) -> Drawing:
     inside = np.linspace(-1.0, 1.0, 201) * 2.5 * evidence.contact_radius
     return Drawing(
         "Figure 1: sphere and plane, to scale (the publication shows micrographs)",
-        ("place [m]", "height [m]"),
+        ("position [m]", "height [m]"),
         {
             "sphere": (radius * np.sin(angle), radius * (1.0 - np.cos(angle))),
             "sphere near the plane": (inside, deepest + inside**2 / (2.0 * radius)),
@@ -168,7 +168,7 @@ def _meniscus(evidence: Evidence) -> Drawing:
     return Drawing(
         f"Figure 5: a meniscus at {100.0 * _SHOWN_HUMIDITY:g} % relative humidity, and asperities "
         "of a rough surface with those that have one at 100 % by eqs. 13-15",
-        ("place [m]", "height [m]"),
+        ("position [m]", "height [m]"),
         {
             "asperity": (place, gap + place**2 / (2.0 * radius)),
             "meniscus, right": (arc_x, arc_y),
