@@ -611,6 +611,22 @@ def test_the_critical_velocity_is_waited_for_without_dimming(page):
     expect(page.locator("#measures")).to_contain_text("not sought")
 
 
+def test_nothing_is_sought_for_a_case_that_was_cancelled(page):
+    sought = []
+    page.route("**/api/critical", lambda route: sought.append(route))  # no answer to either
+    write(page, "body.radius", "42 um")
+    settled(page)
+    page.route("**/api/explore", lambda route: None)
+    write(page, "body.radius", "43 um")
+    expect(page.locator("#progress-text")).to_have_text("Asking the program …")
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#work")).to_be_hidden()
+    begun = len(sought)
+    page.wait_for_timeout(1000)  # more than twice what the page waits before it seeks
+    assert len(sought) == begun
+    expect(page.locator("#measures")).to_contain_text("not sought")
+
+
 def test_every_bad_field_is_marked_with_its_own_message(page):
     write(page, "body.radius", "-5 um")
     write(page, "capillary.humidity", "1.5")

@@ -99,6 +99,7 @@ export class Design {
   ask(show, since = performance.now()) {
     this.asked += 1;
     this.since = since;
+    this.leave();
     if (this.running && performance.now() - this.running.begun < PATIENT) {
       this.waiting = true; // the newest goes when this one is through
       return;
@@ -137,7 +138,7 @@ export class Design {
         this.running = null;
         this.work = null;
         if (this.waiting) this.send(show);
-        else this.seek(show);
+        else if (!mine.abort.signal.aborted) this.seek(show);
         show("answer");
       }
     }
@@ -147,7 +148,7 @@ export class Design {
   seek(show) {
     clearTimeout(this.seeking);
     this.seeking = setTimeout(async () => {
-      const { answer, shown } = this;
+      const { answer } = this;
       if (!answer || this.refusal || this.running) return;
       const sought = this.sought = { begun: performance.now(), abort: new AbortController() };
       show("work");
@@ -155,11 +156,11 @@ export class Design {
       try {
         found = await posting("/api/critical", JSON.stringify(this.question()), undefined, sought.abort.signal);
       } catch (error) {
-        const note = error.name === "AbortError" ? "not sought" : error.message;
-        found = { critical_velocity: null, critical_velocity_note: note };
+        found = { critical_velocity: null, critical_velocity_note: error.message };
       }
-      if (this.sought === sought) this.sought = null;
-      if (this.shown === shown && this.answer === answer) Object.assign(answer.measures, found);
+      if (this.sought !== sought) return; // left
+      this.sought = null;
+      Object.assign(answer.measures, found);
       show("measures");
     }, CALM);
   }
@@ -175,11 +176,19 @@ export class Design {
     this.answeredSince = since;
   }
 
+  // Seek the critical velocity of the case before no longer.
+  leave() {
+    clearTimeout(this.seeking);
+    this.sought?.abort.abort();
+    this.sought = null;
+    const measures = this.answer?.measures;
+    if (measures && measures.critical_velocity === undefined) Object.assign(measures, { critical_velocity: null, critical_velocity_note: "not sought" });
+  }
+
   cancel() {
     this.waiting = false;
-    clearTimeout(this.seeking);
     this.running?.abort.abort();
-    this.sought?.abort.abort();
+    this.leave();
   }
 
   copy(letter) {
