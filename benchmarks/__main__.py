@@ -18,6 +18,7 @@ import numpy as np
 
 import asperity
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.dynamics import simulate
 from asperity.dynamics.problem import Problem
 from asperity.errors import Tolerance
@@ -98,7 +99,7 @@ def _wet(**changes: object) -> Problem:
         "adhesion.work": "30 mJ/m^2",
         "adhesion.equilibrium_spacing": "0.2 nm",
     }
-    return build(drop.replace({**finer, **changes}))
+    return build(resolve(drop.replace({**finer, **changes})))
 
 
 def _drop(problem: Problem) -> Drop:
@@ -148,7 +149,9 @@ def _one_motion(problem: Problem) -> None:
     _line(f"one warm rigid motion of {2 * made} phases", f"{ours * 1e3:.2f} ms", "10 ms")
     _line("  the SciPy script on the same motion", f"{theirs * 1e3:.0f} ms")
     _line("  ratio", f"{theirs / ours:.0f}")
-    exact = build(asperity.load("published-exact").replace({"counterface.deformation": "rigid"}))
+    exact = build(
+        resolve(asperity.load("published-exact").replace({"counterface.deformation": "rigid"}))
+    )
     go = _flight(200)
     jax.block_until_ready(go(exact.contact, exact.body))
     whole = _best(lambda: jax.block_until_ready(go(exact.contact, exact.body)), 10)
@@ -223,7 +226,7 @@ def _laws() -> None:
 def _publication() -> None:
     """The published case beside the publication's own method, on the same assumptions."""
     case = asperity.load("published")
-    problem = build(case)
+    problem = build(resolve(case))
     go = _flight(16)
     _, made, decrements = jax.block_until_ready(go(problem.contact, problem.body))
     impacts = int(made)
@@ -249,7 +252,7 @@ def _publication() -> None:
     _line("  that of the method without deformation, 64x64", f"{their_error:.1e}")
     _line("  ratio", f"{their_error / our_error:.0e}", "100")
     _convergence("fitted polynomials", problem, converged)
-    printed = build(PRINTED.within(case).replace({"publication.polynomials": "printed"}))
+    printed = build(resolve(PRINTED.within(case).replace({"publication.polynomials": "printed"})))
     decrement = float(go(printed.contact, printed.body)[2][0])
     functions = {"f0": published_method.PRINTED_F0, "f32": published_method.PRINTED_F32}
     _convergence("printed polynomials", printed, decrement, **functions)

@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from asperity.config.resolve import resolve
 from asperity.sweeps.compute.batch import compute
 from asperity.sweeps.compute.runner import in_process
 from asperity.sweeps.study.study import Study, parse
@@ -82,7 +83,9 @@ def _scipy(study: Study) -> float:
     columns, _ = compute(study, 0)
     took = 0.0
     for number in (0, study.task_size - 1):
-        method = published_method.of_problem(build(study.case(number)), points=64, deforms=False)
+        method = published_method.of_problem(
+            build(resolve(study.case(number))), points=64, deforms=False
+        )
         began = time.perf_counter()
         published_method.integrate(method, int(columns["impacts"][number]))
         took += time.perf_counter() - began

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import asperity
+from asperity.config.resolve import resolve
 from asperity.errors import Outcome
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -188,12 +189,12 @@ def test_first_impact_captures_a_jkr_sphere_below_the_critical_velocity(solved):
 def _critical_velocity(case):
     """Speed below which a JKR sphere is captured [m/s]: its kinetic energy is a cycle's loss."""
     work, radius = case.adhesion.work, case.body.radius
-    first, second = case.body_solid, case.counterface_solid
+    first, second = resolve(case).body, resolve(case).counterface
     modulus = 1.0 / (
         (1.0 - first.poisson**2) / first.youngs_modulus
         + (1.0 - second.poisson**2) / second.youngs_modulus
     )
-    mass = case.body_density * 4.0 / 3.0 * 3.141592653589793 * radius**3
+    mass = resolve(case).body.density * 4.0 / 3.0 * 3.141592653589793 * radius**3
     cycle = 7.092196 * (work**5 * radius**4 / modulus**2) ** (1.0 / 3.0)
     return (2.0 * cycle / mass) ** 0.5
 

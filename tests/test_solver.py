@@ -10,6 +10,7 @@ import pytest
 
 import asperity
 from asperity import InputError, Outcome, SimulationError, integration, solver
+from asperity.config.resolve import resolve
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -162,7 +163,7 @@ def test_a_ledger_that_does_not_close_is_said(case, monkeypatch):
     closed = solver.solve(wide)
     assert closed.ledger["energy_balance_error"] < 1e-6
     assert not any("ledger" in line for line in closed.warnings)
-    problem = solver.build(wide)
+    problem = solver.build(resolve(wide))
     coarse = dataclasses.replace(
         problem.contact, resolved=problem.contact.resolved._replace(nodes=3, pieces=1)
     )

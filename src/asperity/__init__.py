@@ -5,7 +5,7 @@
 >>> case.body.radius
 5e-05
 
-A case: `load`, `Case`.
+A case: `load`, `Case`; its physical quantities: `resolve` -> `Inputs`.
 What it does: `solve` -> `Result`, `curve` -> `Curve`, `restitution_curve` -> `RestitutionCurve`.
 Many cases: `sweep`, and `open_study` for the store of a study.
 Files: `read` a record. The publication: `reproduce` -> `Reproduction`.
@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from .config import Case
     from .dynamics import Body, simulate
     from .errors import InputError, Outcome, SimulationError, Tolerance
+    from .inputs import Inputs
     from .publication.reproduce import Reproduction, reproduce
+    from .results.case_source import CaseLike
     from .results.measures import measure
     from .results.read_record import read
     from .results.result import Curve, Result
@@ -42,6 +44,7 @@ _HOMES = {
     "Case": "config",
     "Curve": "results.result",
     "InputError": "errors",
+    "Inputs": "inputs",
     "Outcome": "errors",
     "Reproduction": "publication.reproduce",
     "RestitutionCurve": "sweeps.restitution_curve",
@@ -64,6 +67,7 @@ __all__ = [
     "Case",
     "Curve",
     "InputError",
+    "Inputs",
     "Outcome",
     "Reproduction",
     "RestitutionCurve",
@@ -76,6 +80,7 @@ __all__ = [
     "open_study",
     "read",
     "reproduce",
+    "resolve",
     "restitution_curve",
     "simulate",
     "solve",
@@ -100,6 +105,25 @@ def load(source: str | os.PathLike[str]) -> Case:
     from .results.case_source import source_of
 
     return source_of(source).case
+
+
+def resolve(case: CaseLike) -> Inputs:
+    """Every physical quantity of a case: contact modulus, mass, Kelvin radius, law in use.
+
+    Parameters
+    ----------
+    case
+        A case, or the name or path of one; see :func:`load`.
+
+    Raises
+    ------
+    InputError
+        If it is no case, or a file of its surfaces cannot be used.
+    """
+    from .config.resolve import resolve as of_case
+    from .results.case_source import case_of
+
+    return of_case(case_of(case))
 
 
 def __dir__() -> list[str]:

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ._jax import jax, jnp
-from .config import Case
 from .contact import Contact, ElasticContact, RigidContact
 from .contact.delayed_formation import DelayedContact
 from .contact.resolution import in_steps
@@ -62,7 +61,6 @@ def _in_steps(contact: Contact) -> Contact:
 
 
 def integrate(
-    case: Case,
     problem: Problem,
     report: Report,
     stop: threading.Event | None,
@@ -73,8 +71,8 @@ def integrate(
 
     Parameters
     ----------
-    case, problem
-        A case, and what was built from it.
+    problem
+        What was built from a case.
     report
         Called with a fraction done and a line of text, now and then.
     stop
@@ -90,10 +88,8 @@ def integrate(
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
-    limits = Limits.of(case.tolerance)
-    problem, (contact, table, reference) = _released(
-        case, problem, limits, report, drawn=True, many=many
-    )
+    limits = Limits.of(problem.inputs.tolerance)
+    problem, (contact, table, reference) = _released(problem, limits, report, drawn=True, many=many)
     return integrate_prepared(problem, contact, (table, reference), limits, report, stop)
 
 
@@ -126,13 +122,13 @@ def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table
     return _preparing(contact, many)(contact, body, many)
 
 
-def first_impact(case: Case, problem: Problem, report: Report = silently) -> tuple[Contact, Motion]:
+def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, Motion]:
     """The contact with its curves, and the motion as far as the first impact.
 
     Parameters
     ----------
-    case, problem
-        A case, and what was built from it.
+    problem
+        What was built from a case.
     report
         As ``progress`` of :func:`solve`.
 
@@ -141,8 +137,8 @@ def first_impact(case: Case, problem: Problem, report: Report = silently) -> tup
     InputError, SimulationError
         As :func:`solve`.
     """
-    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1))
-    problem, (contact, table, reference) = _released(case, problem, limits, report, drawn=False)
+    limits = Limits.of(dataclasses.replace(problem.inputs.tolerance, max_impacts=1))
+    problem, (contact, table, reference) = _released(problem, limits, report, drawn=False)
     body = problem.body
     report(0.3, "first impact")
     first, origin = _start(contact, body, table)
@@ -154,16 +150,19 @@ def first_impact(case: Case, problem: Problem, report: Report = silently) -> tup
 
 
 def _released(
-    case: Case, problem: Problem, limits: Limits, report: Report, *, drawn: bool, many: bool = False
+    problem: Problem, limits: Limits, report: Report, *, drawn: bool, many: bool = False
 ) -> tuple[Problem, tuple[Contact, Table, Reference]]:
     """A problem whose body is released outside contact, and its curves.
 
     Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
     without an [impact] table is not released by its user.
     """
-    chosen = case.impact is not None and case.impact.release_separation is None
+    inputs = problem.inputs
+    chosen = inputs.chosen_release
     for _ in range(TRIES):
-        curves = _prepared(problem, case.numerics.tolerance, limits, report, drawn=drawn, many=many)
+        curves = _prepared(
+            problem, inputs.tolerance.relative, limits, report, drawn=drawn, many=many
+        )
         if not chosen:
             break
         body, table = problem.body, curves[1]
@@ -173,7 +172,7 @@ def _released(
             break
         release = farther(np.asarray(body.release), force, power, limit)
         problem = problem._replace(body=dataclasses.replace(body, release=jnp.asarray(release)))
-    if case.impact is not None:
+    if inputs.release is not None:
         _check_release(problem, curves[1], chosen=chosen, many=many)
     return problem, curves
 

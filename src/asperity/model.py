@@ -1,15 +1,14 @@
-"""A case as physical objects: laws, interface, contact and body."""
+"""Physical objects of the inputs: laws, interface, contact and body."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from .config.plastic_law import plastic_contact, smooth_contact
 from .contact import (
     Contact,
     ElasticContact,
@@ -26,11 +25,12 @@ from .dynamics import Body
 from .dynamics.gas_film import SqueezeFilm
 from .dynamics.problem import CLEARANCE, Problem
 from .dynamics.wave_radiation import WaveRadiation
+from .errors import InputError
+from .inputs import Asperities, Inputs
 from .interface.interface import Interface
 from .interface.layers import Layers, Surfaces
 from .interface.measured_summits import loss_error, measured_surface
 from .interface.plastic_interface import PlasticInterface
-from .interface.radius_classes import CLASSES
 from .laws import (
     Bradley,
     ByContact,
@@ -46,188 +46,189 @@ from .laws import (
     Meniscus,
     PublishedPressure,
 )
-from .laws.adhesion_choice import AdhesionChoice
 from .laws.law import Sum
 from .laws.liquid.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from .laws.liquid.meniscus import Formation
+from .laws.plastic import (
+    AdhesiveThorntonNing,
+    JacksonGreen,
+    KogutEtsion,
+    PlasticContact,
+    ThorntonNing,
+)
 from .laws.published_pressures import FINE
-from .materials.solids import contact_modulus
-from .regimes import choose_adhesion, tabor_number
 from .surfaces.heights import Gaussian
 
-if TYPE_CHECKING:
-    from .config.adhesion_tables import Adhesion
-    from .config.asperities import Asperities
-    from .config.publication import Publication
-    from .config.schema import Case
 
-
-def build(case: Case, resolved: Resolution | None = None) -> Problem:
-    """The objects that a case describes.
+def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
+    """The objects of physics that inputs describe.
 
     Parameters
     ----------
-    case
-        The case.
+    inputs
+        The quantities of a case.
     resolved
         How finely the curves of a rough contact are cut; by default as its forces ask for.
 
     Raises
     ------
     InputError
-        If two laws contain the same force.
+        If two laws contain the same force, or adhesion alone makes the body yield.
     """
-    modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    rough = case.asperities
-    tip = case.body.radius if rough is None else rough.asperity_radius
-    adhesion = _adhesion(case, tip, modulus)
-    contact: Contact
-    if rough is None and case.plasticity_model != "none":
-        beside = _beside(case, adhesion.law, tip, tip)
-        contact = SmoothPlasticContact(smooth_contact(case, modulus), Sum(beside))
-    elif rough is None:
-        contact = SmoothContact(_law(case, adhesion.law, tip, modulus))
-    elif case.publication is not None:
-        contact = _published(case, rough, case.publication, modulus)
-    else:
-        interface = _interface(case, rough, adhesion.law, modulus)
-        shape = Sphere(case.body.radius)
-        if case.counterface.deformation == "rigid":
-            contact = RigidContact(interface, shape, resolved)
-        else:
-            contact = ElasticContact(interface, shape, modulus, case.numerics.rings, resolved)
-    mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    body = Body(mass, 0.0, contact.interaction_range + CLEARANCE)
-    if (impact := case.impact) is not None:
-        release = body.release if impact.release_separation is None else impact.release_separation
-        speed = impact.speed or 0.0
-        body = Body(mass, impact.gravity, release, speed, _film(case), _waves(case))
-    delayed, off = _delayed(case, contact), _class_error(case, adhesion.law, modulus)
-    relaxation = _creep(case, contact)
-    contact = contact if relaxation is None else relaxation.relaxed()
-    return Problem(contact, body, modulus, tip, adhesion, delayed, off, relaxation)
+    contact = _contact(inputs, resolved)
+    body = Body(inputs.mass, 0.0, contact.interaction_range + CLEARANCE)
+    if (let_go := inputs.release) is not None:
+        release = body.release if let_go.separation is None else let_go.separation
+        film, waves = _film(inputs), _waves(inputs)
+        body = Body(inputs.mass, let_go.gravity, release, let_go.speed, film, waves)
+    delayed, relaxation = _delayed(inputs, contact), None
+    if inputs.structure.viscoelastic:
+        relaxation = Relaxation(contact, inputs.relaxed_modulus_ratio, inputs.relaxation_time)
+        contact = relaxation.relaxed()
+    return Problem(contact, body, inputs, delayed, _class_error(inputs), relaxation)
 
 
-def _creep(case: Case, contact: Contact) -> Relaxation | None:
-    """How the bulk under a contact creeps, if it does."""
-    table = case.viscoelasticity
-    if table is None or table.model == "none":
-        return None
-    ratio, time = _given(table.relaxed_modulus_ratio), _given(table.relaxation_time)
-    return Relaxation(contact, ratio, time)
+def _contact(inputs: Inputs, resolved: Resolution | None) -> Contact:
+    rough = inputs.asperities
+    if rough is None and inputs.yields:
+        return SmoothPlasticContact(_smooth_plastic(inputs), Sum(_beside(inputs, inputs.radius)))
+    if rough is None:
+        return SmoothContact(_law(inputs, inputs.radius))
+    if inputs.published is not None:
+        return _published(inputs, rough)
+    interface, shape = _interface(inputs, rough), Sphere(inputs.radius)
+    if inputs.structure.deformation == "rigid":
+        return RigidContact(interface, shape, resolved)
+    return ElasticContact(interface, shape, inputs.modulus, inputs.tolerance.rings, resolved)
 
 
-def _class_error(case: Case, adhesion: str, modulus: float) -> float:
+def plastic_law(inputs: Inputs, name: str) -> PlasticContact:
+    """The law of one contact that yields, without adhesion, by its name in a case.
+
+    Parameters
+    ----------
+    inputs
+        The quantities of a case in which the strength of a solid is known.
+    name
+        "kogut-etsion", "jackson-green" or "thornton-ning".
+    """
+    soft, tip, modulus = inputs.yielding, inputs.tip_radius, inputs.modulus
+    assert soft is not None
+    if name == "kogut-etsion":
+        return KogutEtsion(tip, modulus, soft.hardness, soft.poisson)
+    if name == "jackson-green":
+        return JacksonGreen(tip, modulus, soft.yield_strength, soft.poisson)
+    return ThorntonNing(tip, modulus, soft.yield_pressure)
+
+
+def _smooth_plastic(inputs: Inputs) -> PlasticContact | AdhesiveThorntonNing:
+    """The law of a smooth body, with JKR's adhesion in it where that is asked for."""
+    if inputs.structure.adhesion != "jkr":
+        return plastic_law(inputs, inputs.structure.plasticity)
+    assert inputs.yielding is not None
+    radius, modulus = inputs.radius, inputs.modulus
+    work, pressure = inputs.work_of_adhesion, inputs.yielding.yield_pressure
+    law = AdhesiveThorntonNing(radius, modulus, work, pressure)
+    if float(law.yield_overlap) < 0.0:
+        least = (2.0 * work * modulus**2 / (pi**2 * radius)) ** (1.0 / 3.0)
+        raise InputError(
+            f"`yield_pressure` must be at least {least / 1e6:.4g} MPa, or the body yields by "
+            "adhesion alone before it is pressed, which the law does not describe; got "
+            f"{pressure / 1e6:.4g} MPa",
+            key="plasticity.yield_pressure",
+        )
+    return law
+
+
+def _class_error(inputs: Inputs) -> float:
     """Relative error of classes of tip radius in the work of bonds; 0 without classes."""
-    rough, table = case.asperities, case.roughness
-    if rough is None or rough.summits is None or table is None or table.source != "summits":
+    rough = inputs.asperities
+    if rough is None or rough.summits is None or inputs.structure.heights != "summits":
         return 0.0
     radii = rough.summits.radii
-    make = _law_of_radius(case, adhesion, modulus, radii)
-    return loss_error(make, radii, table.radius_classes or CLASSES)
+    return loss_error(_law_of_radius(inputs, radii), radii, inputs.radius_classes)
 
 
-def _law_of_radius(
-    case: Case, adhesion: str, modulus: float, radii: np.ndarray
-) -> Callable[[Any], Law]:
+def _law_of_radius(inputs: Inputs, radii: np.ndarray) -> Callable[[Any], Law]:
     """The laws of one asperity of any of the radii [m]."""
     smallest = float(radii.min())
-    return lambda radius: _law(case, adhesion, radius, modulus, smallest)
+    return lambda radius: _law(inputs, radius, smallest)
 
 
-def _delayed(case: Case, contact: Contact) -> DelayedContact | None:
+def _delayed(inputs: Inputs, contact: Contact) -> DelayedContact | None:
     """The contact with the formation time of its menisci, if they take any."""
-    time = case.capillary.formation_time
-    if not time or LATE not in contact.mechanisms:
+    if not inputs.formation_time or LATE not in contact.mechanisms:
         return None
     assert isinstance(contact, RigidContact | ElasticContact | SmoothContact)
-    return DelayedContact(contact, time)
+    return DelayedContact(contact, inputs.formation_time)
 
 
-def _interface(case: Case, rough: Asperities, adhesion: str, modulus: float) -> Surfaces:
+def _interface(inputs: Inputs, rough: Asperities) -> Surfaces:
     """Asperities between two planes, and liquid on the surface if it is not on them."""
-    asperities = _asperities(case, rough, adhesion, modulus)
-    air, liquid = case.capillary, case.liquid
-    if air.model != "kelvin-filling" or liquid is None or case.liquid_radius == 0.0:
+    asperities = _asperities(inputs, rough)
+    if inputs.structure.liquid != "kelvin-filling":
         return asperities
-    angle = _given(air.contact_angle)
-    filling = KelvinFilling(liquid.tension, angle, case.liquid_radius, _formation(case))
-    rms = rough.surface_rms_height or _given(air.surface_rms_height)
-    liquid_layer = Interface(filling, Gaussian(rms), 1.0)
+    assert inputs.liquid is not None
+    tension, angle, radius = inputs.liquid.tension, inputs.contact_angle, inputs.liquid_radius
+    filling = KelvinFilling(tension, angle, radius, _formation(inputs))
+    liquid_layer = Interface(filling, Gaussian(inputs.surface_rms_height), 1.0)
     if isinstance(asperities, Layers):
         return Layers((*asperities.parts, liquid_layer))
     return Layers((asperities, liquid_layer))
 
 
-def _asperities(case: Case, rough: Asperities, adhesion: str, modulus: float) -> Surfaces:
+def _asperities(inputs: Inputs, rough: Asperities) -> Surfaces:
     """The asperities: of one radius and Gaussian heights, or those that were measured."""
-    table, summits = case.roughness, rough.summits
-    assert table is not None
-    if summits is None or table.source != "summits":
-        law = _law(case, adhesion, rough.asperity_radius, modulus)
+    summits = rough.summits
+    if summits is None or inputs.structure.heights != "summits":
         heights = Gaussian(rough.rms_height, rough.mean_height)
-        if case.plasticity_model != "none":
-            tip = rough.asperity_radius
-            beside, yields = _beside(case, adhesion, tip, tip), plastic_contact(case, tip, modulus)
-            return PlasticInterface(yields, Sum(beside), heights, rough.asperity_density)
-        return Interface(law, heights, rough.asperity_density)
+        if inputs.yields:
+            law = plastic_law(inputs, inputs.structure.plasticity)
+            beside = Sum(_beside(inputs, rough.asperity_radius))
+            return PlasticInterface(law, beside, heights, rough.asperity_density)
+        return Interface(_law(inputs, rough.asperity_radius), heights, rough.asperity_density)
     return measured_surface(
-        _law_of_radius(case, adhesion, modulus, summits.radii),
+        _law_of_radius(inputs, summits.radii),
         summits.heights,
         summits.radii,
         rough.asperity_density,
         radius=rough.asperity_radius,
-        classes=table.radius_classes or CLASSES,
+        classes=inputs.radius_classes,
     )
 
 
-def _adhesion(case: Case, tip: float, modulus: float) -> AdhesionChoice:
-    """The law of adhesion that the case names, or the one that holds where it leaves the choice."""
-    given = case.adhesion
-    if given.model != "auto":
-        return AdhesionChoice(given.model)
-    return choose_adhesion(
-        tabor_number(tip, _given(given.work), modulus, _given(given.equilibrium_spacing))
-    )
-
-
-def _film(case: Case) -> SqueezeFilm | None:
+def _film(inputs: Inputs) -> SqueezeFilm | None:
     """The gas in the gap; None in a vacuum."""
-    gas = case.gas
+    gas = inputs.gas
     if gas is None:
         return None
-    closest = gas.cutoff_separation
-    if closest is None:
-        assert case.asperities is not None
-        closest = case.asperities.rms_height
-    return SqueezeFilm(case.body.radius, gas.film_viscosity, gas.film_slip_length, closest)
+    return SqueezeFilm(inputs.radius, gas.viscosity, gas.slip_length, gas.cutoff_separation)
 
 
-def _waves(case: Case) -> WaveRadiation | None:
+def _waves(inputs: Inputs) -> WaveRadiation | None:
     """What the contact radiates into the counterface; None where that is left out."""
-    if case.waves is None or case.waves.model == "none":
+    if not inputs.structure.waves:
         return None
-    solid = case.counterface_solid
-    return WaveRadiation.into(solid.youngs_modulus, solid.poisson, _given(solid.density))
+    solid = inputs.counterface
+    assert solid.density is not None
+    return WaveRadiation.into(solid.youngs_modulus, solid.poisson, solid.density)
 
 
-def _published(
-    case: Case, rough: Asperities, assumed: Publication, modulus: float
-) -> PublishedContact:
+def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:
     """The contact that the publication assumes."""
-    liquid, kelvin_radius = case.liquid, case.kelvin_radius
-    tension, interaction_range = 0.0, None
-    if liquid is not None and kelvin_radius > 0.0:
-        cosine = np.cos(_given(case.capillary.contact_angle))
-        tension = assumed.capillary_factor * liquid.tension * cosine
-        interaction_range = None if np.isinf(kelvin_radius) else 2.0 * kelvin_radius * cosine
-    work = _given(case.adhesion.work) if case.adhesion.model != "none" else 0.0
+    assumed, tension, interaction_range = inputs.published, 0.0, None
+    assert assumed is not None
+    if inputs.liquid is not None:
+        cosine = np.cos(inputs.contact_angle)
+        tension = assumed.capillary_factor * inputs.liquid.tension * cosine
+        unbounded = np.isinf(inputs.kelvin_radius)
+        interaction_range = None if unbounded else 2.0 * inputs.kelvin_radius * cosine
     pressure = PublishedPressure(
         density=rough.asperity_density,
         radius=rough.asperity_radius,
         rms_height=rough.rms_height,
-        modulus=modulus,
-        work_of_adhesion=work,
+        modulus=inputs.modulus,
+        work_of_adhesion=inputs.work_of_adhesion,
         tension=tension,
         edge=assumed.conjunction_ends,
         interaction_range=interaction_range,
@@ -238,56 +239,49 @@ def _published(
         bands=assumed.bands,
     )
     return PublishedContact(
-        pressure, Sphere(case.body.radius), float(assumed.attraction_during_retraction_only)
+        pressure, Sphere(inputs.radius), float(assumed.attraction_during_retraction_only)
     )
 
 
-def _law(case: Case, model: str, tip: float, modulus: float, smallest: float | None = None) -> Law:
+def _law(inputs: Inputs, tip: float, smallest: float | None = None) -> Law:
     """The laws of one asperity, side by side; ``smallest`` is the least radius [m] among all."""
-    adhesion: Adhesion = case.adhesion
+    model, work, modulus = inputs.structure.adhesion, inputs.work_of_adhesion, inputs.modulus
     contact: Law = Hertz(tip, modulus)
     if model == "jkr":
-        contact = Jkr(tip, modulus, _given(adhesion.work))
+        contact = Jkr(tip, modulus, work)
     elif model == "maugis":
-        contact = Maugis(tip, modulus, _given(adhesion.work), _given(adhesion.equilibrium_spacing))
-    beside = _beside(case, model, tip, smallest or tip)
+        contact = Maugis(tip, modulus, work, inputs.equilibrium_spacing)
+    beside = _beside(inputs, tip, smallest)
     return Sum([contact, *beside]) if beside else contact
 
 
-def _beside(case: Case, model: str, tip: float, smallest: float) -> list[Law]:
+def _beside(inputs: Inputs, tip: float, smallest: float | None = None) -> list[Law]:
     """The laws of one asperity that act beside its contact."""
-    adhesion = case.adhesion
-    menisci = _menisci(case, tip, smallest)
+    model, work = inputs.structure.adhesion, inputs.work_of_adhesion
+    menisci = _menisci(inputs, tip, smallest or tip)
     if model == "dmt":
-        return [Dmt(tip, _given(adhesion.work)), *menisci]
+        return [Dmt(tip, work), *menisci]
     if model == "bradley":
-        return [Bradley(tip, _given(adhesion.work), _given(adhesion.equilibrium_spacing)), *menisci]
+        return [Bradley(tip, work, inputs.equilibrium_spacing), *menisci]
     return menisci
 
 
-def _menisci(case: Case, tip: float, smallest: float) -> list[Law]:
+def _menisci(inputs: Inputs, tip: float, smallest: float) -> list[Law]:
     """The meniscus of one asperity, or of the smooth body; none where liquid is on the surface."""
-    air, liquid, liquid_radius = case.capillary, case.liquid, case.liquid_radius
-    if liquid is None or liquid_radius == 0.0:
+    if inputs.liquid is None:
         return []
-    angle = _given(air.contact_angle)
-    if air.model == "constant-volume":
-        formation = _formation(case)
-        bridge = ConstantVolume(tip, liquid.tension, angle, liquid_radius, formation)
-        volume = pi * smallest * case.liquid_span**2
+    model, formation = inputs.structure.liquid, _formation(inputs)
+    tension, angle, radius = inputs.liquid.tension, inputs.contact_angle, inputs.liquid_radius
+    if model == "constant-volume":
+        bridge = ConstantVolume(tip, tension, angle, radius, formation)
+        volume = pi * smallest * inputs.liquid_span**2
         tested = volume <= EDGE_HOLDS * smallest**3 and angle <= EDGE_ANGLE
         edge = tested and isinstance(formation, ByContact)
         return [dataclasses.replace(bridge, edge=edge)]
-    if air.model == "kelvin-filling" and case.roughness is not None:
+    if model == "kelvin-filling" and inputs.asperities is not None:
         return []
-    return [Meniscus(tip, liquid.tension, angle, liquid_radius, _formation(case))]
+    return [Meniscus(tip, tension, angle, radius, formation)]
 
 
-def _formation(case: Case) -> Formation:
-    return ByContact() if case.capillary.formation == "on-contact" else ByKelvinGap()
-
-
-def _given(value: float | None) -> float:
-    """A value that the schema requires with the model in use."""
-    assert value is not None
-    return value
+def _formation(inputs: Inputs) -> Formation:
+    return ByContact() if inputs.structure.formation == "on-contact" else ByKelvinGap()

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import threading
 from typing import Any
 
 from .config import Case
+from .config.resolve import resolve
 from .critical_velocity import sought
 from .dynamics import Limits
 from .dynamics.problem import Problem
 from .dynamics.quasi_static import quasi_static_curve
 from .errors import InputError, Outcome, SimulationError
+from .inputs import Inputs
 from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
@@ -58,12 +59,12 @@ def solve(
     case = case_of(case)
     name = case.name if name is None else name
     _ = case.launch
-    report, problem = progress or silently, build(case)
-    solution = integrate(case, problem, report, stop)
+    report, problem = progress or silently, build(resolve(case))
+    solution = integrate(problem, report, stop)
     result = _told(case, name, problem, solution, report, None)
     if critical:
         report(0.92, "critical velocity")
-        result.measures.update(sought(solution, problem, Limits.of(case.tolerance), stop))
+        result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
     report(1.0, "done")
     if solution.outcome is Outcome.FAILED and throw:
         raise SimulationError(_failure(case), result)
@@ -97,8 +98,8 @@ def explore(
         As :func:`solve`.
     """
     _ = case.launch
-    report, problem = progress or silently, cut_in_steps(build(case))
-    solution = integrate(case, problem, report, stop, many=True)
+    report, problem = progress or silently, cut_in_steps(build(resolve(case)))
+    solution = integrate(problem, report, stop, many=True)
     result = _told(case, name, problem, solution, report, most)
     if solution.outcome is Outcome.FAILED:
         raise SimulationError(_failure(case), result)
@@ -132,11 +133,10 @@ def critical_velocity(
         As :func:`solve`.
     """
     _ = case.launch
-    numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
-    case = case.model_copy(update={"numerics": numerics})
-    report, problem = progress or silently, cut_in_steps(build(case))
-    solution = integrate(case, problem, report, stop, many=True)
-    return sought(solution, problem, Limits.of(case.tolerance), stop, many=True)
+    inputs = resolve(case).first_impact()
+    report, problem = progress or silently, cut_in_steps(build(inputs))
+    solution = integrate(problem, report, stop, many=True)
+    return sought(solution, problem, Limits.of(inputs.tolerance), stop, many=True)
 
 
 def _told(
@@ -145,7 +145,7 @@ def _told(
     """The result of a motion."""
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
-    elastic = None if stopped else _kept_elastic(case, lambda _, text: report(0.9, text))
+    elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
     return result_of(case, name, problem, solution, elastic, most)
 
 
@@ -184,22 +184,21 @@ def curve(
     """
     case = case_of(case)
     name = case.name if name is None else name
-    problem, report = build(case), progress or silently
+    inputs, report = resolve(case), progress or silently
     if load is None and depth is None:
         _ = case.launch
-        return _curve_of(case, name, problem, report)
-    problem, still = turning_at(problem, load=load, depth=depth), ("impact", "gas", "waves")
-    motionless = case.model_copy(update=dict.fromkeys(still))
-    return dataclasses.replace(_curve_of(motionless, name, problem, report), case=case)
+        return _curve_of(case, name, build(inputs), report)
+    problem = turning_at(build(inputs.at_rest()), load=load, depth=depth)
+    return _curve_of(case, name, problem, report)
 
 
 def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     """The curve of what was built from a case."""
-    contact, motion = first_impact(case, problem, report)
-    warnings = assessment_of(case, name, problem, contact, motion).warnings
+    contact, motion = first_impact(problem, report)
+    warnings = assessment_of(name, problem, contact, motion).warnings
     report(0.6, "unloading")
     drawn, held = quasi_static_curve(contact, motion.table, motion.impacts)
-    warnings += pull_warnings(case, drawn["pull_off"], held)
+    warnings += pull_warnings(problem.inputs, drawn["pull_off"], held)
     report(1.0, "done")
     return Curve(case, name, **drawn, warnings=warnings)
 
@@ -224,23 +223,22 @@ def assess(
         As :func:`solve`.
     """
     _, report = case.launch, progress or silently
-    problem = build(case)
-    contact, motion = first_impact(case, problem, report)
+    problem = build(resolve(case))
+    contact, motion = first_impact(problem, report)
     report(1.0, "done")
-    return assessment_of(case, name, problem, contact, motion)
+    return assessment_of(name, problem, contact, motion)
 
 
-def _kept_elastic(case: Case, report: Report) -> float | None:
+def _kept_elastic(inputs: Inputs, report: Report) -> float | None:
     """Restitution of the first impact of a case that yields, were nothing in it to yield.
 
     NaN where it cannot be computed, None where it has none or nothing yields.
     """
-    if case.plasticity_model == "none":
+    if not inputs.yields:
         return None
-    elastic = case.model_copy(update={"plasticity": None})
-    problem = cut_in_steps(build(elastic))
+    problem = cut_in_steps(build(inputs.elastic()))
     try:
-        contact, motion = first_impact(elastic, problem, report)
+        contact, motion = first_impact(problem, report)
     except (InputError, SimulationError):
         return math.nan  # it may be released within contact, or pull too hard to be solved
     return first_restitution(Solution(motion, contact, Outcome.MAX_IMPACTS), problem.body)

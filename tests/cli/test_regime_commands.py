@@ -17,6 +17,7 @@ import asperity
 from asperity import solver
 from asperity.cli import app
 from asperity.config import Case
+from asperity.config.resolve import resolve
 from asperity.plots import adhesion_map
 from asperity.regimes import Frame, Place
 from asperity.results.read_record import read
@@ -123,10 +124,10 @@ def test_load_of_a_fast_smooth_sphere_is_that_of_hertzs_impact():
     """Energy m v^2/2 = (8/15) E* sqrt(R) delta^2.5, force (4/3) E* sqrt(R) delta^1.5."""
     case = smooth(adhesion__model="dmt", impact__speed="50 m/s")
     shown = strict(call("regime", written("fast.toml", case), "--json").stdout)["regime"]
-    first, second = case.body_solid, case.counterface_solid
+    first, second = resolve(case).body, resolve(case).counterface
     modulus = asperity.materials.contact_modulus(first, second)
     radius, work = case.body.radius, case.adhesion.work
-    energy = 0.5 * case.body_density * 4.0 / 3.0 * math.pi * radius**3 * 50.0**2
+    energy = 0.5 * resolve(case).body.density * 4.0 / 3.0 * math.pi * radius**3 * 50.0**2
     depth = (15.0 / 8.0 * energy / (modulus * math.sqrt(radius))) ** 0.4
     force = 4.0 / 3.0 * modulus * math.sqrt(radius) * depth**1.5
     expected = force / (math.pi * work * radius)

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ValidationError
 from asperity import config as case_room
 from asperity.config import BUILTINS, FIRST, Body, Case, builtin, load, load_file, template
 from asperity.config.problems import tables_of
+from asperity.config.resolve import resolve
 from asperity.config.roughness import NUMBERS
 from asperity.errors import InputError, Tolerance
 from asperity.materials.solids import LIQUIDS, SOLIDS, kelvin_radius
@@ -63,10 +64,10 @@ def test_the_published_case_is_the_one_of_the_publication():
         9.81,
     )
     assert case.counterface.deformation == "half-space"
-    assert case.body_solid == SOLIDS["silica"]
-    assert case.counterface_solid == SOLIDS["silicon carbide"]
-    assert case.body_density == 2200.0
-    assert case.tolerance == Tolerance()
+    assert resolve(case).body == SOLIDS["silica"]
+    assert resolve(case).counterface == SOLIDS["silicon carbide"]
+    assert resolve(case).body.density == 2200.0
+    assert resolve(case).tolerance == Tolerance()
 
 
 def test_a_case_needs_little_and_has_neither_roughness_nor_adhesion_nor_water_by_default():
@@ -74,8 +75,8 @@ def test_a_case_needs_little_and_has_neither_roughness_nor_adhesion_nor_water_by
     assert case.roughness is None
     assert case.adhesion.model == "none"
     assert case.capillary.model == "none"
-    assert case.liquid is None
-    assert case.kelvin_radius == 0.0
+    assert resolve(case).liquid is None
+    assert resolve(case).kelvin_radius == 0.0
     assert case.output.motion
     assert case.output.pictures
     assert case.output.directory is None
@@ -83,23 +84,23 @@ def test_a_case_needs_little_and_has_neither_roughness_nor_adhesion_nor_water_by
 
 def test_the_liquid_has_the_tension_of_the_cases_temperature():
     case = load(altered('"20 degC"', '"40 degC"'))
-    assert case.liquid == LIQUIDS["water"].at(313.15)
-    assert case.kelvin_radius == kelvin_radius(case.liquid, 0.6, 313.15)
+    assert resolve(case).liquid == LIQUIDS["water"].at(313.15)
+    assert resolve(case).kelvin_radius == kelvin_radius(resolve(case).liquid, 0.6, 313.15)
 
 
 def test_the_case_can_set_its_own_tension_and_molar_volume():
     own = TEMPLATE.replace("# tension", "tension")
-    assert load(own).liquid.tension == 0.075
-    assert load(own).liquid.molar_volume == LIQUIDS["water"].molar_volume
+    assert resolve(load(own)).liquid.tension == 0.075
+    assert resolve(load(own)).liquid.molar_volume == LIQUIDS["water"].molar_volume
     own = own.replace("# molar_volume", "molar_volume").replace('"20 degC"', '"-10 degC"')
-    assert load(own).liquid.molar_volume == 1.805e-5
-    assert load(own).liquid.molecule_size == LIQUIDS["water"].molecule_size
-    other = load(own.replace('"water"', '"my oil"')).liquid
+    assert resolve(load(own)).liquid.molar_volume == 1.805e-5
+    assert resolve(load(own)).liquid.molecule_size == LIQUIDS["water"].molecule_size
+    other = resolve(load(own.replace('"water"', '"my oil"'))).liquid
     assert (other.name, other.tension) == ("my oil", 0.075)
 
 
 def test_dry_air_is_a_humidity_of_zero():
-    assert load(altered("humidity = 0.6", "humidity = 0")).kelvin_radius == 0.0
+    assert resolve(load(altered("humidity = 0.6", "humidity = 0"))).kelvin_radius == 0.0
 
 
 def test_a_material_of_ones_own_by_table_or_in_place():
@@ -107,17 +108,17 @@ def test_a_material_of_ones_own_by_table_or_in_place():
         '[materials."my glass"]\nyoungs_modulus = "70 GPa"\npoisson = 0.2\ndensity = "2.5 g/cc"\n'
     )
     case = load(SMALL.replace('"silica"', '"my glass"') + table)
-    assert case.body_solid.name == "my glass"
-    assert (case.body_solid.youngs_modulus, case.body_density) == (70e9, 2500.0)
+    assert resolve(case).body.name == "my glass"
+    assert (resolve(case).body.youngs_modulus, resolve(case).body.density) == (70e9, 2500.0)
     in_place = 'youngs_modulus = "1 GPa"\npoisson = 0.3'
     case = load(SMALL.replace('material = "silicon"', in_place))
-    assert case.counterface_solid.youngs_modulus == 1e9
-    assert case.counterface_solid.density is None
+    assert resolve(case).counterface.youngs_modulus == 1e9
+    assert resolve(case).counterface.density is None
 
 
 def test_ones_own_table_comes_before_the_catalogue():
     table = '[materials.silica]\nyoungs_modulus = "1 GPa"\npoisson = 0.2\ndensity = "1 g/cc"\n'
-    assert load(SMALL + table).body_solid.youngs_modulus == 1e9
+    assert resolve(load(SMALL + table)).body.youngs_modulus == 1e9
 
 
 def test_jkr_needs_no_range():

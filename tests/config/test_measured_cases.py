@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 import asperity
 from asperity.cli import app
 from asperity.config import load, load_file, template
+from asperity.config.resolve import resolve
 from asperity.errors import InputError, Outcome
 from asperity.model import build
 from asperity.regimes.validity import CLASSED, _one_law
@@ -91,11 +92,14 @@ def changed(case, **changes):
 def test_files_of_a_case_are_looked_for_in_its_folder(folder, case, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     assert case.roughness.files == [str(folder / "surface.nc")]
-    assert load_file(folder / "case.toml").asperities.summits.count == case.asperities.summits.count
+    assert (
+        resolve(load_file(folder / "case.toml")).asperities.summits.count
+        == resolve(case).asperities.summits.count
+    )
 
 
 def test_a_case_has_the_summits_of_its_levelled_map(case):
-    found, rough = find_summits(prepared(MADE, Preparation()).topography), case.asperities
+    found, rough = find_summits(prepared(MADE, Preparation()).topography), resolve(case).asperities
     assert rough.asperity_density == pytest.approx(found.density)
     assert rough.asperity_radius == pytest.approx(found.radius)
     assert rough.rms_height == pytest.approx(found.heights.std())
@@ -104,8 +108,8 @@ def test_a_case_has_the_summits_of_its_levelled_map(case):
 
 
 def test_gaussian_takes_rms_mean_height_density_and_radius_of_the_summits(case):
-    built = build(changed(case, source="gaussian")).contact.interface
-    rough = case.asperities
+    built = build(resolve(changed(case, source="gaussian"))).contact.interface
+    rough = resolve(case).asperities
     assert isinstance(built.heights, Gaussian)
     assert float(built.heights.rms_height) == pytest.approx(rough.rms_height)
     assert float(built.heights.mean_height) == pytest.approx(rough.mean_height)
@@ -153,7 +157,7 @@ def test_record_and_json_hold_the_surface_and_come_back(solved, folder, tmp_path
     surface = read(path).surface
     assert surface == records.plain(solved.surface)
     assert surface["source"] == "summits"
-    assert surface["summits"] == solved.case.asperities.summits.count
+    assert surface["summits"] == resolve(solved.case).asperities.summits.count
     (file,) = surface["files"]
     assert file["file"] == str(folder / "surface.nc")
     assert len(file["sha256"]) == 64
@@ -186,7 +190,7 @@ def test_a_record_is_not_run_again_on_a_surface_that_has_changed(case, solved, t
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     there = asperity.load(str(tmp_path / "case.toml"))
     record = tmp_path / "record.nc"
-    facts = there.asperities.facts
+    facts = resolve(there).asperities.facts
     record.write_bytes(records.encode(dataclasses.replace(solved, case=there, surface=facts)))
     assert call("regime", record).exit_code == 0
     write_topography(MADE.with_heights(2.0 * MADE.heights), surface, force=True)
@@ -199,9 +203,9 @@ def test_a_changed_file_is_read_anew(tmp_path):
     path = tmp_path / "surface.nc"
     write_topography(MADE, path)
     case = load(CASE).replace({FILES: [str(path)]})
-    before = case.asperities.rms_height
+    before = resolve(case).asperities.rms_height
     write_topography(MADE.with_heights(2.0 * MADE.heights), path, force=True)
-    assert case.asperities.rms_height == pytest.approx(2.0 * before)
+    assert resolve(case).asperities.rms_height == pytest.approx(2.0 * before)
 
 
 def test_two_files_are_the_sum_of_their_maps(folder, case, tmp_path):
@@ -212,9 +216,9 @@ def test_two_files_are_the_sum_of_their_maps(folder, case, tmp_path):
     both = changed(case, files=[str(folder / "surface.nc"), str(tmp_path / "other.nc")])
     maps = [prepared(each, Preparation()).topography for each in (MADE, other)]
     whole = added(*maps)
-    assert both.asperities.surface_rms_height == pytest.approx(whole.rms_height)
-    assert both.asperities.summits.count == find_summits(whole).count
-    assert both.asperities.facts["added"]
+    assert resolve(both).surface_rms_height == pytest.approx(whole.rms_height)
+    assert resolve(both).asperities.summits.count == find_summits(whole).count
+    assert resolve(both).asperities.facts["added"]
     refused(lambda: changed(case, files=["a", "b", "c"]), "roughness.files")
 
 
@@ -228,15 +232,15 @@ def holed(tmp_path):
 
 def test_missing_pixels_are_refused_kept_or_filled_and_counted(case, tmp_path):
     file = holed(tmp_path)
-    refused(lambda: changed(case, files=[file]).asperities, "holed.nc", "12", "missing")
+    refused(lambda: resolve(changed(case, files=[file])).asperities, "holed.nc", "12", "missing")
     for choice in ("keep", "fill"):
-        rough = changed(case, files=[file], missing=choice).asperities
+        rough = resolve(changed(case, files=[file], missing=choice)).asperities
         assert rough.facts["files"][0]["missing_pixels"] == 12
         assert any("12 of 16384 pixels" in line for line in rough.warnings)
 
 
 def test_missing_area_has_the_density_of_what_was_measured(case, tmp_path):
-    kept = changed(case, files=[holed(tmp_path)], missing="keep").asperities
+    kept = resolve(changed(case, files=[holed(tmp_path)], missing="keep")).asperities
     found = find_summits(kept.surface)
     assert found.searched < 1.0
     assert kept.asperity_density == pytest.approx(found.density / found.searched)
@@ -276,7 +280,9 @@ def test_too_few_summits_are_refused_with_file_and_number(case, tmp_path):
     )
     write_topography(smooth, tmp_path / "smooth.nc")
     few = changed(case, files=[str(tmp_path / "smooth.nc")])
-    refused(lambda: few.asperities, "smooth.nc", "at least 10; got", "measure a larger area")
+    refused(
+        lambda: resolve(few).asperities, "smooth.nc", "at least 10; got", "measure a larger area"
+    )
 
 
 def test_a_surface_smaller_than_the_contact_is_refused_by_run(folder, tmp_path):
@@ -298,20 +304,20 @@ FILLED = {"capillary.model": "kelvin-filling", "capillary.humidity": 0.9}
 @pytest.mark.parametrize("source", ["gaussian", "summits"])
 def test_liquid_on_the_surface_sees_its_rms_height_not_that_of_the_summits(case, source):
     filled = changed(case, source=source).replace(FILLED)
-    layers = build(filled).contact.interface
+    layers = build(resolve(filled)).contact.interface
     surface = prepared(MADE, Preparation()).topography.rms_height
     assert float(layers.parts[-1].heights.rms_height) == pytest.approx(surface)
-    assert surface > 1.02 * filled.asperities.rms_height
+    assert surface > 1.02 * resolve(filled).asperities.rms_height
     rule = "`surface_rms_height`"
     refused(lambda: filled.replace({"capillary.surface_rms_height": "3 nm"}), rule)
 
 
 def test_menisci_that_take_time_go_with_weighted_summits_and_not_with_classes(case):
     late = case.replace({"capillary.formation_time": "1 us"})
-    assert build(late).delayed is not None
+    assert build(resolve(late)).delayed is not None
     changes = {"adhesion.model": "jkr", "capillary.model": "constant-volume"}
     classed = changed(late, radius_classes=1).replace(changes)
-    refused(lambda: build(classed), "formation_time")
+    refused(lambda: build(resolve(classed)), "formation_time")
 
 
 def test_a_case_with_files_comes_back_from_its_text(case):
@@ -340,9 +346,9 @@ def test_the_template_names_the_keys_of_files_and_loads():
 
 def test_radius_classes_are_in_use_where_a_law_needs_them(case):
     """One class would leave out more of the bonds' work than passes without a warning."""
-    assert build(case).class_error == 0.0
+    assert build(resolve(case)).class_error == 0.0
     jkr = case.replace({"adhesion.model": "jkr", "capillary": None})
-    coarse, fine = (build(changed(jkr, radius_classes=count)) for count in (1, 6))
+    coarse, fine = (build(resolve(changed(jkr, radius_classes=count))) for count in (1, 6))
     assert coarse.class_error < -CLASSED < fine.class_error < 0.0
     assert (coarse.contact.interface.count, fine.contact.interface.count) == (1, 6)
 
@@ -359,7 +365,7 @@ def test_a_law_chosen_for_all_radii_that_would_differ_is_named(case):
     said = {}
     for work in (1e-4, 0.017):
         each = case.model_copy(update={"adhesion": adhesion.model_copy(update={"work": work})})
-        said[work] = _one_law(each, build(each))
+        said[work] = _one_law(resolve(each))
     assert said[1e-4] == []
     assert len(said[0.017]) == 1
     assert "DMT and Maugis-Dugdale" in said[0.017][0]

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from asperity.cli import app
 from asperity.config import builtin, load, template
 from asperity.config.plasticity import Plasticity, Yielding, yielding_of
+from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.materials.solids import SOLIDS, Solid
 from asperity.model import build
@@ -97,15 +98,17 @@ def in_numbers(table, line):
 
 
 def test_without_the_table_nothing_yields():
-    assert builtin("published-exact").plasticity_model == "none"
-    assert load(SMOOTH + NOTHING).plasticity_model == "none"
+    assert resolve(builtin("published-exact")).structure.plasticity == "none"
+    assert resolve(load(SMOOTH + NOTHING)).structure.plasticity == "none"
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_law_is_named_and_what_yields_is_known(model):
     case = load(SMOOTH + YIELDS.replace("kogut-etsion", model))
-    assert case.plasticity_model == model
-    assert case.yielding == Yielding(9e9, 9e9 / 2.8, 1.61 * (9e9 / 2.8), SOLIDS["silica"].poisson)
+    assert resolve(case).structure.plasticity == model
+    strength = 9e9 / 2.8
+    wanted = Yielding(9e9, strength, 1.61 * strength, SOLIDS["silica"].poisson)
+    assert resolve(case).yielding == wanted
 
 
 @pytest.mark.parametrize("solids", [(SOFT, HARD), (HARD, SOFT), (SOFT, ELASTIC), (ELASTIC, SOFT)])
@@ -147,33 +150,33 @@ def test_the_table_is_enough_where_no_material_has_a_strength_and_the_less_stiff
 
 def test_a_yield_pressure_is_enough_for_thornton_and_ning():
     text = f'{UNKNOWN}{NO_STRENGTH}[plasticity]\nmodel = "thornton-ning"\n'
-    found = load(text + 'yield_pressure = "1.61 GPa"').yielding
+    found = resolve(load(text + 'yield_pressure = "1.61 GPa"')).yielding
     assert found.yield_pressure == 1.61e9
     assert found.yield_strength == pytest.approx(1e9)
     assert found.hardness == pytest.approx(2.8e9)
-    own = load(text + 'yield_pressure = "1 GPa"\nyield_strength = "700 MPa"').yielding
+    own = resolve(load(text + 'yield_pressure = "1 GPa"\nyield_strength = "700 MPa"')).yielding
     assert (own.yield_pressure, own.yield_strength) == (1e9, 700e6)
 
 
 @pytest.mark.parametrize("table", ["body", "counterface"])
 def test_a_body_and_a_counterface_take_a_yield_strength(table):
     case = load(in_numbers(table, 'yield_strength = "1 GPa"\nhardness = "4 GPa"'))
-    solid = case.body_solid if table == "body" else case.counterface_solid
+    solid = resolve(case).body if table == "body" else resolve(case).counterface
     assert (solid.yield_strength, solid.hardness) == (1e9, 4e9)
-    assert case.yielding == Yielding(4e9, 1e9, 1.61e9, 0.3)
+    assert resolve(case).yielding == Yielding(4e9, 1e9, 1.61e9, 0.3)
 
 
 def test_a_material_of_ones_own_takes_a_yield_strength():
     own = '[materials.silica]\nyoungs_modulus = "1 GPa"\npoisson = 0.4\ndensity = "1 g/cc"\n'
     case = load(SMOOTH + own + 'yield_strength = "30 MPa"')
-    assert case.body_solid.yield_strength == 30e6
-    assert case.yielding.poisson == 0.4
+    assert resolve(case).body.yield_strength == 30e6
+    assert resolve(case).yielding.poisson == 0.4
 
 
-def test_nothing_known_is_refused_where_it_is_asked_for():
-    case = load(UNKNOWN + NO_STRENGTH)
+def test_nothing_known_is_refused_where_a_law_asks_for_it():
+    assert resolve(load(UNKNOWN + NO_STRENGTH)).yielding is None
     with pytest.raises(InputError, match="`hardness` or `yield_strength` must be given"):
-        _ = case.yielding
+        load(UNKNOWN + NO_STRENGTH + YIELDS)
 
 
 # --- what is written ---------------------------------------------------------------------------
@@ -298,9 +301,10 @@ def test_an_adhesion_beside_contact_is_taken(surface, adhesion):
 def test_the_model_none_refuses_nothing_and_liquid_that_is_off_is_no_liquid():
     off = YIELDS.replace("kogut-etsion", "none")
     late = WATER + 'formation_time = "1 us"\n'
-    assert load(SMOOTH + off + FILES + ADHESION.format("jkr")).plasticity_model == "none"
+    assert load(SMOOTH + off + FILES + ADHESION.format("jkr")).plasticity.model == "none"
     assert load(SMOOTH.replace("silica", "silicon") + off + late + 'model = "constant-volume"')
-    assert load(SMOOTH + YIELDS + late + 'model = "none"').plasticity_model == "kogut-etsion"
+    wet = resolve(load(SMOOTH + YIELDS + late + 'model = "none"'))
+    assert wet.structure.plasticity == "kogut-etsion"
     gaussian = FILES.replace('"summits"', '"gaussian"')
     assert load(rigid() + YIELDS + gaussian).roughness.source == "gaussian"
 
@@ -309,9 +313,10 @@ def test_a_sphere_that_adhesion_alone_makes_yield_is_refused_with_the_least_pres
     """Its JKR pressure reaches the yield pressure before any load does."""
     soft = YIELDS.replace('model = "kogut-etsion"', 'model = "thornton-ning"')
     case = load(SMOOTH + soft + ADHESION.format("jkr"))
+    early = {"plasticity.yield_pressure": "1 MPa", "adhesion.work": "0.2 J/m^2"}
     with pytest.raises(InputError, match=r"at least .* MPa, or the body yields by adhesion alone"):
-        build(case.replace({"plasticity.yield_pressure": "1 MPa", "adhesion.work": "0.2 J/m^2"}))
-    assert build(case).contact.mechanisms[:2] == ("plastic", "adhesion")
+        build(resolve(case.replace(early)))
+    assert build(resolve(case)).contact.mechanisms[:2] == ("plastic", "adhesion")
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ import asperity
 from asperity import solver
 from asperity.cli import app
 from asperity.config import load
+from asperity.config.resolve import resolve
 from asperity.contact.viscoelastic import RelaxedContact
-from asperity.materials.solids import contact_modulus
 from asperity.model import build
 from asperity.results import colours
 from asperity.results.colours import COLOURS
@@ -113,19 +113,19 @@ def test_a_rigid_bulk_and_menisci_that_take_time_are_refused():
 
 def test_without_a_model_the_bulk_is_elastic():
     case = load(SMOOTH + '[viscoelasticity]\nmodel = "none"\n')
-    assert build(case).relaxation is None
-    assert build(load(SMOOTH)).relaxation is None
+    assert build(resolve(case)).relaxation is None
+    assert build(resolve(load(SMOOTH))).relaxation is None
 
 
 def test_a_case_with_creep_reads_back_and_knows_both_moduli():
     case = load(SMOOTH + CREEPS)
     assert load(case.toml()) == case
-    problem = build(case)
-    modulus = contact_modulus(case.body_solid, case.counterface_solid)
+    problem = build(resolve(case))
+    modulus = resolve(case).modulus
     assert isinstance(problem.contact, RelaxedContact)
     assert float(problem.contact.base.law.modulus) == pytest.approx(0.4 * modulus)
     assert float(problem.relaxation.contact.law.modulus) == pytest.approx(modulus)
-    assert problem.modulus == pytest.approx(modulus)
+    assert problem.inputs.modulus == pytest.approx(modulus)
 
 
 def test_a_smooth_sphere_runs_to_a_record_its_pictures_and_its_json():
@@ -154,7 +154,7 @@ def test_creep_has_a_colour_of_its_own():
 def test_the_curve_is_that_of_the_relaxed_bulk():
     case = load(SMOOTH + CREEPS)
     found = solver.curve(case)
-    modulus = 0.4 * contact_modulus(case.body_solid, case.counterface_solid)
+    modulus = 0.4 * resolve(case).modulus
     overlap = np.maximum(-found.rigid_separation, 0.0)
     hertz = 4.0 / 3.0 * modulus * math.sqrt(case.body.radius) * overlap**1.5
     np.testing.assert_allclose(found.force_loading, hertz, atol=1e-8 * hertz.max())

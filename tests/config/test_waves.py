@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 import asperity
 from asperity._jax import jax
 from asperity.config import load
+from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.model import build
 from asperity.regimes.wave_limits import wave_warnings
@@ -62,7 +63,7 @@ def result():
 
 @pytest.fixture(scope="module")
 def problem():
-    return build(ROUGH)
+    return build(resolve(ROUGH))
 
 
 def _leg(problem, start, speed, memory):
@@ -138,7 +139,7 @@ def test_a_rough_half_space_radiates_too():
         }
     )
     result = asperity.solve(case)
-    found = _from_forces(result, float(build(case).body.waves.coefficient))
+    found = _from_forces(result, float(build(resolve(case)).body.waves.coefficient))
     assert set(result.ledger["lost"]) == {"capillary", "waves"}
     assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
     assert result.ledger["energy_balance_error"] < 1e-8
@@ -146,14 +147,14 @@ def test_a_rough_half_space_radiates_too():
 
 @pytest.mark.parametrize("table", [None, {"model": "none"}])
 def test_without_waves_there_are_none(table):
-    assert build(ROUGH.replace({"waves": table})).body.mechanisms == ("gas",)
+    assert build(resolve(ROUGH.replace({"waves": table}))).body.mechanisms == ("gas",)
 
 
 def test_the_counterface_carries_the_waves_not_the_body(problem):
     coefficient = float(problem.body.waves.coefficient)
-    other = build(ROUGH.replace({"body.material": "gold"})).body.waves
+    other = build(resolve(ROUGH.replace({"body.material": "gold"}))).body.waves
     assert float(other.coefficient) == coefficient
-    other = build(ROUGH.replace({"counterface.material": "silica"})).body.waves
+    other = build(resolve(ROUGH.replace({"counterface.material": "silica"}))).body.waves
     assert float(other.coefficient) > coefficient
 
 
@@ -182,12 +183,12 @@ def test_a_table_that_says_none_refuses_nothing():
 
 def _warned(case, share, force):
     """The warnings of a first impact that radiates a share, with a force [N] at its depth."""
-    problem = build(case)
+    problem = build(resolve(case))
     energy = 0.5 * float(problem.body.mass) * 0.5**2
     laws = np.full(len(problem.contact.mechanisms), 1e-3 * energy)
     impacts = SimpleNamespace(maximum_kinetic=[energy], lost=np.append(laws, share * energy)[None])
     motion = SimpleNamespace(impacts=impacts)
-    return wave_warnings(case, problem, force, -1e-9, motion)
+    return wave_warnings(problem, force, -1e-9, motion)
 
 
 def test_little_waves_of_a_smooth_body_are_warned_of_for_its_bonds_alone():

@@ -8,6 +8,7 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.contact import ElasticContact
 from asperity.contact.equilibrium import profile_of, rates, solve_equilibrium
 from asperity.contact.profile import Sphere
@@ -123,7 +124,7 @@ def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():
     places = SIGMA * jnp.asarray([-2.0, 1.0, 3.0, 5.0])
     forces = []
     for rings in (48, 96):
-        here = build(case.replace({"numerics.rings": rings})).contact
+        here = build(resolve(case.replace({"numerics.rings": rings}))).contact
         states = jax.jit(jax.vmap(lambda d, here=here: here.state(d, here.extreme((True,)))))(
             places
         )

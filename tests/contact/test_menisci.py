@@ -9,6 +9,7 @@ from scipy.integrate import simpson
 import asperity
 from asperity import InputError
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.contact import RigidContact, SmoothContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, quasi_static, simulate
@@ -152,7 +153,7 @@ CASE = asperity.load("published-exact")
 def regime_at(humidity, **changes):
     case = CASE.replace({"capillary.humidity": humidity, **changes})
     return liquid_state(
-        radius=case.liquid_radius, span=case.liquid_span, tip_radius=0.25e-9,
+        radius=resolve(case).liquid_radius, span=resolve(case).liquid_span, tip_radius=0.25e-9,
         spacing=(1.69e16) ** -0.5, central=40e-9, rms_height=10.5e-9,
     ).regime  # fmt: skip
 
@@ -173,10 +174,10 @@ def test_menisci_merge_where_the_kelvin_radius_reaches_the_spacing():
 
 def test_a_film_bounds_what_menisci_span():
     case = CASE.replace({"capillary.humidity": 1.0, "capillary.adsorbed_film_thickness": "2 nm"})
-    assert case.liquid_span == pytest.approx(4e-9)
-    assert case.liquid_radius == pytest.approx(2e-9 / cos(radians(73.0)))
+    assert resolve(case).liquid_span == pytest.approx(4e-9)
+    assert resolve(case).liquid_radius == pytest.approx(2e-9 / cos(radians(73.0)))
     dry = CASE.replace({"capillary.adsorbed_film_thickness": "2 nm"})
-    assert dry.liquid_radius == pytest.approx(CASE.kelvin_radius)
+    assert resolve(dry).liquid_radius == pytest.approx(resolve(CASE).kelvin_radius)
 
 
 @pytest.mark.parametrize(
@@ -207,16 +208,16 @@ def test_liquid_that_is_not_described_is_refused(changes, key, message):
 
 def test_a_smooth_body_with_filled_gaps_has_one_meniscus():
     case = CASE.replace({"capillary.model": "kelvin-filling", "roughness": None})
-    law = build(case).contact.law
+    law = build(resolve(case)).contact.law
     assert any(isinstance(part, Meniscus) for part in law.parts)
 
 
 def test_a_bridge_too_large_for_its_edge_is_taken_for_thin():
     """Volume over radius^3 is pi (c/radius)^2: 0.1 at c = 0.18 radius."""
     model = {"capillary.model": "constant-volume"}
-    large = build(CASE.replace(model)).contact.interface.law.parts[-1]
+    large = build(resolve(CASE.replace(model))).contact.interface.law.parts[-1]
     small = build(
-        CASE.replace({**model, "roughness.asperity_radius": "20 nm"})
+        resolve(CASE.replace({**model, "roughness.asperity_radius": "20 nm"}))
     ).contact.interface.law.parts[-1]
     assert not large.edge
     assert small.edge
@@ -224,7 +225,7 @@ def test_a_bridge_too_large_for_its_edge_is_taken_for_thin():
 
 def test_no_humidity_is_dry():
     """Every model at a humidity of 0 gives the forces of the case without menisci."""
-    dry = build(CASE.replace({"capillary.model": "none"})).contact
+    dry = build(resolve(CASE.replace({"capillary.model": "none"}))).contact
     place = jnp.asarray(40e-9)
     expected = float(dry.state(place, dry.initial_memory()).force)
     for changes in (
@@ -233,7 +234,7 @@ def test_no_humidity_is_dry():
         {"capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm"},
         {"capillary.formation": "capillary-condensation"},
     ):
-        contact = build(CASE.replace({"capillary.humidity": 0.0, **changes})).contact
+        contact = build(resolve(CASE.replace({"capillary.humidity": 0.0, **changes}))).contact
         assert not contact.mechanisms
         assert float(contact.state(place, contact.initial_memory()).force) == expected
 

@@ -5,6 +5,7 @@ import pytest
 
 import asperity
 from asperity.config.case_file import load
+from asperity.config.resolve import resolve
 from asperity.contact.ring_error import ring_error
 from asperity.dynamics.curve_table import FORCE, SIZE, quantities, read_row
 from asperity.halfspace import ring_mesh
@@ -60,7 +61,7 @@ def case(rings, name="rms 2 nm"):
 def test_the_estimated_error_of_the_rings_is_what_a_finer_mesh_changes(name):
     forces, errors, deepest = {}, {}, None
     for rings in (160, 80, 40):
-        contact, motion = first_impact(here := case(rings, name), build(here))
+        contact, motion = first_impact(build(resolve(case(rings, name))))
         deepest = float(motion.impacts.closest_approach[0]) if deepest is None else deepest
         row = read_row(motion.table, 0, deepest)
         displacement = row[quantities(contact).field]
@@ -82,7 +83,7 @@ def test_any_number_of_rings_runs_and_too_few_are_said(rings):
 
 
 def test_enough_rings_are_taken_without_a_word():
-    contact = build(case(80)).contact
+    contact = build(resolve(case(80))).contact
     assert contact.rings == len(ring_mesh(80).radius) == 80
     assert not any("rings" in line for line in asperity.solve(case(80)).warnings)
     assert [len(ring_mesh(n).radius) for n in (1, 8, 9, 17, 20, 24)] == [8, 8, 16, 24, 24, 24]

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.dynamics import simulate
 from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.dynamics.record import ENDS
@@ -27,7 +28,7 @@ def problem():
             "gas.slip_length": "75 nm",
         }
     )
-    return build(case)
+    return build(resolve(case))
 
 
 @pytest.fixture(scope="module")

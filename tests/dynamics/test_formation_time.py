@@ -13,6 +13,7 @@ from scipy.stats import norm
 import asperity
 from asperity import InputError, Outcome, SimulationError, solver
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.contact import RigidContact, SmoothContact
 from asperity.contact.delayed_formation import DelayedContact
 from asperity.contact.profile import Sphere
@@ -268,8 +269,8 @@ def test_restitution_in_gas_tends_to_that_with_menisci_at_once(case):
 def test_a_time_of_zero_is_no_time(case):
     zero = case.replace({"capillary.formation_time": "0 s"})
     none = case.replace({"capillary.formation_time": None})
-    assert asperity.model.build(zero).delayed is None
-    assert asperity.model.build(none).delayed is None
+    assert asperity.model.build(resolve(zero)).delayed is None
+    assert asperity.model.build(resolve(none)).delayed is None
 
 
 def test_a_motion_can_be_stopped(case):

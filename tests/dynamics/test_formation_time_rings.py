@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import asperity
 from asperity import InputError, Outcome
+from asperity.config.resolve import resolve
 from asperity.contact.delayed_formation import DelayedContact
 from asperity.dynamics.viscoelastic.ring_menisci import FreeFlight
 from asperity.integration import integrate, silently
@@ -24,7 +25,7 @@ def case():
 
 
 def impacts(case):
-    return integrate(case, build(case), silently, None).motion.impacts
+    return integrate(build(resolve(case)), silently, None).motion.impacts
 
 
 def lost(case):
@@ -56,12 +57,11 @@ def test_long_formation_tends_to_the_dry_motion(case):
 def test_a_stiff_half_space_is_the_rigid_body(case, time):
     """Another method, of order 15: one threshold for all places, polynomials in time."""
     here = case.replace({"capillary.formation_time": time})
-    problem = build(here)
+    problem = build(resolve(here))
     hard = dataclasses.replace(problem.contact, modulus=1e7 * problem.contact.modulus)
     delayed = DelayedContact(hard, problem.delayed.time)
-    found = integrate(
-        here, problem._replace(contact=hard, delayed=delayed), silently, None
-    ).motion.impacts
+    problem = problem._replace(contact=hard, delayed=delayed)
+    found = integrate(problem, silently, None).motion.impacts
     wanted = impacts(here.replace({"counterface.deformation": "rigid"}))
     for turn in TURNS:
         np.testing.assert_allclose(getattr(found, turn), getattr(wanted, turn), rtol=1e-7)

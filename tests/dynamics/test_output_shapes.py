@@ -9,6 +9,7 @@ import asperity
 from asperity import integration
 from asperity._jax import jax
 from asperity.config import builtin, load_file
+from asperity.config.resolve import resolve
 from asperity.dynamics import prepare
 from asperity.dynamics.output_shapes import shapes_of_curves
 from asperity.integration import cut_in_steps
@@ -52,7 +53,7 @@ def traced(contact, body, many):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("many", [False, True])
 def test_the_shapes_of_curves_are_those_that_are_foreseen(kind, many):
-    problem = build(builtin("published-exact").replace(KINDS[kind]))
+    problem = build(resolve(builtin("published-exact").replace(KINDS[kind])))
     if many:
         problem = cut_in_steps(problem)
     found = shapes_of_curves(problem.contact, many)
@@ -62,7 +63,7 @@ def test_the_shapes_of_curves_are_those_that_are_foreseen(kind, many):
 
 @pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
 def test_so_are_those_of_every_example_unless_its_asperities_yield(file):
-    problem = build(load_file(file))
+    problem = build(resolve(load_file(file)))
     found = shapes_of_curves(problem.contact)
     if problem.contact.yields:
         assert found is None
@@ -71,7 +72,7 @@ def test_so_are_those_of_every_example_unless_its_asperities_yield(file):
 
 
 def test_so_are_those_of_the_published_sums():
-    problem = build(builtin("published"))
+    problem = build(resolve(builtin("published")))
     given = problem.contact, problem.body
     assert shapes(shapes_of_curves(problem.contact)) == shapes(traced(*given, many=False))
 

@@ -7,6 +7,7 @@ from scipy.integrate import quad
 import asperity
 from asperity._jax import jax, jnp
 from asperity.config import builtin, load
+from asperity.config.resolve import resolve
 from asperity.errors import InputError, SimulationError
 from asperity.integration import _REFINEMENTS
 from asperity.model import build
@@ -107,7 +108,7 @@ def test_a_record_holds_the_plastic_loss_and_comes_back(solved, tmp_path):
 
 def test_the_turn_of_the_first_impact_is_where_its_energy_is_spent(case, solved):
     """Work of the pressure on first approach by a quadrature of its own, against the speed."""
-    problem = build(case)
+    problem = build(resolve(case))
     contact, body = problem.contact, problem.body
     force = jax.jit(lambda d: contact.state(d, contact.initial_memory()).force)
     deepest = float(solved.events["closest_approach_separation"][0])

@@ -8,6 +8,7 @@ import pytest
 import asperity
 from asperity._jax import jnp
 from asperity.config.case_file import load
+from asperity.config.resolve import resolve
 from asperity.model import build
 from asperity.sweeps.compute.batch import evaluate
 from asperity.sweeps.study.study import parse
@@ -68,7 +69,7 @@ def pull_far_out(separation, radius, *, rough):
 def test_a_launched_body_starts_out_of_the_tail_of_bradleys_law(rough, gravity):
     case = load("schema = 1\n" + text("bradley", rough=rough, gravity=gravity))
     result = asperity.solve(case)
-    released, body = result.separation[0], build(case).body
+    released, body = result.separation[0], build(resolve(case)).body
     peak = max(abs(result.forces["contact"]))
     limit = max(1e-3 * float(body.weight), 1e-6 * peak)
     assert pull_far_out(released, 1e-6, rough=rough) <= 1.05 * limit
@@ -103,7 +104,7 @@ def test_studies_release_a_launched_body_where_a_single_run_does():
 def test_other_laws_end_before_the_first_release(rough, adhesion, menisci):
     """So that no more than one is tried, and a body is launched as near as it can be."""
     problem = build(
-        load("schema = 1\n" + text(adhesion, rough=rough, gravity=9.81, menisci=menisci))
+        resolve(load("schema = 1\n" + text(adhesion, rough=rough, gravity=9.81, menisci=menisci)))
     )
     contact, release = problem.contact, jnp.asarray(problem.body.release)
     force = abs(float(contact.state(release, contact.initial_memory()).force))

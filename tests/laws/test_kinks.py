@@ -7,6 +7,7 @@ import pytest
 import asperity
 from asperity._jax import jax, jnp
 from asperity.config.case_file import load
+from asperity.config.resolve import resolve
 from asperity.contact import SmoothContact, SmoothPlasticContact
 from asperity.dynamics.curve_table import FORCE, outer_row, tabulate, tabulate_again
 from asperity.laws import Bradley, Dmt, Hertz, Jkr, Maugis
@@ -51,7 +52,7 @@ MAKERS = {
 
 def test_a_case_that_yields_is_drawn_with_the_force_of_its_law():
     case = load(YIELDS)
-    law = build(case).contact.contact
+    law = build(resolve(case)).contact.contact
     made, drawn = asperity.solve(case), asperity.curve(case)
     pushed = made.time <= made.time[np.argmin(made.separation)]
     for separation, force in (

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity.config import load
+from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.laws.plastic import ThorntonNing
 from asperity.materials.solids import (
@@ -175,7 +176,7 @@ def test_the_numbers_of_a_solid_are_possible(solid):
 )  # fmt: skip
 def test_a_case_can_name_what_tribologists_ask_for(name):
     text = f'[body]\nradius = "1 um"\nmaterial = "{name}"\n[counterface]\nmaterial = "{name}"\n'
-    assert load(text + '[impact]\nspeed = "1 m/s"\n').body_solid == SOLIDS[name]
+    assert resolve(load(text + '[impact]\nspeed = "1 m/s"\n')).body == SOLIDS[name]
 
 
 def test_two_bearing_steels_have_the_modulus_of_their_lubrication():

@@ -10,6 +10,7 @@ from scipy.special import ndtr
 
 import asperity
 from asperity._jax import jax, jnp
+from asperity.config.resolve import resolve
 from asperity.contact import Contact, PublishedContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, simulate
@@ -244,8 +245,8 @@ def case():
 
 
 def test_humidity_of_one_is_an_infinite_kelvin_radius_here_alone(case):
-    assert case.kelvin_radius == np.inf
-    assert build(case).contact.pressure.interaction_range is None
+    assert resolve(case).kelvin_radius == np.inf
+    assert build(resolve(case)).contact.pressure.interaction_range is None
     with pytest.raises(
         InputError, match=r"`humidity` must lie in \[0, 1\) without an `adsorbed_film_thickness`"
     ):

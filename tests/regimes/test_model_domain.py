@@ -12,9 +12,9 @@ from scipy.integrate import quad
 import asperity
 from asperity import solver
 from asperity.config import load
-from asperity.config.asperities import Asperities
+from asperity.config.resolve import resolve
 from asperity.errors import InputError
-from asperity.materials.solids import contact_modulus
+from asperity.inputs import Asperities
 from asperity.regimes.model_domain import first_yield_speed, mean_overlap
 from asperity.results.verdict import verdict
 
@@ -142,7 +142,7 @@ def test_a_wide_contact_is_warned_of_with_its_depth():
     """Hertz: depth (15 E/(8 E* sqrt(R)))^0.4, contact radius sqrt(R depth)."""
     for speed, wide in ((10.0, False), (400.0, True)):
         case = changed(SMOOTH, impact__speed=f"{speed} m/s")
-        radius, modulus = 5e-6, contact_modulus(case.body_solid, case.counterface_solid)
+        radius, modulus = 5e-6, resolve(case).modulus
         energy = 0.5 * 2500.0 * 4.0 / 3.0 * math.pi * radius**3 * speed**2
         depth = (15.0 / 8.0 * energy / (modulus * math.sqrt(radius))) ** 0.4
         assert (depth > 0.02 * radius) is wide
@@ -180,7 +180,7 @@ def test_first_yield_of_a_smooth_sphere_is_johnsons():
 
 def test_a_smooth_body_faster_than_first_yield_is_warned_of_unless_it_yields():
     strong = changed(SMOOTH, body__yield_strength="1 GPa")
-    modulus = contact_modulus(strong.body_solid, strong.counterface_solid)
+    modulus = resolve(strong).modulus
     first = first_yield_speed(1.61e9, modulus, 2500.0)
     (line,) = warned(
         strong.replace({"impact.speed": f"{3.0 * first} m/s"}), "a smooth body first yields"

@@ -5,7 +5,7 @@ import pytest
 import asperity
 from asperity import solver
 from asperity.config import load
-from asperity.materials.solids import contact_modulus
+from asperity.config.resolve import resolve
 from asperity.regimes.plastic_validity import yielded
 
 CASE = """
@@ -41,9 +41,7 @@ NEAR, FAR = 0.0, 40e-9  # separation at closest approach [m]
 
 def lines(text, central=NEAR):
     """What is said of a case whose bodies came as close as this."""
-    case = load(text)
-    modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    return yielded(case, modulus, central)
+    return yielded(resolve(load(text)), central)
 
 
 def between(body, counterface):

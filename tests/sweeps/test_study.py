@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity.config import builtin, load
+from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.sweeps.study.columns import DEFAULT_KEEP, REASON_SIZE
 from asperity.sweeps.study.study import parse, read
@@ -197,7 +198,7 @@ def test_material_of_the_base_can_vary():
     found = parse(
         f'[axes]\n"materials.my glass.density" = {{values = ["2 g/cm^3"]}}\n[base]\n{base}'
     )
-    assert found.case(0).body_density == pytest.approx(2000.0)
+    assert resolve(found.case(0)).body.density == pytest.approx(2000.0)
     assert found.axes[0].label == "density of my glass"
 
 

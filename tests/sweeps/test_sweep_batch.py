@@ -271,5 +271,5 @@ def test_every_number_of_a_case_is_built_for_many_cases_at_once(base):
         assert found.refused == {}, key
         assert found.alone == [], key
         assert sum(group.rows.size for group in found.groups) == 5
-        assert all(group.cases == () for group in found.groups), key
+        assert all(group.problems == () for group in found.groups), key
     assert case is not None

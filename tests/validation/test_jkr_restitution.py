@@ -10,11 +10,11 @@ import pytest
 
 from asperity import restitution_curve
 from asperity.config import load
+from asperity.config.resolve import resolve
 from asperity.contact import SmoothContact
 from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
 from asperity.laws import Jkr
-from asperity.materials.solids import contact_modulus
 from asperity.results.measures import measure
 from asperity.solver import curve
 from figures import Figure, misses
@@ -64,8 +64,8 @@ def from_cases(name):
         gravity = "0 m/s^2"
         """
     )
-    radius, work, density = case.body.radius, case.adhesion.work, case.body_density
-    stiff = float(contact_modulus(case.body_solid, case.counterface_solid))
+    radius, work, density = case.body.radius, case.adhesion.work, resolve(case).body.density
+    stiff = float(resolve(case).modulus)
     speed = 1.84018 * (work**5 / (radius**5 * density**3 * stiff**2)) ** (1.0 / 6.0)
     found = restitution_curve(case, np.array([2.0 * speed])).critical_velocity
     problem, source = f"JKR sphere, {name}", "sqrt(2 W/m), W of one JKR cycle"

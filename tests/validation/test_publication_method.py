@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity.config.resolve import resolve
 from asperity.model import build
 from asperity.publication.evidence import PRINTED
 from figures import Figure
@@ -37,7 +38,7 @@ def case():
 
 def rebounds(method, case, impacts=1, **options):
     """Heights above the edge [m], the release first, and times of the apexes [s]."""
-    model = method.of_problem(build(case), deforms=False, **options)
+    model = method.of_problem(build(resolve(case)), deforms=False, **options)
     apexes, times = method.integrate(model, impacts)
     return np.array([model.release, *apexes]) - model.edge * model.rms, np.array(times)
 
@@ -72,7 +73,7 @@ def test_with_the_printed_polynomials_too(method, case):
 
 def test_with_those_and_an_edge_at_3_both_stick_at_the_first_impact(method, case):
     printed = {"f0": method.PRINTED_F0, "f32": method.PRINTED_F32}
-    model = method.of_problem(build(case), deforms=False, **printed)
+    model = method.of_problem(build(resolve(case)), deforms=False, **printed)
     apexes, _ = method.integrate(model, 1)
     assert apexes[0] < model.edge * model.rms
     ours = asperity.solve(case.replace({"publication.polynomials": "printed"}))
@@ -83,7 +84,7 @@ def test_with_those_and_an_edge_at_3_both_stick_at_the_first_impact(method, case
 @cache
 def disc():
     """A uniform pressure on a disc of radius a displaces its centre by 2 p a/E*."""
-    model = loaded().of_problem(build(asperity.load("published")), points=128)
+    model = loaded().of_problem(build(resolve(asperity.load("published"))), points=128)
     middle = (np.arange(128) + 0.5) / 128 * 2.0 * model.half_width - model.half_width
     x, y = np.meshgrid(middle, middle)
     radius = 0.5 * model.half_width

@@ -6,8 +6,8 @@ import equinox as eqx
 
 import asperity
 from asperity._jax import jnp
+from asperity.config.resolve import resolve
 from asperity.dynamics import prepare
-from asperity.materials.solids import contact_modulus
 from asperity.model import build
 from figures import Figure, misses
 
@@ -26,7 +26,7 @@ def dry():
 
 
 def modulus():
-    found = contact_modulus(dry().body_solid, dry().counterface_solid)
+    found = resolve(dry()).modulus
     problem = "published case: contact modulus of its Table 1"
     return Figure(problem, SOURCE, 56.814, found * 1e-9, "GPa", 1e-4)
 
@@ -34,7 +34,7 @@ def modulus():
 @cache
 def resting():
     """Where it rests, 45.9 nm or lambda' = 4.37; how many asperities touch; what bears it."""
-    problem = build(dry())
+    problem = build(resolve(dry()))
     rest = equilibrium(problem.contact, problem.body)
     at_rest = problem.contact.state(rest, problem.contact.initial_memory())
     reduced = float(rest) / dry().roughness.rms_height
@@ -51,7 +51,7 @@ def resting():
 @cache
 def at_three():
     """Adhesion of about 1 nN against a contact force of 4.9 uN at lambda' = 3."""
-    problem = build(dry())
+    problem = build(resolve(dry()))
     found = problem.contact.state(jnp.asarray(3.0 * 10.5e-9), problem.contact.initial_memory())
     parts = dict(zip(problem.contact.components, map(float, found.parts), strict=True))
     contact, pull = parts["elastic"] * 1e6, -parts["adhesion"] * 1e9

@@ -6,7 +6,7 @@ from math import pi
 import pytest
 
 from asperity.config import load
-from asperity.materials.solids import contact_modulus
+from asperity.config.resolve import resolve
 from asperity.solver import curve
 from figures import Figure, misses
 
@@ -49,7 +49,7 @@ def dmt(speed):
     """Work against the pull 2 pi w R and Hertz's force, from where they balance to no overlap."""
     case, found = unloaded("dmt", speed)
     radius, pull = case.body.radius, 2.0 * pi * case.adhesion.work * case.body.radius
-    modulus = float(contact_modulus(case.body_solid, case.counterface_solid))
+    modulus = float(resolve(case).modulus)
     known = 0.6 * pull * (0.75 * pull / (modulus * radius**0.5)) ** (2.0 / 3.0)
     problem = f"DMT sphere at {speed}: work of separation"
     source = "(3/5) 2 pi w R delta_0"

@@ -29,6 +29,7 @@ from asperity.config.base_table import Table
 from asperity.config.case_file import builtin_text
 from asperity.config.fields import Length, Number, entry
 from asperity.config.problems import tables_of
+from asperity.config.resolve import resolve
 from asperity.errors import Outcome
 from asperity.results.read_record import read
 from asperity.results.record_layout import json_object
@@ -196,7 +197,7 @@ def test_copy_case_keeps_what_the_page_does_not_show(client: TestClient, tables:
     }
     text = client.post("/api/toml", json={"case": tables}).json()["toml"]
     case = load(text)
-    assert case.body_solid.youngs_modulus == 70e9
+    assert resolve(case).body.youngs_modulus == 70e9
     assert case.output.motion is False
     assert client.post("/api/read", content=text.encode()).json()["tables"] == tables
 

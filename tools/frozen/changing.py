@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 import asperity
+from asperity.config.case_solids import solids_of
 
 CHANGE = 1e-14
 """Relative change of an input: 45 units in the last place."""
@@ -53,10 +54,7 @@ class Change:
         if self._draws is None:
             return case
         changes: dict[str, Any] = dict(self._numbers(tomllib.loads(case.toml())))
-        for part, solid in (
-            ("body", case.body_solid),
-            ("counterface", case.counterface_solid),
-        ):
+        for part, solid in zip(("body", "counterface"), solids_of(case), strict=True):
             if getattr(case, part).material is not None:
                 known = {key: getattr(solid, key) for key in _SOLID}
                 changes[f"materials.{part}-of-frozen"] = {

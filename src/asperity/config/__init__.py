@@ -5,13 +5,12 @@
 `publication`. `fields`: kinds of value; `key_labels`: every key in words.
 `case_file`: text to case; `case_text`: case to text; `replacing`: a case with other values;
 `problems`: what is wrong with a case, in one line. `asperities`: heights from numbers or files.
-`plastic_law`: the yielding law that a case names. `cases`: the built-in cases.
+`resolve`: case to physical quantities, `asperity.inputs.Inputs`. `cases`: the built-in cases.
 
 A new key is a field with its unit, meaning and example; form, template and help follow from it.
 """
 
 from asperity.config.adhesion_tables import Adhesion, Capillary
-from asperity.config.asperities import Asperities
 from asperity.config.bodies import Body, Counterface, Material
 from asperity.config.case_file import (
     BUILTINS,
@@ -32,7 +31,6 @@ __all__ = [
     "FIRST",
     "SIZE_LIMIT",
     "Adhesion",
-    "Asperities",
     "Body",
     "Capillary",
     "Case",

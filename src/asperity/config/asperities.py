@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import functools
 import json
-from dataclasses import dataclass
-from math import erfc, exp, pi, sqrt
+from math import sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.config.roughness import Roughness
 from asperity.errors import InputError
+from asperity.inputs import Asperities
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,59 +25,6 @@ LARGEST_ASPERITY = 1.0
 
 ROUGHEST = 0.5
 """Rms height over body radius: 1 in 44 asperities is then as high as the body's radius."""
-
-
-@dataclass(frozen=True, eq=False)
-class Asperities:
-    """Asperities of the composite of both surfaces.
-
-    Attributes
-    ----------
-    asperity_density
-        Asperities per area [1/m^2].
-    asperity_radius
-        Radius of their tips [m]; measured, that of the mean curvature.
-    rms_height
-        Standard deviation of their heights [m].
-    mean_height
-        Their mean height above the mean plane of the surface [m]; 0 where only numbers are known.
-    surface
-        The map that they were found on; None where only numbers are known.
-    summits
-        The measured summits; likewise.
-    facts
-        Files, what was done to them and what was found, as plain numbers and text in SI units.
-    warnings
-        What to know before they are believed, a line each.
-    """
-
-    asperity_density: float
-    asperity_radius: float
-    rms_height: float
-    mean_height: float = 0.0
-    surface: Topography | None = None
-    summits: Summits | None = None
-    facts: dict[str, Any] | None = None
-    warnings: tuple[str, ...] = ()
-
-    @property
-    def surface_rms_height(self) -> float | None:
-        """Rms height [m] of the surface itself, not of its summits; None where unknown."""
-        return None if self.surface is None else self.surface.rms_height
-
-    def covered(self, separation: float) -> float:
-        """Share of the area that contacting asperities cover at a separation [m].
-
-        Density times pi radius times the mean overlap: of the summits where they are in use, else
-        of Gaussian heights.
-        """
-        if self.facts is not None and self.facts["source"] == "summits":
-            assert self.summits is not None
-            overlap = (self.summits.heights - separation).clip(0.0)
-            return self.asperity_density * pi * float((overlap * self.summits.radii).mean())
-        reduced = (separation - self.mean_height) / self.rms_height
-        tail = exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - 0.5 * reduced * erfc(reduced / sqrt(2.0))
-        return self.asperity_density * pi * self.asperity_radius * self.rms_height * tail
 
 
 def asperities_of(rough: Roughness) -> Asperities:

@@ -99,11 +99,6 @@ class Made(Table):
         return catalogue.SOLIDS[self.material]
 
 
-def named(solid: catalogue.Solid) -> str:
-    """What to call a solid in a sentence: its own name, or whose numbers it has."""
-    return f"the {solid.name}" if solid.name in ("body", "counterface") else solid.name
-
-
 class Body(Made):
     """The body that falls."""
 

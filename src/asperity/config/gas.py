@@ -11,7 +11,7 @@ from asperity.config.base_table import Table
 from asperity.config.fields import entry
 from asperity.config.problems import did_you_mean
 from asperity.errors import InputError, refuse_all
-from asperity.materials.gases import GASES, SLIP_PER_FREE_PATH
+from asperity.materials.gases import GASES
 from asperity.units import shown
 
 if TYPE_CHECKING:
@@ -73,10 +73,11 @@ class Gas(Table):
                 f"`slip_length`; got {shown(self.name)}{did_you_mean(self.name, GASES)}",
                 key="name",
             )
-        self._film()
+        self.film()
         return self
 
-    def _film(self) -> tuple[float, float]:
+    def film(self) -> tuple[float, float]:
+        """Viscosity [Pa s] and slip length [m], given or of the named gas."""
         if self.name is None:
             assert self.viscosity is not None
             assert self.slip_length is not None
@@ -118,18 +119,3 @@ class Gas(Table):
                 f"got {closest * 1e9:.6g} nm",
                 key="gas.cutoff_separation",
             )
-
-    @property
-    def film_viscosity(self) -> float:
-        """Viscosity [Pa s], given or of the named gas."""
-        return self._film()[0]
-
-    @property
-    def film_slip_length(self) -> float:
-        """Slip length [m], given or of the named gas."""
-        return self._film()[1]
-
-    @property
-    def free_path(self) -> float:
-        """Mean free path [m] that belongs to the slip length."""
-        return self.film_slip_length / SLIP_PER_FREE_PATH

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from asperity.config.bodies import named
+from asperity.config.asperities import asperities_of, refuse_asperities
+from asperity.config.case_solids import solids_of
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError
-from asperity.materials.solids import Solid
+from asperity.materials.solids import bar_wave_speed, named
 
 SMALLEST_BODY = 1e-9
 """Smallest radius of a body [m]: such a one has some 200 atoms, and is no continuum."""
@@ -32,29 +33,13 @@ def refuse_outside(case: CaseTables) -> None:
             key="body.radius",
         )
     if case.roughness is not None and case.roughness.files is None:
-        _ = case.asperities  # which refuses those larger than the body
+        refuse_asperities(radius, asperities_of(case.roughness))
     _refuse_waves(case)
-
-
-def wave_speed(case: CaseTables) -> tuple[float, Solid]:
-    """Smaller speed [m/s] of waves in bars of the two solids, sqrt(E/rho), and whose it is.
-
-    Parameters
-    ----------
-    case
-        The case; a counterface without a density does not count.
-    """
-    known = [
-        ((solid.youngs_modulus / solid.density) ** 0.5, solid)
-        for solid in (case.body_solid, case.counterface_solid)
-        if solid.density is not None
-    ]
-    return min(known, key=lambda each: each[0])
 
 
 def _refuse_waves(case: CaseTables) -> None:
     """Refuse impacts as fast as waves in the softer solid."""
-    impact, (slowest, solid) = case.impact, wave_speed(case)
+    impact, (slowest, solid) = case.impact, bar_wave_speed(solids_of(case))
     if impact is None:
         return
     fall = 2.0 * impact.gravity * (impact.release_separation or 0.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, Self
 
 from pydantic import model_validator
@@ -15,6 +14,7 @@ from asperity.config.fields import entry
 from asperity.config.publication import Publication
 from asperity.config.roughness import Roughness
 from asperity.errors import InputError
+from asperity.inputs import Yielding
 from asperity.materials.solids import HARDNESS_PER_YIELD_STRENGTH, Solid, refuse_softer_than_yield
 
 PRESSURE_PER_YIELD_STRENGTH = 1.61
@@ -133,28 +133,6 @@ class Plasticity(Table):
                 f"{capillary.formation_time:.6g} s",
                 key="capillary.formation_time",
             )
-
-
-@dataclass(frozen=True)
-class Yielding:
-    """What yields in a contact of two solids.
-
-    Parameters
-    ----------
-    hardness : float
-        Indentation hardness [Pa].
-    yield_strength : float
-        Yield strength in uniaxial tension [Pa].
-    yield_pressure : float
-        Peak pressure of the contact at which it starts to yield [Pa].
-    poisson : float
-        Poisson's ratio of the solid that yields [-].
-    """
-
-    hardness: float
-    yield_strength: float
-    yield_pressure: float
-    poisson: float
 
 
 def yielding_of(table: Plasticity, solids: tuple[Solid, Solid]) -> Yielding:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from asperity.config import problems
+from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.limits import refuse_outside
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError, check_each, refuse_all
@@ -102,7 +103,7 @@ def _elastic_somewhere(case: CaseTables) -> None:
 def _waves_beside(case: CaseTables) -> None:
     """Refuse what waves cannot stand beside."""
     if case.waves is not None:
-        case.waves.refuse_beside(case.counterface_solid, case.capillary, case.publication)
+        case.waves.refuse_beside(solids_of(case)[1], case.capillary, case.publication)
 
 
 def _creep_beside(case: CaseTables) -> None:
@@ -144,9 +145,10 @@ def _creep_alone(case: CaseTables, with_it: str) -> None:
             f"'{case.waves.model}'",
             key="waves.model",
         )
-    if case.plasticity_model != "none":
+    yields = case.plasticity
+    if yields is not None and yields.model != "none":
         raise InputError(
-            f"`model` must be 'none' in [plasticity] {with_it}; got '{case.plasticity_model}'",
+            f"`model` must be 'none' in [plasticity] {with_it}; got '{yields.model}'",
             key="plasticity.model",
         )
 
@@ -172,7 +174,7 @@ def _yielding_beside(case: CaseTables) -> None:
             case.adhesion, case.capillary, case.roughness, case.publication
         ),
         lambda: table.refuse_under(case.counterface, case.roughness),
-        lambda: case.yielding,
+        lambda: case_yielding(case),
     )
 
 

@@ -1,4 +1,4 @@
-"""What the equation of motion needs: a contact, a body, and how they were chosen."""
+"""What the equation of motion needs: a contact, a body, and what they were built from."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..contact import Contact
 from ..contact.delayed_formation import DelayedContact
 from ..contact.viscoelastic import Relaxation
-from ..laws.adhesion_choice import AdhesionChoice
+from ..inputs import Inputs
 from .record import Body
 
 CLEARANCE = 1e-9
@@ -26,12 +26,8 @@ class Problem(NamedTuple):
         Forces between the two bodies.
     body
         Mass and release; at rest outside contact where a case has no [impact] table.
-    modulus
-        Contact modulus E* [Pa].
-    tip_radius
-        Radius [m] of one asperity, or of the smooth body.
-    adhesion
-        The law of adhesion in use, and why where the program chose it.
+    inputs
+        The quantities that it was built from.
     delayed
         The contact with menisci that take time to form; None where they form at once.
     class_error
@@ -42,9 +38,7 @@ class Problem(NamedTuple):
 
     contact: Contact
     body: Body
-    modulus: float
-    tip_radius: float
-    adhesion: AdhesionChoice
+    inputs: Inputs
     delayed: DelayedContact | None = None
     class_error: float = 0.0
     relaxation: Relaxation | None = None

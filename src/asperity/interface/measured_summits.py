@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from .._jax import jax, jnp
+from ..inputs import CLASSES
 from ..laws.law import Law, Real, Sum, terms
 from ..surfaces.heights import Sampled, Spread, spread_of
 from .interface import Interface
 from .layers import Layers, Surfaces
-from .radius_classes import CLASSES, RadiusClasses, members
+from .radius_classes import RadiusClasses, members
 
 _SOME = 4096  # quantiles of radii
 

@@ -10,15 +10,13 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..inputs import CLASSES
 from ..laws.law import Law, terms
 from ..surfaces.heights.panel_length import PanelLengths
 from .class_bonds import ClassBonds
 from .height_quadrature import Asked, Near
 from .interface import Interface, Means, Memory
 from .major_branches import BranchTable, branch_tables
-
-CLASSES = 6
-"""Classes of tip radius, where a law needs them."""
 
 
 class Scale(NamedTuple):

@@ -34,8 +34,10 @@ __all__ = [
     "Adhesion",
     "Liquid",
     "Solid",
+    "bar_wave_speed",
     "contact_modulus",
     "kelvin_radius",
+    "named",
     "refuse_softer_than_yield",
     "water_density",
     "water_tension",
@@ -147,6 +149,24 @@ def refuse_softer_than_yield(
             f"since an indentation that stays is made by yielding; got {hardness / 1e6:.6g} MPa",
             key=key,
         )
+
+
+def named(solid: Solid) -> str:
+    """What to call a solid in a sentence: its own name, or whose numbers it has."""
+    return f"the {solid.name}" if solid.name in ("body", "counterface") else solid.name
+
+
+def bar_wave_speed(solids: tuple[Solid, Solid]) -> tuple[float, Solid]:
+    """Smaller speed [m/s] of waves in bars of two solids, sqrt(E/rho), and whose it is.
+
+    A solid without a density does not count.
+    """
+    known = [
+        ((solid.youngs_modulus / solid.density) ** 0.5, solid)
+        for solid in solids
+        if solid.density is not None
+    ]
+    return min(known, key=lambda each: each[0])
 
 
 def contact_modulus(a: Solid, b: Solid) -> float:

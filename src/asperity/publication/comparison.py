@@ -9,34 +9,30 @@ from typing import Any
 import numpy as np
 
 from ..config import Case
-from ..materials.solids import contact_modulus
+from ..config.resolve import resolve
 from ..regimes import ELASTICITY_PER_TABOR, tabor_number
 from ..results.result import Result
-from .parameter_estimation import WITHIN, Inputs, Refit
+from .parameter_estimation import WITHIN, Parameters, Refit
 from .published_tables import QUANTITIES, Entry
 
 
 def table_1(case: Case) -> list[dict[str, Any]]:
     """Table 1 and the numbers derived from it, as published and as a case has them."""
-    body, flat, rough = case.body_solid, case.counterface_solid, case.asperities
-    liquid, adhesion = case.liquid, case.adhesion
+    inputs = resolve(case)
+    body, flat, rough, liquid = inputs.body, inputs.counterface, inputs.asperities, inputs.liquid
     assert rough is not None
     assert liquid is not None
-    assert adhesion.work is not None
-    assert adhesion.equilibrium_spacing is not None
-    modulus = contact_modulus(body, flat)
-    tabor = tabor_number(
-        rough.asperity_radius, adhesion.work, modulus, adhesion.equilibrium_spacing
-    )
+    work, modulus = inputs.work_of_adhesion, inputs.modulus
+    tabor = tabor_number(inputs.tip_radius, work, modulus, inputs.equilibrium_spacing)
     lines = (
         ("Young's modulus of silica", "Pa", 80e9, body.youngs_modulus),
         ("Young's modulus of silicon carbide", "Pa", 161e9, flat.youngs_modulus),
         ("Poisson's ratio of silica", "1", 0.25, body.poisson),
         ("Poisson's ratio of silicon carbide", "1", 0.23, flat.poisson),
         ("asperities per area", "1/m^2", 169e14, rough.asperity_density),
-        ("work of adhesion", "J/m^2", 30e-3, adhesion.work),
+        ("work of adhesion", "J/m^2", 30e-3, work),
         ("tension of water", "J/m^2", 75e-3, liquid.tension),
-        ("contact angle", "rad", radians(73.0), case.capillary.contact_angle),
+        ("contact angle", "rad", radians(73.0), inputs.contact_angle),
         ("contact modulus", "Pa", None, modulus),
         ("Tabor number", "1", 0.02, tabor),
         ("elasticity parameter", "1", 0.0235, ELASTICITY_PER_TABOR * tabor),
@@ -116,7 +112,7 @@ def power_of(entry: Entry, result: Result) -> dict[str, float | None]:
     }
 
 
-def found_of(inputs: Inputs, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
+def found_of(inputs: Parameters, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
     """The inputs and how well they fit, as plain numbers."""
     # The row that both tables share counts once.
     off = {

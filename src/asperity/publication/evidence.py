@@ -14,18 +14,20 @@ import numpy as np
 
 from .. import regimes
 from .._jax import jax, jnp
-from ..config import Asperities, Case, builtin
+from ..config import Case, builtin
+from ..config.resolve import resolve
 from ..contact import Contact, PublishedContact, RigidContact
 from ..halfspace import ring_mesh
-from ..materials.solids import contact_modulus, kelvin_radius
+from ..inputs import Asperities, Inputs
+from ..materials.solids import kelvin_radius
 from ..model import build
 from ..numerics.compilation import Program, kept
 from ..results.result import Result
 from ..solver import solve
-from .parameter_estimation import WITHIN, Inputs
+from .parameter_estimation import WITHIN, Parameters
 from .published_tables import Entry, read_tables
 
-PRINTED = Inputs(2.6146, 37.335e-9, 9.380)
+PRINTED = Parameters(2.6146, 37.335e-9, 9.380)
 """What a refit finds with the polynomials as printed: they meet the tables too."""
 
 _FEW = 6
@@ -97,7 +99,7 @@ class Evidence:
             }
             off = pool.submit(_printed_off, stop)
         own = {entry.surface: entry for entry in read_tables()}
-        rough = builtin("published").asperities
+        rough = resolve(builtin("published")).asperities
         assert rough is not None
         return cls(
             case=case,
@@ -109,41 +111,45 @@ class Evidence:
             **{name: motion.result() for name, motion in motions.items()},
         )
 
+    @cached_property
+    def inputs(self) -> Inputs:
+        """The quantities of ``case``."""
+        return resolve(self.case)
+
     @property
     def rough(self) -> Asperities:
         """The case's asperities."""
-        assert self.case.asperities is not None
-        return self.case.asperities
+        assert self.inputs.asperities is not None
+        return self.inputs.asperities
 
     @property
     def work(self) -> float:
         """Work of adhesion [J/m^2]."""
-        assert self.case.adhesion.work is not None
-        return self.case.adhesion.work
+        return self.inputs.work_of_adhesion
 
     @property
-    def wet_inputs(self) -> Inputs:
+    def wet_inputs(self) -> Parameters:
         """The inputs in use."""
-        return Inputs.of(self.case)
+        return Parameters.of(self.case)
 
     @cached_property
     def contact(self) -> PublishedContact:
         """The contact of ``case``."""
-        contact = build(self.case).contact
+        contact = build(self.inputs).contact
         assert isinstance(contact, PublishedContact)
         return contact
 
     @cached_property
     def exact_contact(self) -> RigidContact:
         """The contact of ``exact``."""
-        contact = build(self.exact.case).contact
+        contact = build(resolve(self.exact.case)).contact
         assert isinstance(contact, RigidContact)
         return contact
 
     @cached_property
     def weight(self) -> float:
         """Of the sphere [N]."""
-        return float(build(self.case).body.weight)
+        return float(build(self.inputs).body.weight)
 
     @property
     def closest(self) -> float:
@@ -180,8 +186,8 @@ class Evidence:
         place = mesh.radius * size
         gap = self.closest + place**2 / (2.0 * self.case.body.radius)
         pressure = np.asarray(self.contact.pressure.contact(jnp.asarray(gap)))
-        modulus = contact_modulus(self.case.body_solid, self.case.counterface_solid)
-        return place, gap, mesh.compliance @ pressure * size / modulus, pressure
+        displaced = mesh.compliance @ pressure * size / self.inputs.modulus
+        return place, gap, displaced, pressure
 
     @property
     def wet_touching(self) -> float:
@@ -211,11 +217,11 @@ class Evidence:
 
     def kelvin_radius(self, humidity: float) -> float:
         """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
-        return _kelvin_radius(self.case, humidity)
+        return _kelvin_radius(self.inputs, humidity)
 
 
-def _kelvin_radius(case: Case, humidity: float) -> float:
-    liquid, temperature = case.liquid, case.capillary.temperature
+def _kelvin_radius(inputs: Inputs, humidity: float) -> float:
+    liquid, temperature = inputs.liquid, inputs.liquid_temperature
     assert liquid is not None
     assert temperature is not None
     return kelvin_radius(liquid, humidity, temperature)
@@ -225,10 +231,10 @@ def _variants(case: Case) -> dict[str, Case]:
     """The cases to compute, those that compile longest first."""
     few = {"numerics.max_impacts": _FEW}
     exact = builtin("published-exact").replace({"counterface.deformation": "rigid", **few})
-    assert exact.asperities is not None
-    spacing = exact.asperities.asperity_density**-0.5
+    inputs = resolve(exact)
+    assert inputs.asperities is not None
     # The Kelvin radius goes with 1/ln(1/humidity).
-    damp = exp(-_kelvin_radius(exact, exp(-1.0)) / spacing)
+    damp = exp(-_kelvin_radius(inputs, exp(-1.0)) / inputs.asperities.spacing)
     return {
         "exact": exact,
         "printed": case.replace({"publication.polynomials": "printed"}),

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..config import Case
+from ..config.resolve import resolve
 from ..contact import PublishedContact
 from ..dynamics import Body, simulate
 from ..errors import Tolerance
@@ -38,7 +39,7 @@ _LEAST_CLEARANCE = np.log(1e-11)
 _MISSED = 3.0  # residual of a motion that does not rest
 
 
-class Inputs(NamedTuple):
+class Parameters(NamedTuple):
     """What is not in the publication's text.
 
     Attributes
@@ -56,7 +57,7 @@ class Inputs(NamedTuple):
     capillary_factor: float
 
     @classmethod
-    def of(cls, case: Case) -> Inputs:
+    def of(cls, case: Case) -> Parameters:
         """Those of a case."""
         assumed, gap = case.publication, case.launch.release_separation
         assert assumed is not None
@@ -93,11 +94,11 @@ class Refit:
         Best inputs and their rms for each of several ends of the conjunction.
     """
 
-    inputs: Inputs
+    inputs: Parameters
     rms: float
-    uncertainty: Inputs
+    uncertainty: Parameters
     correlation: np.ndarray
-    profile: list[tuple[Inputs, float]]
+    profile: list[tuple[Parameters, float]]
 
 
 class _Target(NamedTuple):
@@ -134,7 +135,7 @@ def refit(
     problem = _Problem(case, entries)
     if len(problem.targets) < len(UNKNOWN):
         return None
-    first = problem.start(Inputs.of(case))
+    first = problem.start(Parameters.of(case))
     if stop is not None and stop.is_set():
         return None
     report(0.1, "two inputs at each end of the conjunction")
@@ -194,8 +195,8 @@ class _Problem:
     """
 
     def __init__(self, case: Case, entries: Sequence[Entry]) -> None:
-        plain = Inputs(*Inputs.of(case)[:2], 1.0).within(case)
-        problem = build(plain)
+        plain = Parameters(*Parameters.of(case)[:2], 1.0).within(case)
+        problem = build(resolve(plain))
         assert isinstance(problem.contact, PublishedContact)
         self._contact, self._body = problem.contact, problem.body
         self._rest = plain.numerics.rest_height_ratio
@@ -210,9 +211,9 @@ class _Problem:
         }
         self.targets = sorted(found)  # the row that both tables share counts once
 
-    def inputs(self, x: np.ndarray) -> Inputs:
+    def inputs(self, x: np.ndarray) -> Parameters:
         gap = x[0] * self._highest + np.exp(x[1])
-        return Inputs(float(x[0]), float(gap), float(np.exp(x[2])))
+        return Parameters(float(x[0]), float(gap), float(np.exp(x[2])))
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
         allowed = _LOWEST_EDGE < x[0] < _HIGHEST_EDGE and x[2] < _LARGEST_FACTOR
@@ -228,7 +229,7 @@ class _Problem:
     def rms(self, x: np.ndarray) -> float:
         return float(np.sqrt(np.mean(self.residuals(x) ** 2)))
 
-    def start(self, given: Inputs) -> np.ndarray:
+    def start(self, given: Parameters) -> np.ndarray:
         """The best of the inputs given and of a coarse net at their end of the conjunction."""
         edge = given.conjunction_ends
         clearance = max(given.release_separation - edge * self._highest, 1e-10)
@@ -236,7 +237,7 @@ class _Problem:
         here = np.array([edge, np.log(clearance), np.log(given.capillary_factor)])
         return min([here, *net], key=self.rms)
 
-    def spread(self, x: np.ndarray) -> tuple[Inputs, np.ndarray]:
+    def spread(self, x: np.ndarray) -> tuple[Parameters, np.ndarray]:
         """Standard deviations of the inputs and their correlation, from central differences."""
         step = 0.01  # wide: a stiction time steps where an impact is added
         columns = []
@@ -256,7 +257,7 @@ class _Problem:
         covariance = change @ covariance @ change.T
         sigma = np.sqrt(np.diag(covariance))
         sigma = np.where(sigma > 0.0, sigma, np.nan)  # where no number depends on an input
-        return Inputs(*map(float, sigma)), covariance / np.outer(sigma, sigma)
+        return Parameters(*map(float, sigma)), covariance / np.outer(sigma, sigma)
 
 
 def _motion_of(

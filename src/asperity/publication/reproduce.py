@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..config import Case, builtin
 from ..config.html_table import card, counted
+from ..config.resolve import resolve
 from ..errors import InputError, SimulationError
 from ..results.result import Result
 from ..solver import solve
@@ -16,7 +17,7 @@ from . import audit, figures
 from .comparison import found_of, power_of, problems_of, rows_of, table_1
 from .evidence import Evidence
 from .figure_data import Drawing
-from .parameter_estimation import Inputs, Refit, refit
+from .parameter_estimation import Parameters, Refit, refit
 from .published_tables import Entry, read_tables
 
 if TYPE_CHECKING:
@@ -169,9 +170,10 @@ _ELSEWHERE = (
 
 def _usable(case: Case) -> Case:
     """The case; the built-in one where its release lies within its own conjunction."""
-    edge, gap, _ = Inputs.of(case)
-    assert case.asperities is not None
-    return case if gap > edge * case.asperities.rms_height else builtin("published")
+    edge, gap, _ = Parameters.of(case)
+    rough = resolve(case).asperities
+    assert rough is not None
+    return case if gap > edge * rough.rms_height else builtin("published")
 
 
 def _before(case: Case, entries: list[Entry], stop: threading.Event) -> Reproduction | None:
@@ -193,7 +195,7 @@ def _compared(
         for entry in _unique(entries)
         if entry.surface in results
     ]
-    found = found_of(Inputs.of(case), rows, fit)
+    found = found_of(Parameters.of(case), rows, fit)
     return Reproduction(rows, table_1(case), found, power, [], {}), results
 
 
@@ -206,7 +208,7 @@ def surface_case(case: Case, entry: Entry) -> Case:
         Where the release lies within the conjunction there.
     """
     case, (_, height) = entry.within(case), entry.surface
-    edge, gap, _ = Inputs.of(case)
+    edge, gap, _ = Parameters.of(case)
     if gap <= edge * height:
         raise InputError(
             f"`rms_height` must leave the release at {gap * 1e9:.4g} nm outside the conjunction, "

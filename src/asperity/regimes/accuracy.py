@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ..config import Case
 from ..contact import ElasticContact
 from ..contact.ring_error import ring_error
 from ..dynamics import Motion
@@ -16,18 +15,18 @@ HASTENED = 0.02
 """Share of the kinetic energy given that a fall may add without a word: 1 % of the speed."""
 
 
-def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
+def fall_warnings(problem: Problem, motion: Motion) -> list[str]:
     """A line where gravity hastens a body much that was launched from a release of no one's choice.
 
     Parameters
     ----------
-    case, problem
-        The case and what was built from it.
+    problem
+        What was built from a case.
     motion
         The motion.
     """
     kinetic, weight = float(problem.body.kinetic), float(problem.body.weight)
-    if case.impact is None or case.impact.release_separation is not None or not weight > 0.0:
+    if not problem.inputs.chosen_release or not weight > 0.0:
         return []
     fall = max(float(motion.release) - kinetic, weight * float(problem.body.release))
     if fall <= HASTENED * kinetic:
@@ -40,15 +39,15 @@ def fall_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     ]
 
 
-def ring_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
+def ring_warnings(problem: Problem, motion: Motion) -> list[str]:
     """A line where too few rings resolve the bulk's deformation at closest approach.
 
     More than the tolerance asks for, or than a ledger's balance where that is less strict.
 
     Parameters
     ----------
-    case, problem
-        The case and what was built from it.
+    problem
+        What was built from a case.
     motion
         The motion; without its curves nothing is said.
     """
@@ -58,7 +57,7 @@ def ring_warnings(case: Case, problem: Problem, motion: Motion) -> list[str]:
     deepest = float(motion.impacts.closest_approach[0])
     row = read_row(table, 0, deepest)
     off = ring_error(contact, deepest, float(row[SIZE]), row[quantities(contact).field])
-    allowed = max(case.numerics.tolerance, CLOSED)
+    allowed = max(problem.inputs.tolerance.relative, CLOSED)
     if not off > allowed:
         return []
     return [

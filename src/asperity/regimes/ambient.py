@@ -6,10 +6,9 @@ from math import pi
 
 import numpy as np
 
-from ..config import Case
-from ..config.gas import Gas
 from ..dynamics import Motion
 from ..dynamics.gas_film import slip_factor
+from ..inputs import Gas, Inputs
 from ..laws.liquid.constant_volume import EDGE_ANGLE, EDGE_HOLDS
 from ..materials.solids import Liquid
 from . import Regime
@@ -21,22 +20,23 @@ _COMPRESSED = 0.1  # of the gas's own pressure
 _CLOSE = 0.004  # of the radius: a gap at which the film is 1 % off (Brenner 1961)
 
 
-def liquid_warnings(case: Case, regime: Regime) -> list[str]:
+def liquid_warnings(inputs: Inputs, regime: Regime) -> list[str]:
     """One line for each way in which menisci leave the validity of their models.
 
     Parameters
     ----------
-    case
-        The case.
+    inputs
+        The quantities of a case.
     regime
         Its dimensionless numbers.
     """
-    liquid, kelvin_radius = case.liquid, case.kelvin_radius
-    if liquid is None or kelvin_radius == 0.0:
+    liquid = inputs.liquid
+    if liquid is None:
         return []
-    out = _below_a_molecule(case, liquid)
-    on_asperities = case.capillary.model != "kelvin-filling" and case.roughness is not None
-    if np.isinf(case.liquid_span):
+    out = _below_a_molecule(inputs, liquid)
+    smooth = inputs.asperities is None
+    on_asperities = inputs.structure.liquid != "kelvin-filling" and not smooth
+    if np.isinf(inputs.liquid_span):
         out.append(
             "the Kelvin radius is infinite: menisci of any height, which would have coalesced long "
             "before, are kept isolated"
@@ -50,31 +50,32 @@ def liquid_warnings(case: Case, regime: Regime) -> list[str]:
         out.append(
             f"flooded: {regime.liquid_regime_reason}: the drag of the liquid itself is left out"
         )
-    return out + _wide(case)
+    return out + _wide(inputs)
 
 
-def _below_a_molecule(case: Case, liquid: Liquid) -> list[str]:
+def _below_a_molecule(inputs: Inputs, liquid: Liquid) -> list[str]:
     """Menisci, or gaps that they span, smaller than a molecule."""
     molecule = f"less than a molecule of {liquid.name} ({liquid.molecule_size * 1e9:.2g} nm)"
-    if case.liquid_radius < liquid.molecule_size:
-        whose = "Kelvin radius" if case.liquid_radius == case.kelvin_radius else "liquid's radius"
+    if inputs.liquid_radius < liquid.molecule_size:
+        whose = (
+            "Kelvin radius" if inputs.liquid_radius == inputs.kelvin_radius else "liquid's radius"
+        )
         return [
-            f"the {whose} is {case.liquid_radius * 1e9:.2g} nm, {molecule}: no meniscus of "
+            f"the {whose} is {inputs.liquid_radius * 1e9:.2g} nm, {molecule}: no meniscus of "
             "continuum liquid"
         ]
-    if case.liquid_span < liquid.molecule_size:
+    if inputs.liquid_span < liquid.molecule_size:
         return [
-            f"menisci span gaps up to {case.liquid_span * 1e9:.2g} nm, {molecule}: no meniscus of "
-            "continuum liquid"
+            f"menisci span gaps up to {inputs.liquid_span * 1e9:.2g} nm, {molecule}: no meniscus "
+            "of continuum liquid"
         ]
     return []
 
 
-def _wide(case: Case) -> list[str]:
+def _wide(inputs: Inputs) -> list[str]:
     """Menisci that see more than the cap of their asperity."""
-    rough, span = case.asperities, case.liquid_span
-    tip = case.body.radius if rough is None else rough.asperity_radius
-    filled = case.capillary.model == "kelvin-filling" and rough is not None
+    rough, span, tip = inputs.asperities, inputs.liquid_span, inputs.tip_radius
+    filled = inputs.structure.liquid == "kelvin-filling" and rough is not None
     if filled or np.isinf(span):
         return []
     what = "asperity" if rough is not None else "body"
@@ -84,15 +85,15 @@ def _wide(case: Case) -> list[str]:
             f"menisci are wider than their {what}: the gap at their edge is {span * 1e9:.3g} nm, "
             f"and only up to {0.5 * tip * 1e9:.3g} nm, half its radius, does the edge lie on it"
         )
-    if case.capillary.model == "constant-volume":
-        out += _thick(case.capillary.contact_angle, pi * (span / tip) ** 2)
+    if inputs.structure.liquid == "constant-volume":
+        out += _thick(inputs.contact_angle, pi * (span / tip) ** 2)
     return out
 
 
-def _thick(angle: float | None, volume: float) -> list[str]:
+def _thick(angle: float, volume: float) -> list[str]:
     """Menisci of constant volume beyond the angle [rad] and volume [radius^3] of their tests."""
     out = []
-    if angle is not None and angle > EDGE_ANGLE:
+    if angle > EDGE_ANGLE:
         out.append(
             f"the contact angle is {np.degrees(angle):.4g} deg: menisci of constant volume are "
             f"tested up to {np.degrees(EDGE_ANGLE):.0f} deg, and taken for thin beyond that"
@@ -105,46 +106,38 @@ def _thick(angle: float | None, volume: float) -> list[str]:
     return out
 
 
-def gas_warnings(case: Case, central: float, motion: Motion) -> list[str]:
+def gas_warnings(inputs: Inputs, central: float, motion: Motion) -> list[str]:
     """One line for each way in which a gas film leaves the validity of its model.
 
     Parameters
     ----------
-    case
-        The case.
+    inputs
+        The quantities of a case.
     central
         Separation [m] of the deformed mean planes at the axis at closest approach.
     motion
         The motion.
     """
-    gas = case.gas
+    gas = inputs.gas
     if gas is None:
         return []
-    thinnest = max(central, _film_stops(case, gas))
+    thinnest = max(central, gas.cutoff_separation)
     out = [
-        *_far(case),
-        *_two_temperatures(case, gas),
+        *_far(inputs),
+        *_two_temperatures(inputs, gas),
         *_slip(gas, thinnest),
-        *_compressed(case, gas, thinnest, motion),
+        *_compressed(inputs, gas, thinnest, motion),
     ]
     if not float(motion.impacts.apex[0]) > float(motion.impacts.closest_approach[0]):
-        held = case.launch.gravity > 0.0
+        held = inputs.release is not None and inputs.release.gravity > 0.0
         end = "creeps to rest" if held else "never touches"
         out.append(f"the gas film damps the fall so strongly that the body {end}")
     return out
 
 
-def _film_stops(case: Case, gas: Gas) -> float:
-    """Separation below which the film does not thin [m]."""
-    if gas.cutoff_separation is not None:
-        return gas.cutoff_separation
-    assert case.asperities is not None
-    return case.asperities.rms_height
-
-
-def _far(case: Case) -> list[str]:
+def _far(inputs: Inputs) -> list[str]:
     """A film so thick that the sphere is not close to the wall."""
-    release, radius = case.launch.release_separation, case.body.radius
+    radius, release = inputs.radius, None if inputs.release is None else inputs.release.separation
     if release is None or release <= _CLOSE * radius:
         return []
     return [
@@ -154,9 +147,9 @@ def _far(case: Case) -> list[str]:
     ]
 
 
-def _two_temperatures(case: Case, gas: Gas) -> list[str]:
-    liquid = case.capillary.temperature
-    if gas.temperature is None or case.liquid is None or liquid is None:
+def _two_temperatures(inputs: Inputs, gas: Gas) -> list[str]:
+    liquid = inputs.liquid_temperature
+    if gas.temperature is None or liquid is None:
         return []
     if abs(gas.temperature - liquid) <= 1.0:
         return []
@@ -182,12 +175,11 @@ def _slip(gas: Gas, thinnest: float) -> list[str]:
     return []
 
 
-def _compressed(case: Case, gas: Gas, thinnest: float, motion: Motion) -> list[str]:
+def _compressed(inputs: Inputs, gas: Gas, thinnest: float, motion: Motion) -> list[str]:
     """A film whose gas is compressed."""
-    mass = case.body_density * 4.0 / 3.0 * pi * case.body.radius**3
-    speed = np.sqrt(2.0 * float(motion.impacts.maximum_kinetic[0]) / mass)
-    slip = float(slip_factor(thinnest, gas.film_slip_length))
-    pressure = 3.0 * gas.film_viscosity * case.body.radius * speed * slip / thinnest**2
+    speed = np.sqrt(2.0 * float(motion.impacts.maximum_kinetic[0]) / inputs.mass)
+    slip = float(slip_factor(thinnest, gas.slip_length))
+    pressure = 3.0 * gas.viscosity * inputs.radius * speed * slip / thinnest**2
     if gas.pressure is None or not pressure > _COMPRESSED * gas.pressure:
         return []
     return [

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from .boundaries import SHARE
 from .dimensionless_numbers import ELASTICITY_PER_TABOR
-
-if TYPE_CHECKING:
-    from ..laws.adhesion_choice import AdhesionChoice
 
 DMT_BELOW = 0.1
 """Tabor number below which adhesion leaves the shape of a contact alone; the publication's rule."""
@@ -33,6 +30,24 @@ LAW_NAMES = {
     "jkr": "JKR",
 }
 """The laws as they are called in text, by their names in a case."""
+
+
+class AdhesionChoice(NamedTuple):
+    """The law of adhesion in use.
+
+    Attributes
+    ----------
+    law
+        Its name, as in a case file.
+    reason
+        Why this one, in a line; None where the case names the law.
+    near_borders
+        A warning for each border between two laws that is near.
+    """
+
+    law: str
+    reason: str | None = None
+    near_borders: tuple[str, ...] = ()
 
 
 class _Border(NamedTuple):
@@ -69,8 +84,6 @@ def choose_adhesion(tabor: float) -> AdhesionChoice:
     tabor
         Tabor number of one asperity, or of the smooth body; positive.
     """
-    from ..laws.adhesion_choice import AdhesionChoice  # here: the room of laws loads JAX
-
     elasticity = ELASTICITY_PER_TABOR * tabor
     near = tuple(border for border in _BORDERS if _is_near(elasticity, border))
     if elasticity < RIGID_BELOW:

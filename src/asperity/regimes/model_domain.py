@@ -10,12 +10,10 @@ from math import pi, sqrt
 import numpy as np
 from scipy.special import erfcx
 
-from ..config import Case
-from ..config.asperities import Asperities
-from ..config.bodies import named
-from ..config.limits import wave_speed
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
+from ..inputs import Asperities, Inputs
+from ..materials.solids import bar_wave_speed, named
 
 LARGE_ASPERITY = 0.1
 """Asperity radius over body radius from which the effective radius, R beta/(R + beta), is 9 % off
@@ -44,47 +42,47 @@ as in Johnson, Contact Mechanics (1985), ch. 11."""
 _EDGE = 3.0  # rms heights: how far out asperities touch
 
 
-def domain_warnings(
-    case: Case, problem: Problem, elastic: float, central: float, motion: Motion
-) -> list[str]:
+def domain_warnings(problem: Problem, elastic: float, central: float, motion: Motion) -> list[str]:
     """One line for each size or speed at which the models of a case begin to fail.
 
     Parameters
     ----------
-    case, problem
-        The case and what was built from it.
+    problem
+        What was built from a case.
     elastic, central
         Elastic force [N], and separation [m] of the deformed mean planes at the axis, at closest
         approach.
     motion
         The motion.
     """
-    rough = case.asperities
+    inputs = problem.inputs
+    moves, rough = inputs.release is not None, inputs.asperities
     speed = sqrt(2.0 * float(motion.impacts.maximum_kinetic[0]) / float(problem.body.mass))
     return [
-        *([] if rough is None else _asperities(case, rough, central)),
-        *_shape(case, contact_radius(case, problem, elastic, central), motion),
-        *(_pressed(case, problem.modulus, elastic) if case.impact is None else []),
-        *([] if case.impact is None else _waves(case, speed)),
-        *([] if case.impact is None else _yields(case, problem.modulus, speed)),
+        *([] if rough is None else _asperities(inputs, rough, central)),
+        *_shape(inputs, contact_radius(problem, elastic, central), motion),
+        *([] if moves else _pressed(inputs, elastic)),
+        *(_waves(inputs, speed) if moves else []),
+        *(_yields(inputs, speed) if moves else []),
     ]
 
 
-def contact_radius(case: Case, problem: Problem, elastic: float, central: float) -> float:
+def contact_radius(problem: Problem, elastic: float, central: float) -> float:
     """Radius [m] of the whole contact: of Hertz's, or of where the highest asperities touch.
 
     Parameters
     ----------
-    case, problem, elastic, central
+    problem, elastic, central
         As for :func:`domain_warnings`.
     """
-    radius, rough = case.body.radius, case.asperities
+    inputs = problem.inputs
+    radius, rough = inputs.radius, inputs.asperities
     relaxed = 1.0 if problem.relaxation is None else float(problem.relaxation.ratio)
-    hertz = float(np.cbrt(0.75 * max(elastic, 0.0) * radius / (relaxed * problem.modulus)))
+    hertz = float(np.cbrt(0.75 * max(elastic, 0.0) * radius / (relaxed * inputs.modulus)))
     if rough is None:
         return hertz
     rise = max(rough.mean_height + _EDGE * rough.rms_height - central, 0.0)
-    bulk = 0.0 if case.counterface.deformation == "rigid" else hertz
+    bulk = 0.0 if inputs.structure.deformation == "rigid" else hertz
     return max(sqrt(2.0 * radius * rise), bulk)
 
 
@@ -100,9 +98,9 @@ def mean_overlap(rough: Asperities, separation: float) -> float:
     return rough.rms_height * max(ratio - reduced, 0.0)
 
 
-def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
+def _asperities(inputs: Inputs, rough: Asperities, central: float) -> list[str]:
     """Asperities that are large or high beside the body, or pressed deep beside their tips."""
-    radius, tip, height = case.body.radius, rough.asperity_radius, rough.rms_height
+    radius, tip, height = inputs.radius, rough.asperity_radius, rough.rms_height
     out = []
     if tip > LARGE_ASPERITY * radius:
         out.append(
@@ -116,7 +114,7 @@ def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
             "paraboloid that stands for the sphere is off where asperities touch"
         )
     overlap = mean_overlap(rough, central)
-    told = case.plasticity_model != "none" and overlap > tip  # with the plastic laws' limits
+    told = inputs.yields and overlap > tip  # with the plastic laws' limits
     if overlap > OVERLAP * tip and not told:
         out.append(
             f"the mean overlap of contacting asperities is {overlap / tip:.2g} of their tip radius "
@@ -126,9 +124,9 @@ def _asperities(case: Case, rough: Asperities, central: float) -> list[str]:
     return out
 
 
-def _shape(case: Case, width: float, motion: Motion) -> list[str]:
+def _shape(inputs: Inputs, width: float, motion: Motion) -> list[str]:
     """A contact that is not small beside the body."""
-    radius, depth = case.body.radius, -float(motion.impacts.closest_approach[0])
+    radius, depth = inputs.radius, -float(motion.impacts.closest_approach[0])
     if depth <= DEEP * radius and width <= WIDE * radius:
         return []
     sinks = f"the body sinks in by {100.0 * depth / radius:.0f} % of its radius and "
@@ -139,9 +137,9 @@ def _shape(case: Case, width: float, motion: Motion) -> list[str]:
     ]
 
 
-def _waves(case: Case, speed: float) -> list[str]:
+def _waves(inputs: Inputs, speed: float) -> list[str]:
     """Impacts too fast for a contact that is quasi-static."""
-    slowest, solid = wave_speed(case)
+    slowest, solid = bar_wave_speed((inputs.body, inputs.counterface))
     ratio = speed / slowest
     if ratio <= FAST:
         return []
@@ -150,8 +148,9 @@ def _waves(case: Case, speed: float) -> list[str]:
     cost = f"about {100.0 * share:.0f} % of its energy goes into elastic waves (Hunter 1957)"
     if share >= 1.0:
         cost = "the contact is not quasi-static"
-    modelled = case.waves is not None and case.waves.model != "none"
-    left_out = "" if modelled or share >= 1.0 else ", which are left out without [waves]"
+    left_out = (
+        "" if inputs.structure.waves or share >= 1.0 else ", which are left out without [waves]"
+    )
     return [
         f"the body comes in at {speed:.3g} m/s, {ratio:.2g} of the speed of waves in a bar of "
         f"{named(solid)} ({slowest:.3g} m/s): {cost}{left_out}"
@@ -192,16 +191,19 @@ def first_yield_load(pressure: float, modulus: float, radius: float) -> float:
     return pi**3 * pressure**3 * radius**2 / (6.0 * modulus**2)
 
 
-def _elastic_model(case: Case) -> bool:
-    """Whether a smooth body whose strength is known does not yield."""
-    return case.roughness is None and case.plasticity_model == "none" and case.has_strength
+def _elastic_strength(inputs: Inputs) -> float | None:
+    """Pressure [Pa] at which a smooth body yields in an elastic model; None where unknown."""
+    if inputs.asperities is not None or inputs.yields or inputs.yielding is None:
+        return None
+    return inputs.yielding.yield_pressure
 
 
-def _pressed(case: Case, modulus: float, elastic: float) -> list[str]:
+def _pressed(inputs: Inputs, elastic: float) -> list[str]:
     """A smooth body that a load would make yield, in an elastic model."""
-    if not _elastic_model(case):
+    pressure = _elastic_strength(inputs)
+    if pressure is None:
         return []
-    first = first_yield_load(case.yielding.yield_pressure, modulus, case.body.radius)
+    first = first_yield_load(pressure, inputs.modulus, inputs.radius)
     if elastic <= first:
         return []
     return [
@@ -211,11 +213,13 @@ def _pressed(case: Case, modulus: float, elastic: float) -> list[str]:
     ]
 
 
-def _yields(case: Case, modulus: float, speed: float) -> list[str]:
+def _yields(inputs: Inputs, speed: float) -> list[str]:
     """A smooth body that would yield, in an elastic model."""
-    if not _elastic_model(case):
+    pressure = _elastic_strength(inputs)
+    if pressure is None:
         return []
-    first = first_yield_speed(case.yielding.yield_pressure, modulus, case.body_density)
+    assert inputs.body.density is not None
+    first = first_yield_speed(pressure, inputs.modulus, inputs.body.density)
     if speed <= first:
         return []
     return [

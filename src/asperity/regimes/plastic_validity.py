@@ -5,14 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from .._jax import jax, jnp
-from ..config import Case
-from ..config.bodies import named
-from ..config.plastic_law import plastic_contact
-from ..config.plasticity import Plasticity
-from ..errors import InputError
+from ..inputs import Inputs
 from ..laws.law import as_float64
-from ..laws.plastic import KogutEtsion, PlasticContact
-from ..materials.solids import Solid
+from ..laws.plastic import PlasticContact
+from ..materials.solids import Solid, named
+from ..model import plastic_law
 from ..numerics.compilation import AT_ONCE, Program
 from ..surfaces.heights import Gaussian
 
@@ -23,51 +20,53 @@ SHARE = 0.01
 """Share of the contacting asperities beyond yield from which it is said."""
 
 
-def kept_elastic(case: Case, restitution: float, elastic: float | None) -> list[str]:
+def kept_elastic(inputs: Inputs, restitution: float, elastic: float | None) -> list[str]:
     """A line on what a case that yields would have returned, had nothing yielded.
 
     Parameters
     ----------
-    case
-        The case.
+    inputs
+        The quantities of a case.
     restitution, elastic
         Restitution of its first impact, and of that without yielding where it is known.
     """
-    if case.plasticity_model == "none" or elastic is None:
+    if not inputs.yields or elastic is None:
         return []
     found = f"{float(restitution):.3g}" if np.isfinite(restitution) else "nothing"
     without = "what the first impact would have returned could not be computed"
     if np.isfinite(elastic):
         without = f"the first impact would have returned e = {elastic:.5g}"
-    return [f"without yielding {without}; with it ({case.plasticity_model}) it returns {found}"]
+    return [
+        f"without yielding {without}; with it ({inputs.structure.plasticity}) it returns {found}"
+    ]
 
 
-def yielded(case: Case, modulus: float, central: float) -> list[str]:
+def yielded(inputs: Inputs, central: float) -> list[str]:
     """Lines on the share of contacting asperities that is beyond yield, and how far they are.
 
     And on what is taken to yield, or cannot be judged, where that is not known.
 
     Parameters
     ----------
-    case
-        The case.
-    modulus
-        Contact modulus E* [Pa].
+    inputs
+        The quantities of a case.
     central
         Separation at the axis at closest approach [m].
     """
-    beyond = _beyond(case, modulus, central)
-    if beyond or case.plasticity_model != "none":
-        return [*beyond, *_taken(case)]
-    return _not_judged(case)
+    beyond = _beyond(inputs, central)
+    if beyond or inputs.yields:
+        return [*beyond, *_taken(inputs)]
+    return _not_judged(inputs)
 
 
-def _beyond(case: Case, modulus: float, central: float) -> list[str]:
+def _beyond(inputs: Inputs, central: float) -> list[str]:
     """Lines on asperities beyond yield, as for :func:`yielded`."""
-    rough = case.asperities
-    if rough is None or not case.has_strength:
+    rough = inputs.asperities
+    if rough is None or inputs.yielding is None:
         return []
-    law = _law(case, rough.asperity_radius, modulus)
+    # Where nothing yields, the share is told by Kogut and Etsion's law.
+    name = inputs.structure.plasticity if inputs.yields else "kogut-etsion"
+    law = plastic_law(inputs, name)
     heights = Gaussian(rough.rms_height, rough.mean_height)
     overlap, contacting, beyond, whole = (
         float(x) for x in _tails(law, heights, as_float64(central))
@@ -75,13 +74,13 @@ def _beyond(case: Case, modulus: float, central: float) -> list[str]:
     share = beyond / contacting if contacting > 0.0 else 0.0
     if share < SHARE:
         return []
-    advice = ": [plasticity] lets them yield" if _could_yield(case) else ""
+    advice = ": [plasticity] lets them yield" * (inputs.could_yield and not inputs.yields)
     out = [
         f"{100.0 * share:.3g} % of the contacting asperities are beyond yield at closest approach "
-        f"(overlaps above {overlap * 1e9:.3g} nm, by {_model(case)}){advice}"
+        f"(overlaps above {overlap * 1e9:.3g} nm, by {name}){advice}"
     ]
     mean, tip = whole / contacting, rough.asperity_radius
-    if case.plasticity_model != "none" and mean > min(FITTED * overlap, tip):
+    if inputs.yields and mean > min(FITTED * overlap, tip):
         out.append(
             f"the mean overlap of contacting asperities, {mean * 1e9:.3g} nm, is "
             f"{mean / overlap:.3g} times that of yield and {mean / tip:.3g} tip radii: the laws "
@@ -102,12 +101,12 @@ def _counted(
 _tails = Program(_counted, AT_ONCE)
 
 
-def _not_judged(case: Case) -> list[str]:
+def _not_judged(inputs: Inputs) -> list[str]:
     """A line where the strength of a solid is not known, and nothing else says so.
 
     A solid that never yields leaves nothing to judge.
     """
-    solids = {named(solid): solid for solid in (case.body_solid, case.counterface_solid)}
+    solids = {named(solid): solid for solid in (inputs.body, inputs.counterface)}
     known = {name: _judged(solid) for name, solid in solids.items() if not solid.never_yields}
     if all(known.values()):
         return []
@@ -126,10 +125,10 @@ def _judged(solid: Solid) -> bool:
     return solid.hardness is not None or solid.yield_strength is not None
 
 
-def _taken(case: Case) -> list[str]:
+def _taken(inputs: Inputs) -> list[str]:
     """A line where one solid counts as the softer because nothing is known of the other."""
-    table, solids = case.plasticity, (case.body_solid, case.counterface_solid)
-    if table and (table.hardness or table.yield_strength or table.yield_pressure):
+    solids = (inputs.body, inputs.counterface)
+    if inputs.strength_given:
         return []
     known = [_judged(solid) for solid in solids]
     if all(known) or not any(known) or any(solid.never_yields for solid in solids):
@@ -139,29 +138,3 @@ def _taken(case: Case) -> list[str]:
         f"{softer} is taken to be the softer solid, which yields: neither hardness nor yield "
         f"strength of {other} is known, and were it softer the contact would yield sooner"
     ]
-
-
-def _model(case: Case) -> str:
-    """Name of the law in use, or of the one by which the share is told where nothing yields."""
-    return "kogut-etsion" if case.plasticity_model == "none" else case.plasticity_model
-
-
-def _law(case: Case, tip: float, modulus: float) -> PlasticContact:
-    """The law in use, or Kogut and Etsion's where nothing yields."""
-    if case.plasticity_model != "none":
-        return plastic_contact(case, tip, modulus)
-    soft = case.yielding
-    return KogutEtsion(tip, modulus, soft.hardness, soft.poisson)
-
-
-def _could_yield(case: Case) -> bool:
-    """Whether a [plasticity] table would be taken by a case that has none."""
-    if case.plasticity_model != "none":
-        return False
-    table = Plasticity(model="kogut-etsion")
-    try:
-        table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
-        table.refuse_under(case.counterface, case.roughness)
-    except InputError:
-        return False
-    return True

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..config import Case
 from ..contact import Contact, ElasticContact
 from ..dynamics import Motion
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, read_row
@@ -15,7 +14,7 @@ from ..dynamics.problem import Problem
 from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import sample
 from ..errors import InputError
-from ..interface.radius_classes import CLASSES
+from ..inputs import Inputs
 from . import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, missed, tabor_number
 from .accuracy import CLOSED, fall_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
@@ -62,15 +61,13 @@ class AtDepth(NamedTuple):
         return cls(float(row[CONTACTING]), float(elastic), float(row[CENTRAL]))
 
 
-def warnings_of(
-    case: Case, problem: Problem, regime: Regime, at_depth: AtDepth, motion: Motion
-) -> list[str]:
+def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Motion) -> list[str]:
     """One line for each way in which a case leaves the validity of its models.
 
     Parameters
     ----------
-    case, problem
-        The case and what was built from it.
+    problem
+        What was built from a case.
     regime
         Its dimensionless numbers.
     at_depth
@@ -78,62 +75,58 @@ def warnings_of(
     motion
         The motion.
     """
+    inputs = problem.inputs
     return [
-        *_surface(case, problem),
-        *_asperities(case, at_depth),
-        *_publication(case),
-        *_adhesion(regime, problem.adhesion.near_borders, case.plasticity_model != "none"),
-        *yielded(case, problem.modulus, at_depth.central),
-        *liquid_warnings(case, regime),
-        *gas_warnings(case, at_depth.central, motion),
-        *wave_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
-        *domain_warnings(case, problem, at_depth.elastic, at_depth.central, motion),
-        *fall_warnings(case, problem, motion),
-        *ring_warnings(case, problem, motion),
+        *_surface(problem),
+        *_asperities(inputs, at_depth),
+        *_publication(inputs),
+        *_adhesion(regime, inputs.near_borders, inputs.yields),
+        *yielded(inputs, at_depth.central),
+        *liquid_warnings(inputs, regime),
+        *gas_warnings(inputs, at_depth.central, motion),
+        *wave_warnings(problem, at_depth.elastic, at_depth.central, motion),
+        *domain_warnings(problem, at_depth.elastic, at_depth.central, motion),
+        *fall_warnings(problem, motion),
+        *ring_warnings(problem, motion),
         *_ledger(problem, motion),
     ]
 
 
-def _surface(case: Case, problem: Problem) -> list[str]:
+def _surface(problem: Problem) -> list[str]:
     """What the reading of measured surfaces says, and what classes of radius cost."""
-    rough, table = case.asperities, case.roughness
-    if rough is None or table is None:
+    rough = problem.inputs.asperities
+    if rough is None:
         return []
     out = list(rough.warnings)
-    off, classes = problem.class_error, table.radius_classes or CLASSES
+    off, classes = problem.class_error, problem.inputs.radius_classes
     if abs(off) > CLASSED:
         out.append(
             f"{classes} classes of tip radius make the work of bonds {100 * abs(off):.2g} % too "
             f"{'small' if off < 0.0 else 'large'}: raise `radius_classes`"
         )
-    return out + _one_law(case, problem)
+    return out + _one_law(problem.inputs)
 
 
-def _one_law(case: Case, problem: Problem) -> list[str]:
+def _one_law(inputs: Inputs) -> list[str]:
     """A line where the law chosen for the mean tip radius would not be chosen for all tips."""
-    rough, given, table = case.asperities, case.adhesion, case.roughness
-    if given.model != "auto" or rough is None or rough.summits is None or table is None:
+    rough, used = inputs.asperities, inputs.structure
+    chosen = inputs.adhesion_reason is not None
+    if not chosen or rough is None or rough.summits is None or used.heights != "summits":
         return []
-    if table.source != "summits" or given.work is None or given.equilibrium_spacing is None:
-        return []
+    work, spacing = inputs.work_of_adhesion, inputs.equilibrium_spacing
     ends = np.quantile(rough.summits.radii, (0.05, 0.95))
-    laws = [
-        choose_adhesion(
-            tabor_number(tip, given.work, problem.modulus, given.equilibrium_spacing)
-        ).law
-        for tip in ends
-    ]
-    if laws == [problem.adhesion.law] * 2:
+    laws = [choose_adhesion(tabor_number(tip, work, inputs.modulus, spacing)).law for tip in ends]
+    if laws == [used.adhesion] * 2:
         return []
     names = " and ".join(LAW_NAMES[law] for law in dict.fromkeys(laws))
     return [
-        f"the {LAW_NAMES[problem.adhesion.law]} law was chosen for the mean tip radius: between "
+        f"the {LAW_NAMES[used.adhesion]} law was chosen for the mean tip radius: between "
         f"radii of {ends[0] * 1e9:.3g} and {ends[1] * 1e9:.3g} nm (5 to 95 % of the "
         f"summits) it would be {names}"
     ]
 
 
-def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
+def check_surface(problem: Problem, at_depth: AtDepth) -> None:
     """Refuse a measured surface that is smaller than the contact.
 
     The contact is as wide as where the highest summit still touches at closest approach, or as
@@ -144,14 +137,15 @@ def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
     InputError
         If it is.
     """
-    rough, radius = case.asperities, case.body.radius
+    inputs = problem.inputs
+    rough, radius = inputs.asperities, inputs.radius
     if rough is None or rough.surface is None or rough.summits is None:
         return
     rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
     hertz = 0.0
-    if case.counterface.deformation != "rigid":
+    if inputs.structure.deformation != "rigid":
         relaxed = 1.0 if problem.relaxation is None else float(problem.relaxation.ratio)
-        modulus = relaxed * problem.modulus
+        modulus = relaxed * inputs.modulus
         hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / modulus)
     width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
     if width > side:
@@ -163,8 +157,8 @@ def check_surface(case: Case, problem: Problem, at_depth: AtDepth) -> None:
         )
 
 
-def _asperities(case: Case, at_depth: AtDepth) -> list[str]:
-    rough = case.asperities
+def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
+    rough = inputs.asperities
     if rough is None:
         return []
     out = []
@@ -196,21 +190,21 @@ def _hardly_one(contacting: float) -> str:
     )
 
 
-def pull_warnings(case: Case, pull_off: float, held: float) -> list[str]:
+def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
     """A line where fewer than one asperity is expected to hold at pull-off.
 
     Parameters
     ----------
-    case
-        The case.
+    inputs
+        The quantities of a case.
     pull_off
         Pull-off force [N].
     held
         Expected number of asperities that touch or are bonded there.
     """
-    if case.asperities is None or not pull_off > 0.0 or held >= 1.0:
+    if inputs.asperities is None or not pull_off > 0.0 or held >= 1.0:
         return []
-    if case.capillary.model == "kelvin-filling":
+    if inputs.structure.liquid == "kelvin-filling":
         return []  # liquid between the mean planes holds the body, and no bond of an asperity
     return [
         f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "
@@ -228,8 +222,8 @@ def release_warnings(reference: float) -> list[str]:
     ]
 
 
-def _publication(case: Case) -> list[str]:
-    assumed = case.publication
+def _publication(inputs: Inputs) -> list[str]:
+    assumed = inputs.published
     if assumed is None:
         return []
     pulls = "adhesion and menisci pull only while the bodies part, " * (
@@ -237,7 +231,7 @@ def _publication(case: Case) -> list[str]:
     )
     factor = assumed.capillary_factor
     menisci = f", and menisci pull {factor:g} times as much as their equation says" * (
-        case.liquid is not None and factor != 1.0
+        inputs.liquid is not None and factor != 1.0
     )
     return [
         f"[publication] follows a paper, not physics: {pulls}nothing acts beyond "

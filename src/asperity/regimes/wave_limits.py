@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..config import Case
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..dynamics.wave_radiation import shear_speed
+from ..inputs import Inputs
 from .model_domain import contact_radius
 
 SMALL = 0.1
@@ -19,15 +19,13 @@ SPHERE_MODE = 2.64
 _QUASI_STATIC = 0.25  # of that mode: a sphere that is shaken more slowly hardly rings
 
 
-def wave_warnings(
-    case: Case, problem: Problem, elastic: float, central: float, motion: Motion
-) -> list[str]:
+def wave_warnings(problem: Problem, elastic: float, central: float, motion: Motion) -> list[str]:
     """One line for each way in which radiated waves leave the validity of their model.
 
     Parameters
     ----------
-    case, problem
-        The case and what was built from it.
+    problem
+        What was built from a case.
     elastic, central
         Elastic force [N], and separation [m] of the deformed mean planes at the axis, at closest
         approach.
@@ -41,8 +39,8 @@ def wave_warnings(
     rate = elastic / (mass * sqrt(2.0 * energy / mass))
     return [
         *_strong(problem, motion, energy),
-        *_wide(case, problem, elastic, central, rate),
-        *_ringing(case, rate),
+        *_wide(problem, elastic, central, rate),
+        *_ringing(problem.inputs, rate),
         *_snaps(problem, motion),
     ]
 
@@ -58,11 +56,12 @@ def _strong(problem: Problem, motion: Motion, energy: float) -> list[str]:
     ]
 
 
-def _wide(case: Case, problem: Problem, elastic: float, central: float, rate: float) -> list[str]:
+def _wide(problem: Problem, elastic: float, central: float, rate: float) -> list[str]:
     """A contact that is not small beside the waves."""
-    solid = case.counterface_solid
+    solid = problem.inputs.counterface
+    assert solid.density is not None
     speed = float(shear_speed(solid.youngs_modulus, solid.poisson, solid.density))
-    half = contact_radius(case, problem, elastic, central)
+    half = contact_radius(problem, elastic, central)
     # Waves from a Hertz pressure: 1 - (k a)^2/5 of those from its point force.
     error = (rate * half / speed) ** 2 / 5.0
     if error <= SMALL:
@@ -74,9 +73,10 @@ def _wide(case: Case, problem: Problem, elastic: float, central: float, rate: fl
     ]
 
 
-def _ringing(case: Case, rate: float) -> list[str]:
+def _ringing(inputs: Inputs, rate: float) -> list[str]:
     """A sphere that is struck too quickly to stay quasi-static."""
-    solid, radius = case.body_solid, case.body.radius
+    solid, radius = inputs.body, inputs.radius
+    assert solid.density is not None
     speed = float(shear_speed(solid.youngs_modulus, solid.poisson, solid.density))
     if rate <= _QUASI_STATIC * SPHERE_MODE * speed / radius:
         return []

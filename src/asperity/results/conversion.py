@@ -21,7 +21,7 @@ from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
 from ..regimes.accuracy import CLOSED
-from ..regimes.liquid_regime import LiquidState, liquid_state
+from ..regimes.liquid_regime import liquid_state
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
     AtDepth,
@@ -108,11 +108,11 @@ def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> Firs
 
 
 def _sampled(
-    case: Case, solution: Solution, body: Body, most: int | None
+    problem: Problem, solution: Solution, most: int | None
 ) -> tuple[Series, dict[str, np.ndarray]]:
     """A motion as a time series, and the energy lost by mechanism along it."""
     motion, contact, stepped = solution.motion, solution.contact, solution.trajectory
-    limit = np.inf if case.numerics.time_limit is None else case.numerics.time_limit
+    body, limit = problem.body, problem.inputs.tolerance.time_limit
     impacts = motion.impacts
     cut = most is not None and most < int(np.sum(impacts.made))
     if cut:
@@ -153,13 +153,13 @@ def result_of(
         Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
     """
     problem = problem._replace(body=solution.body or problem.body)
-    motion, body = solution.motion, problem.body
+    motion, body, inputs = solution.motion, problem.body, problem.inputs
     made = int(np.sum(motion.impacts.made))
     measures = measured(solution, body)
-    series, lost = _sampled(case, solution, body, most)
+    series, lost = _sampled(problem, solution, most)
     at_depth = AtDepth.of(solution.contact, motion, solution.trajectory)
-    check_surface(case, problem, at_depth)
-    regime = regime_of(case, problem, at_depth)
+    check_surface(problem, at_depth)
+    regime = regime_of(problem, at_depth)
     forces, energies = _histories(solution.contact, motion, body, series, lost)
     impacts = motion.impacts
     return Result(
@@ -175,13 +175,13 @@ def result_of(
         regime=regime._asdict(),
         measures=_plain(measures, made),
         ledger=_ledger(solution.contact, motion, body, made),
-        surface=None if case.asperities is None else case.asperities.facts,
+        surface=None if inputs.asperities is None else inputs.asperities.facts,
         warnings=[
-            *warnings_of(case, problem, regime, at_depth, motion),
-            *pull_warnings(case, float(measures.pull_off), float(measures.held_at_pull_off)),
+            *warnings_of(problem, regime, at_depth, motion),
+            *pull_warnings(inputs, float(measures.pull_off), float(measures.held_at_pull_off)),
             *release_warnings(float(measures.reference)),
             *slow_menisci(problem, motion, solution.trajectory),
-            *kept_elastic(case, float(np.asarray(measures.restitution)[0]), elastic),
+            *kept_elastic(inputs, float(np.asarray(measures.restitution)[0]), elastic),
         ],
         events={
             name: np.asarray(values)[:made]
@@ -216,75 +216,68 @@ class Assessment(NamedTuple):
     warnings: list[str]
 
 
-def assessment_of(
-    case: Case, name: str, problem: Problem, contact: Contact, motion: Motion
-) -> Assessment:
+def assessment_of(name: str, problem: Problem, contact: Contact, motion: Motion) -> Assessment:
     """What a case's numbers say, from a motion of one impact.
 
     Parameters
     ----------
-    case, name
-        The case, and what to call it.
+    name
+        What to call it.
     problem
-        What was built from it.
+        What was built from a case.
     contact, motion
         The contact that it was integrated with, and the motion.
     """
     at_depth = AtDepth.of(contact, motion)
-    check_surface(case, problem, at_depth)
-    regime = regime_of(case, problem, at_depth)
-    rough, liquid = case.asperities, case.liquid
+    check_surface(problem, at_depth)
+    regime = regime_of(problem, at_depth)
+    inputs = problem.inputs
+    rough, liquid = inputs.asperities, inputs.liquid
     situation = regimes.Situation(
         regime=regime,
         rough=rough is not None,
-        tip_radius=problem.tip_radius,
-        spacing=None if rough is None else rough.asperity_density**-0.5,
+        tip_radius=inputs.tip_radius,
+        spacing=None if rough is None else rough.spacing,
         contacting=at_depth.contacting,
-        kelvin_radius=case.liquid_radius,
+        kelvin_radius=inputs.liquid_radius,
         molecule_size=None if liquid is None else liquid.molecule_size,
-        bounded=case.liquid_radius < case.kelvin_radius,
-        on_tips=case.capillary.model != "kelvin-filling" or rough is None,
-        yields=case.plasticity_model != "none",
+        bounded=inputs.liquid_radius < inputs.kelvin_radius,
+        on_tips=inputs.structure.liquid != "kelvin-filling" or rough is None,
+        yields=inputs.yields,
     )
-    warnings = warnings_of(case, problem, regime, at_depth, motion)
+    warnings = warnings_of(problem, regime, at_depth, motion)
     warnings += slow_menisci(problem, motion)
     return Assessment(name, regime, regimes.verdicts(situation), warnings)
 
 
-def regime_of(case: Case, problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+def regime_of(problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     """The dimensionless numbers of a case, by its contact at closest approach."""
-    adhesion, rough = case.adhesion, case.asperities
-    work, spacing = adhesion.work, adhesion.equilibrium_spacing
+    inputs = problem.inputs
+    rough, soft, tip = inputs.asperities, inputs.yielding, inputs.tip_radius
+    work, spacing = inputs.work_of_adhesion, inputs.equilibrium_spacing
     tabor = plasticity = load = None
     if work and spacing:
-        tabor = regimes.tabor_number(problem.tip_radius, work, problem.modulus, spacing)
-    if rough is not None and case.has_strength:
+        tabor = regimes.tabor_number(tip, work, inputs.modulus, spacing)
+    if rough is not None and soft is not None:
         plasticity = regimes.plasticity_index(
-            problem.modulus, case.yielding.hardness, rough.rms_height, rough.asperity_radius
+            inputs.modulus, soft.hardness, rough.rms_height, rough.asperity_radius
         )
     contacting = max(at_depth.contacting, 0.0)  # far apart, a polynomial may say a little less
     if work and contacting > 0.0:
-        elastic = at_depth.elastic
-        load = regimes.load_parameter(elastic, contacting, work, problem.tip_radius)
+        load = regimes.load_parameter(at_depth.elastic, contacting, work, tip)
     elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
-    liquid = _liquid(case, problem, at_depth)
+    liquid = liquid_state(
+        radius=inputs.liquid_radius,
+        span=inputs.liquid_span,
+        tip_radius=tip,
+        spacing=None if rough is None else rough.spacing,
+        central=at_depth.central,
+        rms_height=inputs.surface_rms_height,
+    )
     return regimes.Regime(
-        tabor, elasticity, plasticity, load, problem.adhesion.law, problem.adhesion.reason,
+        tabor, elasticity, plasticity, load, inputs.structure.adhesion, inputs.adhesion_reason,
         liquid.regime, liquid.reason, None if rough is None else contacting,
     )  # fmt: skip
-
-
-def _liquid(case: Case, problem: Problem, at_depth: AtDepth) -> LiquidState:
-    rough, given = case.asperities, case.capillary.surface_rms_height
-    rms = 0.0 if rough is None else given or rough.surface_rms_height or rough.rms_height
-    return liquid_state(
-        radius=case.liquid_radius,
-        span=case.liquid_span,
-        tip_radius=problem.tip_radius,
-        spacing=None if rough is None else rough.asperity_density**-0.5,
-        central=at_depth.central,
-        rms_height=rms,
-    )
 
 
 def _histories(

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..config import Case
 from ..config.html_table import card, counted
+from ..config.resolve import resolve
 from ..critical_velocity import Launcher, Rebound, critical_measures
 from ..dynamics import Limits
 from ..errors import InputError, SimulationError
@@ -222,23 +223,22 @@ def restitution_curve(
     name = case.name if name is None else name
     if speeds is not None:
         speeds = _checked(speeds)
-    tell, problem, _ = progress or silently, build(case), case.launch
-    limits = Limits.of(dataclasses.replace(case.tolerance, max_impacts=1, time_limit=np.inf))
-    numerics = case.numerics.model_copy(update={"max_impacts": 1, "time_limit": None})
-    first = case.model_copy(update={"numerics": numerics})
-    solution = integrate(first, problem, tell, stop)
-    about = assessment_of(case, name, problem, solution.contact, solution.motion)
+    _, report = case.launch, progress or silently
+    inputs = resolve(case).first_impact()
+    problem, limits = build(inputs), Limits.of(inputs.tolerance)
+    solution = integrate(problem, report, stop)
+    about = assessment_of(name, problem, solution.contact, solution.motion)
     measures = measured(solution, problem.body)
     own = float(measures.impact_speed)  # none where gas stops the body before
     own = own if np.isfinite(own) else float(measures.maximum_speed)
     launcher = Launcher(problem, solution, limits, finer=_FINER, stop=stop)
-    tell(0.3, "critical velocity")
+    report(0.3, "critical velocity")
     found = critical_measures(launcher.edges(solution))
     if speeds is None:
         speeds = _decades(found["capture_edges"], own, points)
     rebounds: list[Rebound] = []
     for number, speed in enumerate(speeds.tolist()):
-        tell(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
+        report(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
         rebounds.append(launcher(speed))
     known = sorted((r for r in rebounds if np.isfinite(r.speed)), key=lambda r: r.speed)
     if not known:
@@ -249,7 +249,7 @@ def restitution_curve(
             f"{len(rebounds) - len(known)} of {len(rebounds)} speeds are left out: their force "
             "curves are not fine enough, or their motion could not be solved"
         )
-    tell(1.0, "done")
+    report(1.0, "done")
     return RestitutionCurve(
         case=case,
         name=name,

@@ -10,6 +10,7 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.config import Case, builtin
+from asperity.config.resolve import resolve
 from asperity.dynamics import Motion
 from asperity.integration import first_impact
 from asperity.laws import Jkr
@@ -128,7 +129,7 @@ def _heights(case: Case) -> tuple[float, float]:
     """Heights [m] above the static equilibrium, of the release and of the first apex."""
     motion = _motion(case)
     reference = float(motion.reference.equilibrium)
-    release = float(build(case).body.release)
+    release = float(build(resolve(case)).body.release)
     return release - reference, float(motion.impacts.apex[0]) - reference
 
 
@@ -138,4 +139,4 @@ def _ledger() -> float:
 
 
 def _motion(case: Case) -> Motion:
-    return first_impact(case, build(case))[1]
+    return first_impact(build(resolve(case)))[1]

@@ -11,7 +11,6 @@ from scipy.special import ndtr
 
 from ... import regimes
 from ...laws.published_pressures import EQ_10, EQ_17
-from ...materials.solids import contact_modulus
 from ...numerics.height_integrals import height_integral
 from ...results.summary import amount
 from ..evidence import PRINTED, Evidence, first
@@ -44,11 +43,9 @@ def claims(evidence: Evidence) -> list[Claim]:
 
 
 def _models(evidence: Evidence) -> list[Claim]:
-    case, rough = evidence.case, evidence.rough
-    modulus = contact_modulus(case.body_solid, case.counterface_solid)
-    assert case.adhesion.equilibrium_spacing is not None
+    inputs = evidence.inputs
     tabor = regimes.tabor_number(
-        rough.asperity_radius, evidence.work, modulus, case.adhesion.equilibrium_spacing
+        inputs.tip_radius, evidence.work, inputs.modulus, inputs.equilibrium_spacing
     )
     elasticity = regimes.ELASTICITY_PER_TABOR * tabor
     psi = float(evidence.wet.regime["plasticity_index"])
@@ -63,7 +60,7 @@ def _models(evidence: Evidence) -> list[Claim]:
               either(load < 100.0, AGREES, WRONG)),
         Claim("Asperities deform elastically (eq. 16), whatever eq. 3 says", "-",
               f"the plasticity index is {psi:.3g} at a hardness of "
-              f"{amount(case.body_solid.hardness, 'Pa')}; above 1 they yield",
+              f"{amount(inputs.body.hardness, 'Pa')}; above 1 they yield",
               either(psi < 1.0, AGREES, OUTSIDE)),
     ]  # fmt: skip
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 from scipy.special import ndtr
 
@@ -29,7 +27,7 @@ def claims(evidence: Evidence) -> list[Claim]:
 
 
 def _damping(evidence: Evidence) -> list[Claim]:
-    case, inputs = evidence.case, evidence.wet_inputs
+    inputs = evidence.wet_inputs
     wet = first(evidence.wet.measures["log_decrement"])
     restitution = first(evidence.both_ways.measures["restitution"])
     published = evidence.published.values["log_decrement"]
@@ -41,7 +39,7 @@ def _damping(evidence: Evidence) -> list[Claim]:
               either(restitution < 0.999, AGREES, UNEXPLAINED)),
         Claim("Release gap, density, number of bands, grid", "-",
               f"{amount(inputs.release_separation, 'm')} from rest, found from the tables; "
-              f"{case.body_density:g} kg/m^3, assumed",
+              f"{evidence.inputs.body.density:g} kg/m^3, assumed",
               MISSING),
         Claim("The force of the menisci (eq. 15)", "1",
               f"times {inputs.capillary_factor:.4g}, found from the tables. The asperities that "
@@ -96,7 +94,7 @@ def _gas(evidence: Evidence) -> Claim:
     gas, _ = gas_decrement(
         release=inputs.release_separation,
         rebound=edge,
-        mass=case.body_density * 4.0 / 3.0 * pi * case.body.radius**3,
+        mass=evidence.inputs.mass,
         gravity=case.launch.gravity,
         radius=case.body.radius,
         viscosity=air.viscosity(ROOM_TEMPERATURE),

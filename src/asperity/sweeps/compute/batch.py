@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.config import Case
+from asperity.config.resolve import resolve
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.model import build
@@ -134,11 +135,11 @@ def _computed(
         for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
             row = int(group.rows[place])
             try:
-                pair = group.cases[place] if group.cases else _built(study.case(first + row))
+                alone = group.problems[place] if group.problems else _built(study, first + row)
             except InputError as error:  # a surface's file that is another one by now
                 _fail(out, row, str(error))
             else:
-                lines[row] = warnings_in(*pair, solution, place)
+                lines[row] = warnings_in(alone, solution, place)
     for row, case in whole.alone:
         found = _solve(study, out, row, case, clock)
         if row in looked and found is not None:
@@ -149,8 +150,8 @@ def _computed(
     return out, Effort(count, clock.batch_use, compiled, wall, len(lines), tuple(sorted(warned)))
 
 
-def _built(case: Case) -> tuple[Case, Problem]:
-    return case, build(case)
+def _built(study: Study, number: int) -> Problem:
+    return build(resolve(study.case(number)))
 
 
 def _blank(study: Study, count: int) -> Columns:
@@ -201,11 +202,11 @@ def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) ->
                 out[column.name][at] = found[column.name][moved]
     for place, reason in solution.reasons.items():
         _fail(out, int(rows[place]), reason)
-    for place, (case, problem) in enumerate(group.cases):
+    for place, problem in enumerate(group.problems):
         if place not in solution.reasons:
             at_depth = AtDepth(*solution.at_depth[place].tolist())
             try:
-                check_surface(case, problem, at_depth)
+                check_surface(problem, at_depth)
             except InputError as error:
                 _fail(out, int(rows[place]), str(error))
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from asperity._jax import jax, jnp
 from asperity.config import Case
+from asperity.config.resolve import resolve
 from asperity.contact import Contact, ElasticContact, RigidContact
 from asperity.contact.resolution import Resolution, lengths_in_rms, resolution_of
 from asperity.dynamics import Body
@@ -68,8 +69,8 @@ class Group(NamedTuple):
         What is integrated.
     tolerance
         Relative error allowed to each one's force curves [-].
-    cases
-        Each case with what was built of it, where they were built one by one; else empty.
+    problems
+        What was built of each case, where they were built one by one; else empty.
     launched
         Whether speeds alone are given, and the release is to be found.
     """
@@ -77,7 +78,7 @@ class Group(NamedTuple):
     rows: np.ndarray
     batch: Batch
     tolerance: np.ndarray
-    cases: tuple[tuple[Case, Problem], ...] = ()
+    problems: tuple[Problem, ...] = ()
     launched: bool = False
 
 
@@ -164,18 +165,18 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
         chosen[key] = Rows.of(some) if some.dtype.kind == "f" else some.tolist()[0]
     try:
         case = study.case_of(chosen)
-        problem = build(case, _UNRESOLVED)
+        problem = build(resolve(case), _UNRESOLVED)
     except (InputError, Split):
         raise
     except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
         raise _Differs from error
-    ends = _batch_of(case, problem)
+    ends = _batch_of(problem)
     both = [_case(study, values, row) for row in (rows[0], rows[-1])]
-    alone = [_batch_of(each, build(each, _UNRESOLVED)) for each in both]
+    alone = [_batch_of(build(resolve(each), _UNRESOLVED)) for each in both]
     batch = _spread(ends, alone, rows.size)
-    tolerance = np.broadcast_to(np.asarray(case.tolerance.relative, float), rows.shape)
-    launched = case.launch.release_separation is None
-    group = Group(rows, batch, tolerance, launched=launched)
+    inputs = problem.inputs
+    tolerance = np.broadcast_to(np.asarray(inputs.tolerance.relative, float), rows.shape)
+    group = Group(rows, batch, tolerance, launched=inputs.chosen_release)
     return group, problem.delayed is not None or problem.relaxation is not None
 
 
@@ -211,17 +212,16 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
     for row in rows.tolist():
         try:
             case = _case(study, values, row)
-            problem = build(case)
+            problem = build(resolve(case))
         except InputError as error:
             out.refused[row] = str(error)
             continue
         if problem.delayed is not None or problem.relaxation is not None:
             out.alone.append((row, case))
             continue
-        batch = jax.tree_util.tree_map(_raised, _batch_of(case, problem), is_leaf=_is_array)
-        tolerance = np.asarray([case.tolerance.relative])
-        launched = case.launch.release_separation is None
-        group = Group(np.asarray([row]), batch, tolerance, ((case, problem),), launched)
+        batch = jax.tree_util.tree_map(_raised, _batch_of(problem), is_leaf=_is_array)
+        tolerance, launched = problem.inputs.tolerance.relative, problem.inputs.chosen_release
+        group = Group(np.asarray([row]), batch, np.asarray([tolerance]), (problem,), launched)
         out.groups.append(_coarser(group))
 
 
@@ -229,8 +229,8 @@ def _case(study: Study, values: Values, row: int) -> Case:
     return study.case_of({key: array[row : row + 1].tolist()[0] for key, array in values.items()})
 
 
-def _batch_of(case: Case, problem: Problem) -> Batch:
-    ends = case.tolerance
+def _batch_of(problem: Problem) -> Batch:
+    ends = problem.inputs.tolerance
     rest, time_limit = (np.asarray(x, float) for x in (ends.rest, ends.time_limit))
     impacts = np.asarray(ends.max_impacts)
     return Batch(problem.contact, problem.body, rest, time_limit, impacts)
@@ -322,6 +322,6 @@ def _joined(groups: list[Group]) -> Group:
     batch = jax.tree_util.tree_map(joined, *(group.batch for group in groups))
     rows = np.concatenate([group.rows for group in groups])
     tolerance = np.concatenate([group.tolerance for group in groups])
-    whole = all(group.cases for group in groups)
-    cases = tuple(case for group in groups for case in group.cases) if whole else ()
-    return Group(rows, batch, tolerance, cases, groups[0].launched)
+    whole = all(group.problems for group in groups)
+    problems = tuple(one for group in groups for one in group.problems) if whole else ()
+    return Group(rows, batch, tolerance, problems, groups[0].launched)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from asperity.config import Case
 from asperity.dynamics import Impacts, Motion
 from asperity.dynamics.problem import Problem
 from asperity.regimes.validity import AtDepth, pull_warnings, release_warnings, warnings_of
@@ -15,13 +14,13 @@ Warned = tuple[int, str]
 """The number of a case, and a line on where it leaves the validity of its models."""
 
 
-def warnings_in(case: Case, problem: Problem, solution: BatchSolution, place: int) -> list[str]:
+def warnings_in(problem: Problem, solution: BatchSolution, place: int) -> list[str]:
     """One line for each way in which a case of a solution leaves the validity of its models.
 
     Parameters
     ----------
-    case, problem
-        The case, and what was built from it.
+    problem
+        What was built from the case.
     solution
         The solution, in which it made an impact.
     place
@@ -38,7 +37,7 @@ def warnings_in(case: Case, problem: Problem, solution: BatchSolution, place: in
         for name in ("pull_off", "held_at_pull_off", "reference")
     )
     return [
-        *warnings_of(case, problem, regime_of(case, problem, at_depth), at_depth, motion),
-        *pull_warnings(case, pull_off, held),
+        *warnings_of(problem, regime_of(problem, at_depth), at_depth, motion),
+        *pull_warnings(problem.inputs, pull_off, held),
         *release_warnings(reference),
     ]

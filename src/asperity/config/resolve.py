@@ -1,0 +1,206 @@
+"""From a case to its physical quantities: each is computed here, once."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from asperity.config.asperities import asperities_of, refuse_asperities
+from asperity.config.case_solids import case_yielding, solids_of
+from asperity.config.plasticity import Plasticity
+from asperity.errors import InputError, Tolerance
+from asperity.inputs import (
+    CLASSES,
+    Asperities,
+    Assumptions,
+    Gas,
+    Inputs,
+    Release,
+    Structure,
+)
+from asperity.materials.solids import Liquid, contact_modulus, kelvin_radius
+from asperity.regimes.choice import AdhesionChoice, choose_adhesion
+from asperity.regimes.dimensionless_numbers import tabor_number
+
+if TYPE_CHECKING:
+    from asperity.config.tables import CaseTables
+
+
+def resolve(case: CaseTables) -> Inputs:
+    """The physical quantities of a case.
+
+    Parameters
+    ----------
+    case
+        The case. Its numbers may be arrays of many cases that are alike in all else.
+
+    Raises
+    ------
+    InputError
+        If a file of a surface cannot be used, or its asperities are as large as the body.
+    """
+    body, counterface = solids_of(case)
+    rough, radius = _asperities(case), case.body.radius
+    tip = radius if rough is None else rough.asperity_radius
+    modulus = contact_modulus(body, counterface)
+    adhesion = _adhesion(case, tip, modulus)
+    liquid, kelvin = _condensed(case)
+    air = case.capillary
+    angle, film = air.contact_angle or 0.0, air.adsorbed_film_thickness
+    liquid_radius = kelvin if film is None else min(kelvin, film / _cosine(angle))
+    if liquid_radius == 0.0:
+        liquid = None
+    assert body.density is not None
+    relaxing = case.viscoelasticity is not None and case.viscoelasticity.model != "none"
+    table = case.roughness
+    return Inputs(
+        structure=Structure(
+            adhesion=adhesion.law,
+            liquid="none" if liquid is None else air.model,
+            formation=air.formation,
+            plasticity="none" if case.plasticity is None else case.plasticity.model,
+            deformation=case.counterface.deformation,
+            viscoelastic=relaxing,
+            waves=case.waves is not None and case.waves.model != "none",
+            heights="smooth" if table is None else table.source or "gaussian",
+        ),
+        body=body,
+        counterface=counterface,
+        radius=radius,
+        mass=body.density * 4.0 / 3.0 * math.pi * radius**3,
+        modulus=modulus,
+        tip_radius=tip,
+        yielding=case_yielding(case),
+        strength_given=_strength_given(case),
+        could_yield=_could_yield(case),
+        work_of_adhesion=0.0 if adhesion.law == "none" else _given(case.adhesion.work),
+        equilibrium_spacing=_or_zero(case.adhesion.equilibrium_spacing),
+        adhesion_reason=adhesion.reason,
+        near_borders=adhesion.near_borders,
+        asperities=rough,
+        surface_rms_height=_surface_rms_height(case, rough),
+        radius_classes=CLASSES if table is None else table.radius_classes or CLASSES,
+        liquid=liquid,
+        contact_angle=angle,
+        kelvin_radius=kelvin,
+        liquid_radius=liquid_radius,
+        liquid_span=2.0 * liquid_radius * _cosine(angle),
+        liquid_temperature=None if liquid is None else air.temperature,
+        formation_time=_or_zero(air.formation_time),
+        gas=_gas(case, rough),
+        relaxed_modulus_ratio=_relaxation(case, "relaxed_modulus_ratio") if relaxing else 1.0,
+        relaxation_time=_relaxation(case, "relaxation_time") if relaxing else 0.0,
+        release=_release(case),
+        published=_assumptions(case),
+        tolerance=_tolerance(case),
+    )
+
+
+def _asperities(case: CaseTables) -> Asperities | None:
+    """The asperities, read from the files if there are any; None for a smooth body."""
+    if case.roughness is None:
+        return None
+    rough = asperities_of(case.roughness)
+    refuse_asperities(case.body.radius, rough)
+    return rough
+
+
+def _adhesion(case: CaseTables, tip: float, modulus: float) -> AdhesionChoice:
+    """The law of adhesion that the case names, or the one that holds where it leaves the choice."""
+    given = case.adhesion
+    if given.model != "auto":
+        return AdhesionChoice(given.model)
+    work, spacing = _given(given.work), _given(given.equilibrium_spacing)
+    return choose_adhesion(tabor_number(tip, work, modulus, spacing))
+
+
+def _condensed(case: CaseTables) -> tuple[Liquid | None, float]:
+    """The liquid of the menisci at its temperature, and its Kelvin radius [m]."""
+    air = case.capillary
+    if air.model == "none":
+        return None, 0.0
+    liquid, humidity = air.substance(), _given(air.humidity)
+    if humidity == 1.0:
+        return liquid, math.inf
+    return liquid, kelvin_radius(liquid, humidity, _given(air.temperature))
+
+
+def _surface_rms_height(case: CaseTables, rough: Asperities | None) -> float:
+    """Rms height [m] of the surface, given or measured, or else of its summits."""
+    if rough is None:
+        return 0.0
+    given = case.capillary.surface_rms_height
+    if given is None:
+        return rough.rms_height if rough.surface is None else rough.surface.rms_height
+    return given
+
+
+def _gas(case: CaseTables, rough: Asperities | None) -> Gas | None:
+    """The gas in the gap, whose film thins down to the rms height where nothing else is said."""
+    table = case.gas
+    if table is None:
+        return None
+    closest = table.cutoff_separation
+    if closest is None:
+        closest = 0.0 if rough is None else rough.rms_height
+    return Gas(*table.film(), closest, table.pressure, table.temperature)
+
+
+def _relaxation(case: CaseTables, key: str) -> float:
+    return _given(getattr(case.viscoelasticity, key))
+
+
+def _release(case: CaseTables) -> Release | None:
+    impact = case.impact
+    if impact is None:
+        return None
+    return Release(impact.release_separation, _or_zero(impact.speed), impact.gravity)
+
+
+def _tolerance(case: CaseTables) -> Tolerance:
+    table = case.numerics
+    limit = math.inf if table.time_limit is None else table.time_limit
+    ratio, most = table.rest_height_ratio, table.max_impacts
+    return Tolerance(table.tolerance, ratio, limit, most, table.rings)
+
+
+def _assumptions(case: CaseTables) -> Assumptions | None:
+    table = case.publication
+    return None if table is None else Assumptions(**table.model_dump())
+
+
+def _strength_given(case: CaseTables) -> bool:
+    table = case.plasticity
+    if table is None or table.model == "none":
+        return False
+    return any((table.hardness, table.yield_strength, table.yield_pressure))
+
+
+def _could_yield(case: CaseTables) -> bool:
+    """Whether a law of yielding could stand beside the other tables."""
+    table = Plasticity(model="kogut-etsion")
+    try:
+        table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
+        table.refuse_under(case.counterface, case.roughness)
+    except InputError:
+        return False
+    return True
+
+
+def _cosine(angle: Any) -> Any:
+    """Cosine of an angle [rad], or of those of many cases."""
+    if isinstance(angle, float):
+        return math.cos(angle)
+    import numpy as np  # here: reading a case needs none of it
+
+    return np.cos(angle)
+
+
+def _or_zero(value: float | None) -> float:
+    return 0.0 if value is None else value
+
+
+def _given(value: float | None) -> float:
+    """A value that the schema requires with the model in use."""
+    assert value is not None
+    return value
