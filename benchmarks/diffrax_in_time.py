@@ -45,7 +45,7 @@ def field(_: Any, y: jax.Array, given: Any) -> jax.Array:
 
     def acts(level: jax.Array) -> tuple[jax.Array, jax.Array]:
         state = contact.state(separation, memory, level)
-        return state.bonds[contact.delayed], state.force
+        return state.bonds[contact.meniscus_index], state.force
 
     bonds, force = jax.jacfwd(acts, has_aux=True)(threshold)
     goal = separation - contact.law.forming_gap
@@ -93,7 +93,7 @@ def stepping(method: str, rtol: float) -> Callable[..., Any]:
 def first_impact(leg: Any, frame: Frame, memory: Any) -> tuple[float, float, float, int]:
     """Closest approach and apex [m], the apex's time [s], and steps that were taken."""
     contact, body = frame.contact, frame.body
-    goal, release = float(frame.forming[contact.delayed]), float(body.release)
+    goal, release = float(frame.forming[contact.meniscus_index]), float(body.release)
     fall = np.sqrt(2.0 * release / float(body.gravity))
     energy = float(body.weight) * release
     scale = jnp.array([release, float(body.gravity) * fall, release, energy])
@@ -117,7 +117,7 @@ def first_impact(leg: Any, frame: Frame, memory: Any) -> tuple[float, float, flo
                 forming = forming or (sign < 0 and mark <= float(y[2]) + goal + frame.close)
         turns.append(float(y[0]))
         memory = contact.base.remember(contact.with_threshold(memory, y[2]), y[0])
-        broken = float(y[0]) - float(frame.breaking[contact.delayed])
+        broken = float(y[0]) - float(frame.breaking[contact.meniscus_index])
         y = y.at[1].set(0.0).at[2].set(max(float(y[2]), broken))
         forming = forming and (sign > 0 or float(y[2]) > float(y[0]) - goal + frame.close)
     return turns[0], turns[1], clock, steps

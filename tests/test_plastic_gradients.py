@@ -37,7 +37,7 @@ def impact(logarithms):
     motion = simulate(RigidContact(interface, Sphere(RADIUS)), body, tolerance=ONE)
     rows, measures = motion.impacts, measure(motion, body)
     return jnp.stack([measures.restitution[0], rows.closest_approach[0], rows.apex[0],
-                      measures.reference, *rows.lost[0]])  # fmt: skip
+                      measures.contact_end, *rows.lost[0]])  # fmt: skip
 
 
 @pytest.fixture(scope="module")

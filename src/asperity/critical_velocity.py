@@ -111,14 +111,14 @@ class Launcher:
         except SimulationError:
             return _UNKNOWN
         measures = measured(solution, body)
-        if not np.isfinite(measures.reference):  # contact reaches beyond where it was launched
+        if not np.isfinite(measures.contact_end):  # contact reaches beyond where it was launched
             return _UNKNOWN
         leaving = float(np.asarray(solution.motion.impacts.leaving)[0])
         return Rebound(
             float(measures.impact_speed),
             float(np.asarray(measures.restitution)[0]),
             bool(measures.captured),
-            leaving - float(body.weight) * float(measures.reference),
+            leaving - float(body.weight) * float(measures.contact_end),
         )
 
     def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:

@@ -116,7 +116,7 @@ def test_restitution_counts_what_passes_the_end_of_contact(problem, integrated):
     """Speeds there, in and out, of an integration in time; less is lost than between apexes."""
     start = 200e-9
     motion, measures = integrated(18.2e-6, 75e-9, start)
-    weight, place = float(problem.body.weight), float(measures.reference)
+    weight, place = float(problem.body.weight), float(measures.contact_end)
     film, memory = problem.body.film, problem.contact.initial_memory()
     speeds = []
     speeds.append(_in_time(problem, start, -1, memory, film, until=place)[2])

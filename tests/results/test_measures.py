@@ -34,7 +34,7 @@ def integrated():
 
 def test_impact_speed_is_that_of_free_fall_to_where_forces_begin(integrated):
     _, found = integrated
-    fall = 200e-9 - float(found.reference)
+    fall = 200e-9 - float(found.contact_end)
     assert float(found.impact_speed) == pytest.approx(sqrt(2.0 * 9.81 * fall), rel=1e-6)
 
 
@@ -66,15 +66,15 @@ def test_decrement_is_the_logarithm_of_successive_heights(integrated):
 def test_restitution_of_a_drop_is_the_root_of_the_ratio_of_heights(integrated):
     """Apart, all energy is m g (d - d_ref)."""
     motion, found = integrated
-    above = np.concatenate([[200e-9], motion.impacts.apex]) - float(found.reference)
+    above = np.concatenate([[200e-9], motion.impacts.apex]) - float(found.contact_end)
     np.testing.assert_allclose(found.restitution, np.sqrt(above[1:] / above[:-1]), rtol=1e-6)
 
 
 def test_energies_are_compared_where_contact_ends(integrated):
     motion, found = integrated
     peak = float(motion.impacts.force[0])
-    torn = CONTACT.state(found.reference, CONTACT.extreme((True,)))
-    fresh = CONTACT.state(found.reference, CONTACT.initial_memory())
+    torn = CONTACT.state(found.contact_end, CONTACT.extreme((True,)))
+    fresh = CONTACT.state(found.contact_end, CONTACT.initial_memory())
     largest = max(abs(float(torn.force)), abs(float(fresh.force)))
     assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
 

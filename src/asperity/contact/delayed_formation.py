@@ -140,7 +140,7 @@ class DelayedContact(eqx.Module):
 
     base: Contact
     laws: tuple[Law, ...]
-    delayed: int = eqx.field(static=True)
+    meniscus_index: int = eqx.field(static=True)
     time: Real = quantity()
 
     def __init__(self, contact: RigidContact | ElasticContact | SmoothContact, time: Real) -> None:
@@ -151,13 +151,13 @@ class DelayedContact(eqx.Module):
             else contact.interface.hysteretic
         )
         self.base = _base_of_smooth(contact) if smooth else _base_of_rough(contact)
-        self.delayed = contact.mechanisms.index(LATE)
+        self.meniscus_index = contact.mechanisms.index(LATE)
         self.time = jnp.asarray(time, dtype=jnp.float64)
 
     @property
     def law(self) -> Law:
         """The law of the menisci."""
-        return self.laws[self.delayed]
+        return self.laws[self.meniscus_index]
 
     def state(self, separation: jax.Array, memory: Memory, threshold: jax.Array) -> State:
         """The contact at a separation [m], with a threshold [m] of the menisci.
@@ -171,7 +171,7 @@ class DelayedContact(eqx.Module):
         """The memory of all bonds."""
         if self.base.discrete:
             return memory
-        k = self.delayed
+        k = self.meniscus_index
         return (*memory[:k], threshold, *memory[k + 1 :])
 
     @property
@@ -181,7 +181,7 @@ class DelayedContact(eqx.Module):
         Nothing of menisci that form: :meth:`loss` tells that.
         """
         formed = [jnp.asarray(law.formation_loss) for law in self.laws]
-        formed[self.delayed] = jnp.zeros(())
+        formed[self.meniscus_index] = jnp.zeros(())
         return jnp.stack(formed), jnp.stack([jnp.asarray(law.rupture_loss) for law in self.laws])
 
     def loss(self, gap: jax.Array) -> jax.Array:

@@ -184,7 +184,7 @@ def _drawn(course: Course, place: Place, taken: Taken) -> Samples:
 
 def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
     """Energy lost within a step, by name [J]."""
-    delayed, done = course.frame.contact.delayed, taken.step
+    delayed, done = course.frame.contact.meniscus_index, taken.step
     formed, broken = course.losses
     bonds = done.rows[:, quantities(course.frame.contact.base).bonds]
     gone = np.maximum(bonds[0] - bonds, 0.0) * broken
@@ -197,7 +197,7 @@ def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
 def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
     """Where a step leaves a body, with the bonds that its end makes and breaks."""
     frame, done = course.frame, taken.step
-    goal = frame.forming[frame.contact.delayed]
+    goal = frame.forming[frame.contact.meniscus_index]
     here = place.here._replace(
         separation=done.separation[-1],
         speed=done.speed[-1],
@@ -223,8 +223,8 @@ def _turned(frame: Frame, here: Here, sign: int) -> Here:
     """The memory after a turn."""
     contact = frame.contact
     memory = jax.tree_util.tree_map(np.asarray, _remember(contact, here))
-    goal = here.separation - frame.forming[contact.delayed]
-    breaking = here.separation - frame.breaking[contact.delayed]
+    goal = here.separation - frame.forming[contact.meniscus_index]
+    breaking = here.separation - frame.breaking[contact.meniscus_index]
     # At the deepest point a threshold that follows at once is there already.
     behind = here.forming & ((sign > 0) | (here.threshold > goal + frame.close))
     threshold = np.maximum(here.threshold, breaking)
@@ -233,7 +233,7 @@ def _turned(frame: Frame, here: Here, sign: int) -> Here:
 
 def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, np.ndarray]:
     """A smooth body's bonds made or broken at a place, and the energy lost by name [J]."""
-    frame, delayed = course.frame, course.frame.contact.delayed
+    frame, delayed = course.frame, course.frame.contact.meniscus_index
     formed, broken = course.losses
     place, held = here.separation, here.memory > 0.5
     made = ~held & (place <= frame.forming + frame.close) & (sign < 0)

@@ -180,7 +180,7 @@ def _look(
 ) -> _Look:
     def contacts(place: jax.Array) -> tuple[jax.Array, tuple[jax.Array, jax.Array]]:
         state = contact.state(place[0], memory, place[1])
-        bonds = state.bonds[contact.delayed]
+        bonds = state.bonds[contact.meniscus_index]
         return jnp.stack([state.force, bonds]), (
             jnp.stack([state.force, state.elastic]),
             rows_of(state),

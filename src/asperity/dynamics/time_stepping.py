@@ -85,7 +85,7 @@ class Frame(NamedTuple):
 
     def next_mark(self, here: Here, sign: int) -> float:
         """The next separation [m] at which the force changes its law."""
-        place, delayed = float(here.separation), self.contact.delayed
+        place, delayed = float(here.separation), self.contact.meniscus_index
         rough = not self.contact.base.discrete
         gaps = self.forming if sign < 0 else self.breaking
         held = [float(b) for b in here.memory] if rough else [np.nan] * len(gaps)
@@ -168,14 +168,15 @@ def _functions(
     frame: Frame, here: Here, sign: int, mark: float
 ) -> dict[str, Callable[..., np.ndarray]]:
     """What rises to 0 at each event, of separation, speed and threshold."""
-    goal = frame.forming[frame.contact.delayed]
+    goal = frame.forming[frame.contact.meniscus_index]
     events: dict[str, Callable[..., np.ndarray]] = {
         TURN: lambda d, v, b: -sign * v,
         MARK: lambda d, v, b: sign * (d - mark),
     }
     if here.forming and sign > 0:
         events[SWITCH] = lambda d, v, b: d - goal - b
-    if frame.contact.base.discrete and here.forming and not here.memory[frame.contact.delayed]:
+    bonds = here.memory
+    if frame.contact.base.discrete and here.forming and not bonds[frame.contact.meniscus_index]:
         events[BOND] = lambda d, v, b: -b
     return events
 

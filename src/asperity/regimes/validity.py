@@ -212,9 +212,9 @@ def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
     ]
 
 
-def release_warnings(reference: float) -> list[str]:
-    """A line where a body is released within the end of contact, which is then no ``reference``."""
-    if np.isfinite(reference):
+def release_warnings(contact_end: float) -> list[str]:
+    """A line where a body is released within the end of contact [m], which is NaN then."""
+    if np.isfinite(contact_end):
         return []
     return [
         "the body is released within the end of contact, where the force is 1e-6 of its peak: "

@@ -179,7 +179,7 @@ def result_of(
         warnings=[
             *warnings_of(problem, regime, at_depth, motion),
             *pull_warnings(inputs, float(measures.pull_off), float(measures.held_at_pull_off)),
-            *release_warnings(float(measures.reference)),
+            *release_warnings(float(measures.contact_end)),
             *slow_menisci(problem, motion, solution.trajectory),
             *kept_elastic(inputs, float(np.asarray(measures.restitution)[0]), elastic),
         ],
@@ -364,7 +364,7 @@ def _plain(measures: Measures, made: int) -> dict[str, Any]:
     """Measures as plain numbers and lists, None where one does not apply."""
     out: dict[str, Any] = {}
     for name, value in measures._asdict().items():
-        if name in ("reference", "outset", "held_at_pull_off"):
+        if name in ("contact_end", "outset", "held_at_pull_off"):
             continue
         array = np.asarray(value)
         if array.ndim == 0:

@@ -69,7 +69,7 @@ class Measures(NamedTuple):
     preload
         Load of the first impact [N] where these depend on it; NaN where any larger load gives the
         same.
-    reference
+    contact_end
         Separation [m] at which energies in and out are compared: the end of contact, or
         NaN where the body is released within it and the static equilibrium is taken.
     held_at_pull_off
@@ -96,7 +96,7 @@ class Measures(NamedTuple):
     pull_off_separation: jax.Array
     work_of_separation: jax.Array
     preload: jax.Array
-    reference: jax.Array
+    contact_end: jax.Array
     held_at_pull_off: jax.Array
     outset: jax.Array
 
@@ -150,8 +150,8 @@ def measure(
     """
     rows, ground, end = motion.impacts, motion.reference, motion.end
     first = first_contact(motion.table, rows, body) if first is None else first
-    reference, pulled = first.end, first.unloading
-    outside = reference < body.release
+    contact_end, pulled = first.end, first.unloading
+    outside = contact_end < body.release
     escaped = end.outcome == ENDS.index(Outcome.ESCAPED)
     last = jnp.arange(rows.made.shape[0]) == end.made - 1
     gone = jnp.logical_and(escaped, last)
@@ -174,10 +174,10 @@ def measure(
     period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(away)), duration, jnp.nan)
     total = jnp.sum(rows.lost, axis=1)
     rests = end.outcome == ENDS.index(Outcome.REST)
-    captures = _captures(motion, body, reference, outside, away)
+    captures = _captures(motion, body, contact_end, outside, away)
     captures = jnp.logical_or(captures, rests & rows.made & ~rebounds)
     capture_time = rows.closest_approach_time[jnp.argmax(captures)]
-    energies = _energies(motion, body, reference, outside, passing)
+    energies = _energies(motion, body, contact_end, outside, passing)
     safe = jnp.where(jnp.isfinite(period), period, 1.0)
     blank = jnp.where(jnp.isfinite(period), 1.0, jnp.nan)
     return Measures(
@@ -187,7 +187,7 @@ def measure(
         capture_time=jnp.where(jnp.any(captures), capture_time, jnp.nan),
         time_to_rest=jnp.where(rests, end.time, jnp.nan),
         rebound_height=height,
-        restitution=_restitution(motion, body, reference, outside, gone, captures, energies),
+        restitution=_restitution(motion, body, contact_end, outside, gone, captures, energies),
         log_decrement=jnp.where(fits, decrement, jnp.nan),
         rebound_period=period,
         power_loss=(total - _shift(total, 0.0)) / safe * blank,
@@ -198,7 +198,7 @@ def measure(
         pull_off_separation=pulled.separation,
         work_of_separation=pulled.work,
         preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
-        reference=jnp.where(outside, reference, jnp.nan),
+        contact_end=jnp.where(outside, contact_end, jnp.nan),
         held_at_pull_off=pulled.held,
         outset=first.outset,
     )
@@ -256,7 +256,7 @@ def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
 
 
 def _captures(
-    motion: Motion, body: Body, reference: jax.Array, outside: jax.Array, gone: jax.Array
+    motion: Motion, body: Body, contact_end: jax.Array, outside: jax.Array, gone: jax.Array
 ) -> jax.Array:
     """Whether a rebound stays within the contact, per impact.
 
@@ -264,7 +264,7 @@ def _captures(
     counts in place of the end of contact.
     """
     rows, still = motion.impacts, motion.reference.equilibrium
-    held = reference if body.film is None else jnp.fmin(reference, still)
+    held = contact_end if body.film is None else jnp.fmin(contact_end, still)
     held = jnp.where(outside, held, still)
     return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
 
@@ -276,7 +276,7 @@ def _speed(energy: jax.Array, mass: Real) -> jax.Array:
 
 
 def _energies(
-    motion: Motion, body: Body, reference: jax.Array, outside: jax.Array, passing: Passing | None
+    motion: Motion, body: Body, contact_end: jax.Array, outside: jax.Array, passing: Passing | None
 ) -> tuple[jax.Array, jax.Array]:
     """Energies [J] before and after each impact, above that of a body at the end of contact.
 
@@ -284,14 +284,14 @@ def _energies(
     count from the static equilibrium.
     """
     rows, weight = motion.impacts, body.weight
-    zero = jnp.where(
-        outside, weight * reference, motion.reference.stored + weight * motion.reference.equilibrium
-    )
+    still = motion.reference
+    at_rest = still.stored + weight * still.equilibrium
+    zero = jnp.where(outside, weight * contact_end, at_rest)
     after = rows.mechanical - zero
     before = _shift(after, motion.release - zero)
     if body.film is not None:
-        # Gas takes energy beyond the reference too: count what passes there.
-        kinetic_in, kinetic_out = passing or passing_at(body, motion.table, rows, reference)
+        # Gas takes energy beyond the end of contact too: count what passes there.
+        kinetic_in, kinetic_out = passing or passing_at(body, motion.table, rows, contact_end)
         before = jnp.where(outside, kinetic_in, before)
         after = jnp.where(outside, kinetic_out, after)
     return before, after
@@ -300,7 +300,7 @@ def _energies(
 def _restitution(
     motion: Motion,
     body: Body,
-    reference: jax.Array,
+    contact_end: jax.Array,
     outside: jax.Array,
     gone: jax.Array,
     captures: jax.Array,
@@ -312,7 +312,7 @@ def _restitution(
     from coming back to the end of contact.
     """
     rows, (before, after) = motion.impacts, energies
-    back = jnp.logical_or(rows.apex >= reference, gone)
+    back = jnp.logical_or(rows.apex >= contact_end, gone)
     counts = jnp.logical_or(back, jnp.logical_not(outside))
     usable = jnp.logical_and(jnp.logical_and(before > 0.0, after > 0.0), counts)
     ratio = jnp.where(usable, after, 1.0) / jnp.where(usable, before, 1.0)

@@ -44,12 +44,12 @@ class Waiting(NamedTuple):
 
     def rate(self, gaps: jax.Array, held: Thresholds) -> jax.Array:
         """Rate of the thresholds [m/s], 0 or negative."""
-        behind = self.goal(gaps) - held[self.delayed.delayed]
+        behind = self.goal(gaps) - held[self.delayed.meniscus_index]
         return jnp.minimum(behind, 0.0) / self.delayed.time
 
     def holding(self, held: Thresholds, known: jax.Array, span: jax.Array) -> Holding:
         """Thresholds at a stage, by what is ``known`` of their change and its rate for ``span``."""
-        begun, gain = held[self.delayed.delayed] + known, span / self.delayed.time
+        begun, gain = held[self.delayed.meniscus_index] + known, span / self.delayed.time
 
         def at(gaps: jax.Array) -> Thresholds:
             goal = self.goal(gaps)
@@ -62,7 +62,7 @@ class Waiting(NamedTuple):
         self, gaps: jax.Array, held: Thresholds, rate: jax.Array, around: jax.Array
     ) -> tuple[jax.Array, jax.Array]:
         """Power lost per area on menisci that form [W/m^2] at the rings, and beyond them [W]."""
-        k = self.delayed.delayed
+        k = self.delayed.meniscus_index
         loss = self.delayed.loss(gaps - held[k])
 
         def bonds(threshold: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -80,7 +80,7 @@ class Waiting(NamedTuple):
         def pressure(threshold: jax.Array) -> jax.Array:
             return self.surfaces.pressure(gaps, self.delayed.with_threshold(held, threshold))
 
-        pressed: jax.Array = jax.jvp(pressure, (held[self.delayed.delayed],), (change,))[1]
+        pressed: jax.Array = jax.jvp(pressure, (held[self.delayed.meniscus_index],), (change,))[1]
         return pressed
 
 

@@ -137,7 +137,7 @@ def step(relaxation: Relaxation, body: Body, size: Real, here: Here, span: Real)
     if bulk.delayed is None:
         lost = jnp.append(lost, change.dissipated)
     else:
-        lost = lost.at[bulk.delayed.delayed].add(change.dissipated)
+        lost = lost.at[bulk.delayed.meniscus_index].add(change.dissipated)
     return Step(
         end, jnp.stack([rates.speed[-1], rates.dissipated[-1]]), row_of(bulk, end),
         lost, fit, _errors(bulk, end, off), jnp.all(solved),
@@ -149,7 +149,7 @@ def _waited(bulk: Bulk, held: Thresholds, change: _Rates) -> Thresholds:
     delayed = bulk.delayed
     if delayed is None:
         return held
-    return delayed.with_threshold(held, held[delayed.delayed] + change.threshold)
+    return delayed.with_threshold(held, held[delayed.meniscus_index] + change.threshold)
 
 
 def _errors(bulk: Bulk, end: Here, off: _Rates) -> jax.Array:

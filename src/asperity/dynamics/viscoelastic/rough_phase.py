@@ -160,7 +160,8 @@ class RoughBounce:
             return held
         form, part = float(delayed.law.forming_gap), float(delayed.law.breaking_gap)
         flight = FreeFlight(np.asarray(here.gaps) - form, float(here.speed), self._gravity)
-        after = flight.follow(np.asarray(held[delayed.delayed]), span, 1.0 / float(delayed.time))
+        before, rate = np.asarray(held[delayed.meniscus_index]), 1.0 / float(delayed.time)
+        after = flight.follow(before, span, rate)
         return delayed.with_threshold(
             held, np.maximum(after, flight.goal(np.asarray(span)) + form - part)
         )
@@ -168,9 +169,9 @@ class RoughBounce:
     @property
     def threshold(self) -> float:
         """Threshold of the menisci that take time at the mesh's end [m], 0 where none do."""
-        return (
-            0.0 if self._delayed is None else float(self.here.thresholds[self._delayed.delayed][-1])
-        )
+        if self._delayed is None:
+            return 0.0
+        return float(self.here.thresholds[self._delayed.meniscus_index][-1])
 
     def _free_flight_samples(self, left: Freed, spans: np.ndarray) -> Samples:
         """Samples of a flight at times from now."""

@@ -80,8 +80,8 @@ def _launched_from(cases: Batch, outset: np.ndarray) -> np.ndarray:
 def _first_impacts(made: BatchSolution, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
     """What became of bodies that were launched; those that were not integrated are not known."""
     failed = ENDS.index(Outcome.FAILED)
-    reference = made.measures["reference"]
-    known = (made.made > 0) & (made.outcome != failed) & np.isfinite(reference)
+    contact_end = made.measures["contact_end"]
+    known = (made.made > 0) & (made.outcome != failed) & np.isfinite(contact_end)
     speed = np.where(known, made.measures["impact_speed"], np.nan)
-    excess = made.history["leaving"][:, 0] - weight * reference
+    excess = made.history["leaving"][:, 0] - weight * contact_end
     return FirstImpacts.of(speed, made.measures["captured"].astype(bool), excess, mass)

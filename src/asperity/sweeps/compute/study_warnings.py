@@ -32,12 +32,12 @@ def warnings_in(problem: Problem, solution: BatchSolution, place: int) -> list[s
     none: Any = None
     release: Any = solution.release[place]
     motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
-    pull_off, held, reference = (
+    pull_off, held, contact_end = (
         float(solution.measures[name][place])
-        for name in ("pull_off", "held_at_pull_off", "reference")
+        for name in ("pull_off", "held_at_pull_off", "contact_end")
     )
     return [
         *warnings_of(problem, regime_of(problem, at_depth), at_depth, motion),
         *pull_warnings(problem.inputs, pull_off, held),
-        *release_warnings(reference),
+        *release_warnings(contact_end),
     ]
