@@ -31,7 +31,7 @@ from asperity.errors import Tolerance
 from asperity.model import build
 
 METHODS = {"Dopri8": 1e-11, "Tsit5": 1e-10, "Kvaerno5": 1e-10}
-"""Methods, and the tolerance of each at which its turning points agree to some 1e-10."""
+"""Methods, and the tolerance of each at which its turning points agree to 1e-9."""
 
 TIMES = ("1 ns", "10 us")  # formation times
 _NUDGE = 1e-7  # of a leg's first guess: an event function must not begin at 0
@@ -77,7 +77,8 @@ def stepping(method: str, rtol: float) -> Callable[..., Any]:
     def leg(y: jax.Array, given: Any, span: float, scale: jax.Array) -> Any:
         start = y[1] == 0.0
         pull = field(0.0, y, given)[1] * jnp.where(start, _NUDGE * span, 0.0)
-        y = y.at[1].add(pull).at[0].add(0.5 * pull * _NUDGE * span)
+        begun = jnp.where(start, _NUDGE * span, 0.0)
+        y = y.at[1].add(pull).at[0].add(0.5 * pull * begun)
         found = diffrax.diffeqsolve(
             diffrax.ODETerm(field), solver, 0.0, 1.0, 1e-3 * span, y, args=given,
             stepsize_controller=diffrax.PIDController(rtol=rtol, atol=rtol * scale),
@@ -85,7 +86,7 @@ def stepping(method: str, rtol: float) -> Callable[..., Any]:
             max_steps=100_000, throw=False, saveat=diffrax.SaveAt(t1=True),
         )  # fmt: skip
         ended = found.result == diffrax.RESULTS.event_occurred
-        return found.ts[-1], found.ys[-1], found.event_mask, found.stats["num_steps"], ended
+        return begun + found.ts[-1], found.ys[-1], found.event_mask, found.stats["num_steps"], ended
 
     return leg
 

@@ -118,7 +118,8 @@ def resolve(case: CaseLike) -> Inputs:
     Raises
     ------
     InputError
-        If it is no case, or a file of its surfaces cannot be used.
+        If it is no case, a file of its surfaces cannot be used, or their asperities are as large
+        as the body.
     """
     from .config.resolve import resolve as of_case
     from .results.case_source import case_of

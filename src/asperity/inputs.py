@@ -24,7 +24,7 @@ CLASSES = 6
 
 
 class Structure(NamedTuple):
-    """Which models a case is made of; cases of one structure differ in numbers alone.
+    """Which models a case is made of.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Structure(NamedTuple):
         Model of the menisci: "none" in dry air too, "equilibrium", "constant-volume",
         "kelvin-filling".
     formation
-        When a meniscus forms: "on-contact" or "capillary-condensation".
+        When a meniscus forms: "on-contact", also without any, or "capillary-condensation".
     plasticity
         Law of a contact that yields: "none", "kogut-etsion", "jackson-green", "thornton-ning".
     deformation
@@ -44,8 +44,12 @@ class Structure(NamedTuple):
         Whether the half-space relaxes.
     waves
         Whether the contact radiates into the counterface.
+    gas
+        Whether there is gas in the gap.
     heights
         Of the asperities: "smooth" without any, "gaussian", or "summits" as they were measured.
+    published
+        Whether the publication's assumptions replace the other models.
     """
 
     adhesion: str
@@ -55,7 +59,9 @@ class Structure(NamedTuple):
     deformation: str
     viscoelastic: bool
     waves: bool
+    gas: bool
     heights: str
+    published: bool
 
 
 class Yielding(NamedTuple):
@@ -178,7 +184,21 @@ class Release(NamedTuple):
 
 
 class Assumptions(NamedTuple):
-    """What the publication assumes; see the table ``[publication]`` of a case file."""
+    """What the publication assumes.
+
+    Attributes
+    ----------
+    attraction_during_retraction_only
+        Whether adhesion and menisci pull only while the bodies part.
+    conjunction_ends
+        Separation over the rms height beyond which nothing acts [-].
+    capillary_factor
+        Factor on the force of the menisci [-].
+    polynomials
+        Height integrals: "exact", or the polynomials "printed" as eqs. 10 and 17.
+    bands
+        Number of the bands of menisci, eq. 13.
+    """
 
     attraction_during_retraction_only: bool
     conjunction_ends: float
@@ -200,25 +220,26 @@ class Inputs:
     radius
         Radius of the body [m].
     mass
-        Mass of the body [kg].
+        Mass of the body, a full sphere [kg].
     modulus
-        Contact modulus E* [Pa].
+        Contact modulus E* [Pa]: 1/E* is the sum of (1 - nu^2)/E over both solids. Johnson,
+        Contact Mechanics (1985), eq. 4.22.
     tip_radius
         Radius of one asperity, or of the smooth body [m].
     yielding
         What yields; None where no strength is known.
     strength_given
         Whether that strength was given in place of a solid's own.
-    could_yield
-        Whether a law of yielding could stand beside the other models.
+    plasticity_allowed
+        Whether a case may have a law of yielding beside its other models.
     work_of_adhesion
         Work of adhesion [J/m^2]; 0 without adhesion.
     equilibrium_spacing
-        Range of the adhesion [m]; 0 where it is not known.
+        Equilibrium spacing of the atoms [m]; 0 where it is not known.
     adhesion_reason
         Why this law of adhesion, where the program chose it; None where the case names it.
-    near_borders
-        A warning for each border between two laws of adhesion that is near.
+    border_warnings
+        A sentence for each border between two laws of adhesion that is near.
     asperities
         The asperities; None for a smooth body.
     surface_rms_height
@@ -231,11 +252,12 @@ class Inputs:
     contact_angle
         Of the liquid [rad].
     kelvin_radius
-        Kelvin radius [m]; 0 without menisci, infinite at a humidity of 1.
+        Kelvin radius [m]: tension times molar volume over R T ln(1/humidity), the publication's
+        eq. 11. 0 without menisci, infinite at a humidity of 1.
     liquid_radius
         Radius of curvature of the liquid [m]: Kelvin's, or less where its film bounds it.
     liquid_span
-        Largest gap that the liquid bridges [m].
+        Largest gap that the liquid bridges [m], 2 cos(contact angle) times its radius.
     liquid_temperature
         Of liquid and vapour [K]; None without menisci.
     formation_time
@@ -253,7 +275,7 @@ class Inputs:
 
     Notes
     -----
-    A number may be an array of many cases of one structure.
+    A number may be an array of many cases that are alike in all else.
     """
 
     structure: Structure
@@ -265,11 +287,11 @@ class Inputs:
     tip_radius: float
     yielding: Yielding | None
     strength_given: bool
-    could_yield: bool
+    plasticity_allowed: bool
     work_of_adhesion: float
     equilibrium_spacing: float
     adhesion_reason: str | None
-    near_borders: tuple[str, ...]
+    border_warnings: tuple[str, ...]
     asperities: Asperities | None
     surface_rms_height: float
     radius_classes: int
@@ -297,7 +319,7 @@ class Inputs:
         """Whether the body is let go from where the solver chooses."""
         return self.release is not None and self.release.separation is None
 
-    def first_impact(self) -> Inputs:
+    def one_impact(self) -> Inputs:
         """The same with one impact alone, however long it takes."""
         ends = dataclasses.replace(self.tolerance, max_impacts=1, time_limit=math.inf)
         return dataclasses.replace(self, tolerance=ends)
@@ -306,7 +328,7 @@ class Inputs:
         """The same with nothing that yields."""
         return dataclasses.replace(self, structure=self.structure._replace(plasticity="none"))
 
-    def at_rest(self) -> Inputs:
-        """The same without a motion, and without what acts in a motion alone."""
-        structure = self.structure._replace(waves=False)
+    def without_motion(self) -> Inputs:
+        """The same without a release, and without gas and waves, which act in a motion alone."""
+        structure = self.structure._replace(waves=False, gas=False)
         return dataclasses.replace(self, structure=structure, release=None, gas=None)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import threading
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from .contact.resolution import in_steps
 from .contact.viscoelastic import Relaxation, RelaxedContact
 from .dynamics import Body, Impacts, Limits, Motion, Table, integrate_impacts, prepare, start
 from .dynamics.curve_table import FORCE, read_row
-from .dynamics.output_shapes import shapes_of_curves
 from .dynamics.problem import CLEARANCE, Problem
 from .dynamics.record import ENDS, IN_MOTION
 from .dynamics.release import TRIES, at_release, farther, negligible_force
@@ -25,7 +23,7 @@ from .dynamics.stepped_motion import integrate_stepped
 from .dynamics.stepped_phase import Ended
 from .dynamics.time_series import compile_ahead
 from .errors import InputError, Outcome, SimulationError
-from .numerics.compilation import AT_ONCE, Program, signature
+from .numerics.compilation import AT_ONCE, Program
 from .results.conversion import Solution, measure_ahead
 
 Report = Callable[[float, str], None]
@@ -223,36 +221,15 @@ def _prepared(
 def _compile(
     contact: Contact, body: Body, limits: Limits, *, drawn: bool, many: bool = False
 ) -> None:
-    """Compile the curves, the motion and, where wanted, its drawing and measures side by side.
-
-    The motion, which takes longest, first: where the shapes of the curves are known without.
-    """
-    curves = _shapes(contact, many)
-    table, reference = curves or _preparing(contact, many).ahead(contact, body, many)
+    """Compile the curves, the motion and, where wanted, its drawing and measures side by side."""
+    table, reference = _preparing(contact, many).ahead(contact, body, many)
     progress, origin = _start.ahead(contact, body, table)
     end, impacts = _integrate_some.ahead(
         contact, body, table, reference, origin, progress, limits, _at_once(contact, body)
     )
-    if curves:
-        _preparing(contact, many).ahead(contact, body, many)
     if drawn:
         compile_ahead(body, table, impacts)
         measure_ahead(contact, body, Motion(impacts, end, table, reference, origin))
-
-
-_SHAPES: dict[Any, tuple[tuple[Table, Reference] | None]] = {}
-_MOST = 64  # kinds of contacts whose shapes are kept
-
-
-def _shapes(contact: Contact, many: bool) -> tuple[Table, Reference] | None:
-    """Shapes of the curves, which take 5 ms to foresee, once for each kind of contact."""
-    key = signature(contact, many)
-    known = _SHAPES.get(key)
-    if known is None:
-        if len(_SHAPES) >= _MOST:
-            _SHAPES.clear()
-        known = _SHAPES[key] = (shapes_of_curves(contact, many),)
-    return known[0]
 
 
 def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Reference]]:

@@ -219,10 +219,9 @@ def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:
     assumed, tension, interaction_range = inputs.published, 0.0, None
     assert assumed is not None
     if inputs.liquid is not None:
-        cosine = np.cos(inputs.contact_angle)
-        tension = assumed.capillary_factor * inputs.liquid.tension * cosine
-        unbounded = np.isinf(inputs.kelvin_radius)
-        interaction_range = None if unbounded else 2.0 * inputs.kelvin_radius * cosine
+        tension = assumed.capillary_factor * inputs.liquid.tension * np.cos(inputs.contact_angle)
+        span = inputs.liquid_span
+        interaction_range = None if np.isinf(span) else span
     pressure = PublishedPressure(
         density=rough.asperity_density,
         radius=rough.asperity_radius,

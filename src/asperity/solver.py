@@ -67,7 +67,7 @@ def solve(
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
     report(1.0, "done")
     if solution.outcome is Outcome.FAILED and throw:
-        raise SimulationError(_failure(case), result)
+        raise SimulationError(_failure(problem), result)
     return result
 
 
@@ -102,7 +102,7 @@ def explore(
     solution = integrate(problem, report, stop, many=True)
     result = _told(case, name, problem, solution, report, most)
     if solution.outcome is Outcome.FAILED:
-        raise SimulationError(_failure(case), result)
+        raise SimulationError(_failure(problem), result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
         return result, _curve_of(case, name, problem, lambda _, text: report(0.95, text))
     drawn, _ = quasi_static_curve(solution.contact, solution.motion.table, solution.motion.impacts)
@@ -133,7 +133,7 @@ def critical_velocity(
         As :func:`solve`.
     """
     _ = case.launch
-    inputs = resolve(case).first_impact()
+    inputs = resolve(case).one_impact()
     report, problem = progress or silently, cut_in_steps(build(inputs))
     solution = integrate(problem, report, stop, many=True)
     return sought(solution, problem, Limits.of(inputs.tolerance), stop, many=True)
@@ -149,8 +149,8 @@ def _told(
     return result_of(case, name, problem, solution, elastic, most)
 
 
-def _failure(case: Case) -> str:
-    damped = " or the gas film damps it too strongly to be followed" * (case.gas is not None)
+def _failure(problem: Problem) -> str:
+    damped = " or the gas film damps it too strongly to be followed" * problem.inputs.structure.gas
     return f"the motion left the tabulated separations{damped}"
 
 
@@ -188,7 +188,7 @@ def curve(
     if load is None and depth is None:
         _ = case.launch
         return _curve_of(case, name, build(inputs), report)
-    problem = turning_at(build(inputs.at_rest()), load=load, depth=depth)
+    problem = turning_at(build(inputs.without_motion()), load=load, depth=depth)
     return _curve_of(case, name, problem, report)
 
 

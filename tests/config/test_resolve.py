@@ -44,8 +44,16 @@ def test_an_adsorbed_film_bounds_the_liquid():
 
 def test_dry_air_is_a_structure_without_liquid():
     dry, none = resolved(capillary__humidity=0), resolved(capillary__model="none")
-    assert dry.structure == none.structure._replace(formation=dry.structure.formation)
-    assert (dry.liquid, dry.kelvin_radius, dry.liquid_span) == (None, 0.0, 0.0)
+    off = resolved(
+        capillary__model="none",
+        capillary__adsorbed_film_thickness="1 nm",
+        capillary__contact_angle="120 deg",
+        capillary__formation_time="1 us",
+    )
+    assert dry.structure == none.structure == off.structure
+    for found in (dry, none, off):
+        assert (found.liquid, found.kelvin_radius, found.liquid_radius) == (None, 0.0, 0.0)
+        assert (found.liquid_span, found.formation_time) == (0.0, 0.0)
 
 
 def test_cases_that_differ_in_numbers_alone_are_of_one_structure():
@@ -53,6 +61,8 @@ def test_cases_that_differ_in_numbers_alone_are_of_one_structure():
     assert hash(one.structure) == hash(other.structure)
     assert one.structure == other.structure
     assert resolved(counterface__deformation="rigid").structure != one.structure
+    film = {"viscosity": "18 uPa s", "slip_length": "75 nm"}
+    assert resolved(gas=film).structure != one.structure
 
 
 @pytest.mark.parametrize(("work", "law"), [("0.1 mJ/m^2", "bradley"), ("20 mJ/m^2", "maugis")])
@@ -67,9 +77,10 @@ def test_the_structure_names_the_law_that_auto_chose(work, law):
 def test_what_a_solver_asks_of_inputs():
     found = resolved(gas={"viscosity": "18 uPa s", "slip_length": "75 nm"}, waves__model="hunter")
     assert found.gas.cutoff_separation == found.asperities.rms_height
-    still = found.at_rest()
+    still = found.without_motion()
     assert (still.release, still.gas, still.structure.waves) == (None, None, False)
-    first = found.first_impact()
+    assert found.without_motion().structure == resolved(waves=None).structure
+    first = found.one_impact()
     assert (first.tolerance.max_impacts, first.tolerance.time_limit) == (1, inf)
     assert first.tolerance.relative == found.tolerance.relative
 
@@ -89,3 +100,21 @@ def test_what_is_no_case_is_refused():
 
 def test_the_contact_angle_is_in_radians():
     assert resolved(capillary__contact_angle="20 deg").contact_angle == radians(20.0)
+
+
+def test_a_model_that_is_off_leaves_its_numbers_without_effect():
+    off = resolved(adhesion__model="none")
+    assert BASE.adhesion.work > 0.0
+    assert (off.work_of_adhesion, off.structure.adhesion) == (0.0, "none")
+    hard = {"model": "none", "hardness": "1 GPa"}
+    assert resolved(plasticity=hard).yielding == resolved().yielding
+    assert not resolved(plasticity=hard).strength_given
+
+
+def test_a_law_of_yielding_uses_the_strength_that_is_given():
+    soft = {"model": "kogut-etsion", "hardness": "1 GPa"}
+    found = resolved(plasticity=soft, counterface__deformation="rigid")
+    assert (found.yields, found.strength_given, found.yielding.hardness) == (True, True, 1e9)
+    assert found.elastic().structure == resolved(counterface__deformation="rigid").structure
+    assert found.plasticity_allowed
+    assert not resolved().plasticity_allowed  # on a half-space

@@ -17,7 +17,7 @@ from asperity.errors import InputError
 from asperity.plots import published_figures
 from asperity.publication import report
 from asperity.publication.comparison import problems_of
-from asperity.publication.parameter_estimation import Parameters, Refit
+from asperity.publication.parameter_estimation import Refit, Unknowns
 from asperity.publication.published_tables import Entry, read_tables
 from asperity.publication.reproduce import Reproduction, reproduce
 from asperity.results.records import REPRODUCTION_FILES
@@ -398,7 +398,7 @@ def test_a_number_that_is_met_exactly_is_met():
         "published": 0.5, "computed": 0.5, "relative_difference": 0.0,
     }  # fmt: skip
     entry = Entry(2, 1e-9, 1e-9, {"log_decrement": 0.5, "time_to_rest": 1e-4, "power_loss": None})
-    fitted = Refit(Parameters(3.0, 4e-8, 4.0), 0.0, Parameters(0.0, 0.0, 0.0), np.eye(3), [])
+    fitted = Refit(Unknowns(3.0, 4e-8, 4.0), 0.0, Unknowns(0.0, 0.0, 0.0), np.eye(3), [])
     assert problems_of(fitted, [entry], [row]) == []
     (problem,) = problems_of(fitted, [entry], [{**row, "relative_difference": 0.031}])
     assert "log_decrement at 1, 1 nm (off by +3 %)" in problem

@@ -175,9 +175,9 @@ def test_the_publications_asperities_obey_dmt_as_it_says():
 @pytest.mark.parametrize("border", [0.1, 5.0])
 def test_a_border_within_a_factor_of_one_and_a_half_is_named(border):
     for share, near in ((1.0 / 1.52, False), (1.0 / 1.48, True), (1.48, True), (1.52, False)):
-        warnings = choose_adhesion(share * border).near_borders
+        warnings = choose_adhesion(share * border).border_warnings
         assert any(f"Tabor number is {border:g} there" in text for text in warnings) is near
-    (text,) = choose_adhesion(0.9 * border).near_borders
+    (text,) = choose_adhesion(0.9 * border).border_warnings
     other = {0.1: "maugis", 5.0: "jkr"}[border]
     assert f"model = '{other}'" in text
     assert f"{ELASTICITY_PER_TABOR * border:.3g}" in text

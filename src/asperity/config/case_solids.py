@@ -18,7 +18,7 @@ def solids_of(case: CaseTables) -> tuple[Solid, Solid]:
     return case.body.solid(own, "body"), case.counterface.solid(own, "counterface")
 
 
-def case_yielding(case: CaseTables) -> Yielding | None:
+def case_yielding(table: Plasticity | None, solids: tuple[Solid, Solid]) -> Yielding | None:
     """What yields in a contact: the softer solid, with the [plasticity] table's own values.
 
     None where no solid's strength is known and no law of yielding is in use.
@@ -28,7 +28,6 @@ def case_yielding(case: CaseTables) -> Yielding | None:
     InputError
         Where a law is in use and neither the table nor a solid has a strength.
     """
-    table, solids = case.plasticity, solids_of(case)
     if table is None or table.model == "none":
         if not any(solid.hardness or solid.yield_strength for solid in solids):
             return None

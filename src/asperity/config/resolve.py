@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from asperity.config.asperities import asperities_of, refuse_asperities
 from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.plasticity import Plasticity
@@ -18,12 +20,23 @@ from asperity.inputs import (
     Release,
     Structure,
 )
-from asperity.materials.solids import Liquid, contact_modulus, kelvin_radius
+from asperity.materials.solids import contact_modulus, kelvin_radius
 from asperity.regimes.choice import AdhesionChoice, choose_adhesion
 from asperity.regimes.dimensionless_numbers import tabor_number
 
 if TYPE_CHECKING:
     from asperity.config.tables import CaseTables
+
+_DRY: dict[str, Any] = {
+    "liquid": None,
+    "contact_angle": 0.0,
+    "kelvin_radius": 0.0,
+    "liquid_radius": 0.0,
+    "liquid_span": 0.0,
+    "liquid_temperature": None,
+    "formation_time": 0.0,
+}
+"""The quantities of menisci where there are none."""
 
 
 def resolve(case: CaseTables) -> Inputs:
@@ -44,25 +57,22 @@ def resolve(case: CaseTables) -> Inputs:
     tip = radius if rough is None else rough.asperity_radius
     modulus = contact_modulus(body, counterface)
     adhesion = _adhesion(case, tip, modulus)
-    liquid, kelvin = _condensed(case)
-    air = case.capillary
-    angle, film = air.contact_angle or 0.0, air.adsorbed_film_thickness
-    liquid_radius = kelvin if film is None else min(kelvin, film / _cosine(angle))
-    if liquid_radius == 0.0:
-        liquid = None
+    air, wet = case.capillary, _menisci(case)
     assert body.density is not None
     relaxing = case.viscoelasticity is not None and case.viscoelasticity.model != "none"
     table = case.roughness
     return Inputs(
         structure=Structure(
             adhesion=adhesion.law,
-            liquid="none" if liquid is None else air.model,
-            formation=air.formation,
+            liquid=air.model if wet else "none",
+            formation=air.formation if wet else "on-contact",
             plasticity="none" if case.plasticity is None else case.plasticity.model,
             deformation=case.counterface.deformation,
             viscoelastic=relaxing,
             waves=case.waves is not None and case.waves.model != "none",
+            gas=case.gas is not None,
             heights="smooth" if table is None else table.source or "gaussian",
+            published=case.publication is not None,
         ),
         body=body,
         counterface=counterface,
@@ -70,23 +80,17 @@ def resolve(case: CaseTables) -> Inputs:
         mass=body.density * 4.0 / 3.0 * math.pi * radius**3,
         modulus=modulus,
         tip_radius=tip,
-        yielding=case_yielding(case),
+        yielding=case_yielding(case.plasticity, (body, counterface)),
         strength_given=_strength_given(case),
-        could_yield=_could_yield(case),
+        plasticity_allowed=_plasticity_allowed(case),
         work_of_adhesion=0.0 if adhesion.law == "none" else _given(case.adhesion.work),
         equilibrium_spacing=_or_zero(case.adhesion.equilibrium_spacing),
         adhesion_reason=adhesion.reason,
-        near_borders=adhesion.near_borders,
+        border_warnings=adhesion.border_warnings,
         asperities=rough,
         surface_rms_height=_surface_rms_height(case, rough),
         radius_classes=CLASSES if table is None else table.radius_classes or CLASSES,
-        liquid=liquid,
-        contact_angle=angle,
-        kelvin_radius=kelvin,
-        liquid_radius=liquid_radius,
-        liquid_span=2.0 * liquid_radius * _cosine(angle),
-        liquid_temperature=None if liquid is None else air.temperature,
-        formation_time=_or_zero(air.formation_time),
+        **(wet or _DRY),
         gas=_gas(case, rough),
         relaxed_modulus_ratio=_relaxation(case, "relaxed_modulus_ratio") if relaxing else 1.0,
         relaxation_time=_relaxation(case, "relaxation_time") if relaxing else 0.0,
@@ -114,15 +118,26 @@ def _adhesion(case: CaseTables, tip: float, modulus: float) -> AdhesionChoice:
     return choose_adhesion(tabor_number(tip, work, modulus, spacing))
 
 
-def _condensed(case: CaseTables) -> tuple[Liquid | None, float]:
-    """The liquid of the menisci at its temperature, and its Kelvin radius [m]."""
+def _menisci(case: CaseTables) -> dict[str, Any]:
+    """The quantities of the menisci; none of them in dry air or without menisci."""
     air = case.capillary
     if air.model == "none":
-        return None, 0.0
-    liquid, humidity = air.substance(), _given(air.humidity)
-    if humidity == 1.0:
-        return liquid, math.inf
-    return liquid, kelvin_radius(liquid, humidity, _given(air.temperature))
+        return {}
+    liquid, humidity, angle = air.substance(), _given(air.humidity), _given(air.contact_angle)
+    temperature, film = _given(air.temperature), air.adsorbed_film_thickness
+    kelvin = math.inf if humidity == 1.0 else kelvin_radius(liquid, humidity, temperature)
+    radius = kelvin if film is None else min(kelvin, film / _cosine(angle))
+    if radius == 0.0:
+        return {}
+    return {
+        "liquid": liquid,
+        "contact_angle": angle,
+        "kelvin_radius": kelvin,
+        "liquid_radius": radius,
+        "liquid_span": 2.0 * radius * _cosine(angle),
+        "liquid_temperature": temperature,
+        "formation_time": _or_zero(air.formation_time),
+    }
 
 
 def _surface_rms_height(case: CaseTables, rough: Asperities | None) -> float:
@@ -176,7 +191,7 @@ def _strength_given(case: CaseTables) -> bool:
     return any((table.hardness, table.yield_strength, table.yield_pressure))
 
 
-def _could_yield(case: CaseTables) -> bool:
+def _plasticity_allowed(case: CaseTables) -> bool:
     """Whether a law of yielding could stand beside the other tables."""
     table = Plasticity(model="kogut-etsion")
     try:
@@ -189,11 +204,7 @@ def _could_yield(case: CaseTables) -> bool:
 
 def _cosine(angle: Any) -> Any:
     """Cosine of an angle [rad], or of those of many cases."""
-    if isinstance(angle, float):
-        return math.cos(angle)
-    import numpy as np  # here: reading a case needs none of it
-
-    return np.cos(angle)
+    return math.cos(angle) if isinstance(angle, float) else np.cos(angle)
 
 
 def _or_zero(value: float | None) -> float:

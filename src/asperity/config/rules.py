@@ -174,7 +174,7 @@ def _yielding_beside(case: CaseTables) -> None:
             case.adhesion, case.capillary, case.roughness, case.publication
         ),
         lambda: table.refuse_under(case.counterface, case.roughness),
-        lambda: case_yielding(case),
+        lambda: case_yielding(table, solids_of(case)),
     )
 
 

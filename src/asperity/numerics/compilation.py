@@ -174,12 +174,6 @@ class _Held:
             self.compiled.set_exception(error)
 
 
-def signature(*args: Any) -> Any:
-    """What a program of such arguments is found by: their structure, and the shapes of arrays."""
-    fixed, arrays = _split(args)
-    return fixed, tuple((x.shape, x.dtype) for x in arrays)
-
-
 def _is_traced(leaf: Any) -> bool:
     return eqx.is_array(leaf) or isinstance(leaf, jax.ShapeDtypeStruct | np.ndarray)
 

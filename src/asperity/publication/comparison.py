@@ -12,7 +12,7 @@ from ..config import Case
 from ..config.resolve import resolve
 from ..regimes import ELASTICITY_PER_TABOR, tabor_number
 from ..results.result import Result
-from .parameter_estimation import WITHIN, Parameters, Refit
+from .parameter_estimation import WITHIN, Refit, Unknowns
 from .published_tables import QUANTITIES, Entry
 
 
@@ -112,8 +112,8 @@ def power_of(entry: Entry, result: Result) -> dict[str, float | None]:
     }
 
 
-def found_of(inputs: Parameters, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
-    """The inputs and how well they fit, as plain numbers."""
+def found_of(unknowns: Unknowns, rows: list[dict[str, Any]], fit: Refit | None) -> dict[str, Any]:
+    """What the text leaves open, and how well it fits, as plain numbers."""
     # The row that both tables share counts once.
     off = {
         (row["asperity_radius"], row["rms_height"], row["quantity"], row["published"]): row[
@@ -126,7 +126,7 @@ def found_of(inputs: Parameters, rows: list[dict[str, Any]], fit: Refit | None) 
     rms = float(np.sqrt(np.mean(np.square(list(off.values()))))) if whole else None
     if fit is not None:
         rms = fit.rms
-    out: dict[str, Any] = {**inputs._asdict(), "rms": rms, "refitted": fit is not None}
+    out: dict[str, Any] = {**unknowns._asdict(), "rms": rms, "refitted": fit is not None}
     if fit is not None:
         out["uncertainty"] = {k: _number(v) for k, v in fit.uncertainty._asdict().items()}
         out["correlation"] = [[_number(v) for v in line] for line in fit.correlation]

@@ -24,10 +24,10 @@ from ..model import build
 from ..numerics.compilation import Program, kept
 from ..results.result import Result
 from ..solver import solve
-from .parameter_estimation import WITHIN, Parameters
+from .parameter_estimation import WITHIN, Unknowns
 from .published_tables import Entry, read_tables
 
-PRINTED = Parameters(2.6146, 37.335e-9, 9.380)
+PRINTED = Unknowns(2.6146, 37.335e-9, 9.380)
 """What a refit finds with the polynomials as printed: they meet the tables too."""
 
 _FEW = 6
@@ -123,14 +123,15 @@ class Evidence:
         return self.inputs.asperities
 
     @property
-    def work(self) -> float:
-        """Work of adhesion [J/m^2]."""
-        return self.inputs.work_of_adhesion
+    def gravity(self) -> float:
+        """Acceleration towards the surface [m/s^2]."""
+        assert self.inputs.release is not None
+        return self.inputs.release.gravity
 
     @property
-    def wet_inputs(self) -> Parameters:
-        """The inputs in use."""
-        return Parameters.of(self.case)
+    def unknowns(self) -> Unknowns:
+        """What the text leaves open, as it is in use."""
+        return Unknowns.of(self.case)
 
     @cached_property
     def contact(self) -> PublishedContact:
@@ -160,7 +161,7 @@ class Evidence:
     def contact_radius(self) -> float:
         """Radius of the conjunction there [m]."""
         depth = float(self.contact.pressure.end) - self.closest
-        return sqrt(2.0 * self.case.body.radius * depth)
+        return sqrt(2.0 * self.inputs.radius * depth)
 
     @property
     def contact_time(self) -> float:
@@ -168,9 +169,9 @@ class Evidence:
 
         NaN where the body does not leave it again.
         """
-        motion, gravity = self.wet, self.case.launch.gravity
+        motion, gravity = self.wet, self.gravity
         rise = first(motion.measures["rebound_height"])
-        fall = self.wet_inputs.release_separation - float(self.contact.pressure.end)
+        fall = self.unknowns.release_separation - float(self.contact.pressure.end)
         if not rise > 0.0:
             return float(np.nan)
         flight = sqrt(2.0 * fall / gravity) + sqrt(2.0 * rise / gravity)
@@ -184,7 +185,7 @@ class Evidence:
         """
         mesh, size = ring_mesh(200), self.contact_radius
         place = mesh.radius * size
-        gap = self.closest + place**2 / (2.0 * self.case.body.radius)
+        gap = self.closest + place**2 / (2.0 * self.inputs.radius)
         pressure = np.asarray(self.contact.pressure.contact(jnp.asarray(gap)))
         displaced = mesh.compliance @ pressure * size / self.inputs.modulus
         return place, gap, displaced, pressure
@@ -205,7 +206,8 @@ class Evidence:
         """Load parameter there."""
         rest = self.exact_state(self.exact_rest)
         elastic, contacting = float(rest.elastic), float(rest.contacting)
-        return regimes.load_parameter(elastic, contacting, self.work, self.rough.asperity_radius)
+        work, tip = self.inputs.work_of_adhesion, self.inputs.tip_radius
+        return regimes.load_parameter(elastic, contacting, work, tip)
 
     def exact_state(self, separation: float) -> FirstTouch:
         """Contact of bodies that never touched, by the exact model."""

@@ -60,7 +60,7 @@ def drawings(evidence: Evidence, measured: Pair | None = None) -> dict[str, Draw
 
 def _bodies(evidence: Evidence) -> Drawing:
     """The two bodies to scale; the publication shows micrographs of them."""
-    radius = evidence.case.body.radius
+    radius = evidence.inputs.radius
     angle = np.linspace(0.0, 2.0 * pi, 361)
     deepest = evidence.closest
     inside = np.linspace(-1.0, 1.0, 201) * 2.5 * evidence.contact_radius
@@ -147,8 +147,7 @@ def _meniscus(evidence: Evidence) -> Drawing:
 
     The meniscus is the model's: an arc of the Kelvin radius between faces as good as parallel.
     """
-    rough, angle = evidence.rough, evidence.case.capillary.contact_angle
-    assert angle is not None
+    rough, angle = evidence.rough, evidence.inputs.contact_angle
     radius, flat = rough.asperity_radius, float(evidence.contact.pressure.end)
     kelvin = evidence.kelvin_radius(_SHOWN_HUMIDITY)
     interaction_range = 2.0 * kelvin * cos(angle)
@@ -159,7 +158,7 @@ def _meniscus(evidence: Evidence) -> Drawing:
     turn = np.linspace(-1.0, 1.0, 61) * (0.5 * pi - angle)
     arc_y = 0.5 * interaction_range * (1.0 + np.sin(turn) / sin(0.5 * pi - angle))
     arc_x = filled - kelvin * (np.cos(turn) - np.cos(turn[0]))
-    pitch = rough.asperity_density**-0.5
+    pitch = rough.spacing
     summits = pitch * (np.arange(_SUMMITS) - _SUMMITS // 2)
     heights = np.random.default_rng(_SEED).standard_normal(_SUMMITS) * rough.rms_height
     fine = np.linspace(summits[0] - pitch / 2.0, summits[-1] + pitch / 2.0, 1200)

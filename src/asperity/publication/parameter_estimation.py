@@ -39,7 +39,7 @@ _LEAST_CLEARANCE = np.log(1e-11)
 _MISSED = 3.0  # residual of a motion that does not rest
 
 
-class Parameters(NamedTuple):
+class Unknowns(NamedTuple):
     """What is not in the publication's text.
 
     Attributes
@@ -57,7 +57,7 @@ class Parameters(NamedTuple):
     capillary_factor: float
 
     @classmethod
-    def of(cls, case: Case) -> Parameters:
+    def of(cls, case: Case) -> Unknowns:
         """Those of a case."""
         assumed, gap = case.publication, case.launch.release_separation
         assert assumed is not None
@@ -81,8 +81,8 @@ class Refit:
 
     Parameters
     ----------
-    inputs
-        The inputs.
+    unknowns
+        What the text leaves open.
     rms
         Root mean square of the relative differences.
     uncertainty
@@ -94,11 +94,11 @@ class Refit:
         Best inputs and their rms for each of several ends of the conjunction.
     """
 
-    inputs: Parameters
+    unknowns: Unknowns
     rms: float
-    uncertainty: Parameters
+    uncertainty: Unknowns
     correlation: np.ndarray
-    profile: list[tuple[Parameters, float]]
+    profile: list[tuple[Unknowns, float]]
 
 
 class _Target(NamedTuple):
@@ -135,7 +135,7 @@ def refit(
     problem = _Problem(case, entries)
     if len(problem.targets) < len(UNKNOWN):
         return None
-    first = problem.start(Parameters.of(case))
+    first = problem.start(Unknowns.of(case))
     if stop is not None and stop.is_set():
         return None
     report(0.1, "two inputs at each end of the conjunction")
@@ -149,9 +149,9 @@ def refit(
     report(0.7, "all three inputs")
     best = min([first, *found], key=problem.rms)
     best = min(best, _descended(problem, best, slice(None), 200), key=problem.rms)
-    profile = [(problem.inputs(x), problem.rms(x)) for x in found]
+    profile = [(problem.unknowns(x), problem.rms(x)) for x in found]
     report(1.0, "refitted")
-    return Refit(problem.inputs(best), problem.rms(best), *problem.spread(best), profile)
+    return Refit(problem.unknowns(best), problem.rms(best), *problem.spread(best), profile)
 
 
 def _chain(
@@ -195,7 +195,7 @@ class _Problem:
     """
 
     def __init__(self, case: Case, entries: Sequence[Entry]) -> None:
-        plain = Parameters(*Parameters.of(case)[:2], 1.0).within(case)
+        plain = Unknowns(*Unknowns.of(case)[:2], 1.0).within(case)
         problem = build(resolve(plain))
         assert isinstance(problem.contact, PublishedContact)
         self._contact, self._body = problem.contact, problem.body
@@ -211,16 +211,16 @@ class _Problem:
         }
         self.targets = sorted(found)  # the row that both tables share counts once
 
-    def inputs(self, x: np.ndarray) -> Parameters:
+    def unknowns(self, x: np.ndarray) -> Unknowns:
         gap = x[0] * self._highest + np.exp(x[1])
-        return Parameters(float(x[0]), float(gap), float(np.exp(x[2])))
+        return Unknowns(float(x[0]), float(gap), float(np.exp(x[2])))
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
         allowed = _LOWEST_EDGE < x[0] < _HIGHEST_EDGE and x[2] < _LARGEST_FACTOR
         if not (allowed and x[1] > _LEAST_CLEARANCE):
             return np.full(len(self.targets), _MISSED)
         found = np.asarray(
-            _integrate(self._contact, self._body, self._surfaces, jnp.asarray(self.inputs(x)),
+            _integrate(self._contact, self._body, self._surfaces, jnp.asarray(self.unknowns(x)),
                      jnp.asarray(self._rest))
         )  # fmt: skip
         out = np.array([found[t.surface, t.quantity] / t.value - 1.0 for t in self.targets])
@@ -229,7 +229,7 @@ class _Problem:
     def rms(self, x: np.ndarray) -> float:
         return float(np.sqrt(np.mean(self.residuals(x) ** 2)))
 
-    def start(self, given: Parameters) -> np.ndarray:
+    def start(self, given: Unknowns) -> np.ndarray:
         """The best of the inputs given and of a coarse net at their end of the conjunction."""
         edge = given.conjunction_ends
         clearance = max(given.release_separation - edge * self._highest, 1e-10)
@@ -237,7 +237,7 @@ class _Problem:
         here = np.array([edge, np.log(clearance), np.log(given.capillary_factor)])
         return min([here, *net], key=self.rms)
 
-    def spread(self, x: np.ndarray) -> tuple[Parameters, np.ndarray]:
+    def spread(self, x: np.ndarray) -> tuple[Unknowns, np.ndarray]:
         """Standard deviations of the inputs and their correlation, from central differences."""
         step = 0.01  # wide: a stiction time steps where an impact is added
         columns = []
@@ -250,14 +250,14 @@ class _Problem:
         scatter = np.sum(self.residuals(x) ** 2) / spare if spare > 0 else np.nan
         covariance = scatter * np.linalg.pinv(jacobian.T @ jacobian)
         # To the inputs themselves: the gap moves with the edge and with the clearance.
-        edge, gap, factor = self.inputs(x)
+        edge, gap, factor = self.unknowns(x)
         change = np.array(
             [[1.0, 0.0, 0.0], [self._highest, gap - edge * self._highest, 0.0], [0.0, 0.0, factor]]
         )
         covariance = change @ covariance @ change.T
         sigma = np.sqrt(np.diag(covariance))
         sigma = np.where(sigma > 0.0, sigma, np.nan)  # where no number depends on an input
-        return Parameters(*map(float, sigma)), covariance / np.outer(sigma, sigma)
+        return Unknowns(*map(float, sigma)), covariance / np.outer(sigma, sigma)
 
 
 def _motion_of(

@@ -17,7 +17,7 @@ from . import audit, figures
 from .comparison import found_of, power_of, problems_of, rows_of, table_1
 from .evidence import Evidence
 from .figure_data import Drawing
-from .parameter_estimation import Parameters, Refit, refit
+from .parameter_estimation import Refit, Unknowns, refit
 from .published_tables import Entry, read_tables
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def reproduce(
         if keep is not None and before is not None:
             keep(before)
         fit = refit(case, entries, report=lambda f, text: report(0.2 + 0.4 * f, text), stop=stop)
-        case = case if fit is None else fit.inputs.within(case)
+        case = case if fit is None else fit.unknowns.within(case)
         if stop.is_set() and before is not None:
             return before
     partial, results = _compared(case, entries, fit, stop)
@@ -170,7 +170,7 @@ _ELSEWHERE = (
 
 def _usable(case: Case) -> Case:
     """The case; the built-in one where its release lies within its own conjunction."""
-    edge, gap, _ = Parameters.of(case)
+    edge, gap, _ = Unknowns.of(case)
     rough = resolve(case).asperities
     assert rough is not None
     return case if gap > edge * rough.rms_height else builtin("published")
@@ -195,7 +195,7 @@ def _compared(
         for entry in _unique(entries)
         if entry.surface in results
     ]
-    found = found_of(Parameters.of(case), rows, fit)
+    found = found_of(Unknowns.of(case), rows, fit)
     return Reproduction(rows, table_1(case), found, power, [], {}), results
 
 
@@ -208,7 +208,7 @@ def surface_case(case: Case, entry: Entry) -> Case:
         Where the release lies within the conjunction there.
     """
     case, (_, height) = entry.within(case), entry.surface
-    edge, gap, _ = Parameters.of(case)
+    edge, gap, _ = Unknowns.of(case)
     if gap <= edge * height:
         raise InputError(
             f"`rms_height` must leave the release at {gap * 1e9:.4g} nm outside the conjunction, "

@@ -41,13 +41,13 @@ class AdhesionChoice(NamedTuple):
         Its name, as in a case file.
     reason
         Why this one, in a line; None where the case names the law.
-    near_borders
+    border_warnings
         A warning for each border between two laws that is near.
     """
 
     law: str
     reason: str | None = None
-    near_borders: tuple[str, ...] = ()
+    border_warnings: tuple[str, ...] = ()
 
 
 class _Border(NamedTuple):

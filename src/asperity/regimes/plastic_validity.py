@@ -74,7 +74,7 @@ def _beyond(inputs: Inputs, central: float) -> list[str]:
     share = beyond / contacting if contacting > 0.0 else 0.0
     if share < SHARE:
         return []
-    advice = ": [plasticity] lets them yield" * (inputs.could_yield and not inputs.yields)
+    advice = ": [plasticity] lets them yield" * (inputs.plasticity_allowed and not inputs.yields)
     out = [
         f"{100.0 * share:.3g} % of the contacting asperities are beyond yield at closest approach "
         f"(overlaps above {overlap * 1e9:.3g} nm, by {name}){advice}"

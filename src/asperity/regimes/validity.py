@@ -80,7 +80,7 @@ def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Mot
         *_surface(problem),
         *_asperities(inputs, at_depth),
         *_publication(inputs),
-        *_adhesion(regime, inputs.near_borders, inputs.yields),
+        *_adhesion(regime, inputs.border_warnings, inputs.yields),
         *yielded(inputs, at_depth.central),
         *liquid_warnings(inputs, regime),
         *gas_warnings(inputs, at_depth.central, motion),
@@ -239,8 +239,8 @@ def _publication(inputs: Inputs) -> list[str]:
     ]
 
 
-def _adhesion(regime: Regime, near_borders: Sequence[str], yields: bool) -> list[str]:
-    out = list(near_borders)
+def _adhesion(regime: Regime, border_warnings: Sequence[str], yields: bool) -> list[str]:
+    out = list(border_warnings)
     psi, mu = regime.plasticity_index, regime.tabor_number
     if psi is not None and psi > YIELDS_ABOVE and not yields:
         out.append(

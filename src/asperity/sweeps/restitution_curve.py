@@ -224,7 +224,7 @@ def restitution_curve(
     if speeds is not None:
         speeds = _checked(speeds)
     _, report = case.launch, progress or silently
-    inputs = resolve(case).first_impact()
+    inputs = resolve(case).one_impact()
     problem, limits = build(inputs), Limits.of(inputs.tolerance)
     solution = integrate(problem, report, stop)
     about = assessment_of(name, problem, solution.contact, solution.motion)

@@ -36,7 +36,7 @@ def _dry_adhesion(evidence: Evidence) -> float:
     """Pull of all contacting asperities at lambda' = 3 by the exact model [N], eq. 9."""
     rough = evidence.rough
     contacting = float(evidence.exact_state(3.0 * rough.rms_height).contacting)
-    return contacting * 2.0 * pi * rough.asperity_radius * evidence.work
+    return contacting * 2.0 * pi * rough.asperity_radius * evidence.inputs.work_of_adhesion
 
 
 def _pressure(evidence: Evidence) -> Claim:

@@ -45,7 +45,7 @@ def claims(evidence: Evidence) -> list[Claim]:
 def _models(evidence: Evidence) -> list[Claim]:
     inputs = evidence.inputs
     tabor = regimes.tabor_number(
-        inputs.tip_radius, evidence.work, inputs.modulus, inputs.equilibrium_spacing
+        inputs.tip_radius, inputs.work_of_adhesion, inputs.modulus, inputs.equilibrium_spacing
     )
     elasticity = regimes.ELASTICITY_PER_TABOR * tabor
     psi = float(evidence.wet.regime["plasticity_index"])
@@ -75,7 +75,7 @@ def _polynomials(evidence: Evidence) -> list[Claim]:
         if np.isnan(decrement)
         else f"has a decrement of {decrement:.3g}"
     )
-    edge = evidence.wet_inputs.conjunction_ends
+    edge = evidence.unknowns.conjunction_ends
     worst = evidence.printed_off
     published = evidence.published.values["log_decrement"]
     assert published is not None
@@ -115,9 +115,7 @@ def _kelvin(evidence: Evidence) -> Claim:
 
 def _interaction_range(evidence: Evidence, humidity: float) -> float:
     """Gap at which a meniscus ends [m]."""
-    angle = evidence.case.capillary.contact_angle
-    assert angle is not None
-    return 2.0 * evidence.kelvin_radius(humidity) * cos(angle)
+    return 2.0 * evidence.kelvin_radius(humidity) * cos(evidence.inputs.contact_angle)
 
 
 def _push(evidence: Evidence) -> Claim:
@@ -166,7 +164,7 @@ def _left_out(evidence: Evidence) -> Claim:
 
 
 def _water(evidence: Evidence) -> list[Claim]:
-    spacing = evidence.rough.asperity_density**-0.5
+    spacing = evidence.rough.spacing
     damp = evidence.kelvin_radius(0.99)
     contact = evidence.contact_time
     return [

@@ -27,25 +27,25 @@ def claims(evidence: Evidence) -> list[Claim]:
 
 
 def _damping(evidence: Evidence) -> list[Claim]:
-    inputs = evidence.wet_inputs
+    unknowns = evidence.unknowns
     wet = first(evidence.wet.measures["log_decrement"])
     restitution = first(evidence.both_ways.measures["restitution"])
     published = evidence.published.values["log_decrement"]
-    left_out = 1.0 / (0.5 - ndtr(-inputs.conjunction_ends))
+    left_out = 1.0 / (0.5 - ndtr(-unknowns.conjunction_ends))
     return [
         Claim("Adhesion and menisci damp the motion (eqs. 9, 15, 21)", f"decrement {published}",
               f"as forces of position alone they give a restitution of {restitution:.8f}. Pulling "
               f"only while the bodies part, which no equation says, they give {wet:.4f}",
               either(restitution < 0.999, AGREES, UNEXPLAINED)),
         Claim("Release gap, density, number of bands, grid", "-",
-              f"{amount(inputs.release_separation, 'm')} from rest, found from the tables; "
+              f"{amount(unknowns.release_separation, 'm')} from rest, found from the tables; "
               f"{evidence.inputs.body.density:g} kg/m^3, assumed",
               MISSING),
         Claim("The force of the menisci (eq. 15)", "1",
-              f"times {inputs.capillary_factor:.4g}, found from the tables. The asperities that "
+              f"times {unknowns.capillary_factor:.4g}, found from the tables. The asperities that "
               f"the sum leaves out would be {left_out:.3g} of that; an end of the conjunction "
               "farther out needs less (see --refit)",
-              either(close(inputs.capillary_factor, 1.0, 0.1), AGREES, UNEXPLAINED)),
+              either(close(unknowns.capillary_factor, 1.0, 0.1), AGREES, UNEXPLAINED)),
     ]  # fmt: skip
 
 
@@ -86,17 +86,17 @@ def _wet_over_dry(evidence: Evidence) -> Claim:
 
 
 def _gas(evidence: Evidence) -> Claim:
-    case, inputs = evidence.case, evidence.wet_inputs
+    unknowns = evidence.unknowns
     edge = float(evidence.contact.pressure.end)
     air = GASES["air"]
     slip = air.slip_length(ATMOSPHERE, ROOM_TEMPERATURE)
     path = air.free_path(ATMOSPHERE, ROOM_TEMPERATURE)
     gas, _ = gas_decrement(
-        release=inputs.release_separation,
+        release=unknowns.release_separation,
         rebound=edge,
         mass=evidence.inputs.mass,
-        gravity=case.launch.gravity,
-        radius=case.body.radius,
+        gravity=evidence.gravity,
+        radius=evidence.inputs.radius,
         viscosity=air.viscosity(ROOM_TEMPERATURE),
         slip_length=slip,
     )
@@ -141,7 +141,7 @@ def _power(evidence: Evidence) -> list[Claim]:
 
 def _exact(evidence: Evidence) -> list[Claim]:
     rest, sigma = evidence.exact_rest, evidence.rough.rms_height
-    edge, release, _ = evidence.wet_inputs
+    edge, release, _ = evidence.unknowns
     push = float(evidence.exact_state(release).force) / evidence.weight
     capillary = evidence.exact.case.capillary
     gap = evidence.exact.case.launch.release_separation
