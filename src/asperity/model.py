@@ -221,7 +221,7 @@ def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:
     if inputs.liquid is not None:
         tension = assumed.capillary_factor * inputs.liquid.tension * np.cos(inputs.contact_angle)
         span = inputs.liquid_span
-        interaction_range = None if np.isinf(span) else span
+        interaction_range = None if np.isinf(span) else np.asarray(span)
     pressure = PublishedPressure(
         density=rough.asperity_density,
         radius=rough.asperity_radius,

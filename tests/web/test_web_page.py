@@ -613,7 +613,11 @@ def test_the_critical_velocity_is_waited_for_without_dimming(page):
 
 def test_nothing_is_sought_for_a_case_that_was_cancelled(page):
     sought = []
-    page.route("**/api/critical", sought.append)  # no answer to either
+
+    def asked_for(route):  # which is not answered
+        sought.append(route)
+
+    page.route("**/api/critical", asked_for)
     write(page, "body.radius", "42 um")
     settled(page)
     page.route("**/api/explore", lambda route: None)
