@@ -8,7 +8,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from math import erfc, exp, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .errors import Tolerance
@@ -122,20 +121,6 @@ class Asperities:
     def spacing(self) -> float:
         """Mean distance of neighbours [m]."""
         return self.asperity_density**-0.5
-
-    def covered(self, separation: float) -> float:
-        """Share of the area that contacting asperities cover at a separation [m].
-
-        Density times pi radius times the mean overlap: of the summits where they are in use, else
-        of Gaussian heights.
-        """
-        if self.facts is not None and self.facts["source"] == "summits":
-            assert self.summits is not None
-            overlap = (self.summits.heights - separation).clip(0.0)
-            return self.asperity_density * pi * float((overlap * self.summits.radii).mean())
-        reduced = (separation - self.mean_height) / self.rms_height
-        tail = exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - 0.5 * reduced * erfc(reduced / sqrt(2.0))
-        return self.asperity_density * pi * self.asperity_radius * self.rms_height * tail
 
 
 class Gas(NamedTuple):

@@ -155,12 +155,9 @@ def _released(
     Where the case gives a speed alone, the release lies as far out as its forces ask for. A case
     without an [impact] table is not released by its user.
     """
-    inputs = problem.inputs
-    chosen = inputs.chosen_release
+    chosen = problem.inputs.chosen_release
     for _ in range(TRIES):
-        curves = _prepared(
-            problem, inputs.tolerance.relative, limits, report, drawn=drawn, many=many
-        )
+        curves = _prepared(problem, limits, report, drawn=drawn, many=many)
         if not chosen:
             break
         body, table = problem.body, curves[1]
@@ -170,14 +167,13 @@ def _released(
             break
         release = farther(np.asarray(body.release), force, power, limit)
         problem = problem._replace(body=dataclasses.replace(body, release=jnp.asarray(release)))
-    if inputs.release is not None:
+    if problem.inputs.release is not None:
         _check_release(problem, curves[1], chosen=chosen, many=many)
     return problem, curves
 
 
 def _prepared(
     problem: Problem,
-    tolerance: float,
     limits: Limits,
     report: Report,
     *,
@@ -188,6 +184,7 @@ def _prepared(
 
     Meanwhile the motion compiles, with its drawing where it is to be drawn.
     """
+    tolerance = problem.inputs.tolerance.relative
     allowed, errors = tolerance, [np.inf, np.inf]
     for factor in _REFINEMENTS:
         report(0.02, "tracing")

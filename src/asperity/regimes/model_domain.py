@@ -5,7 +5,7 @@ What no model describes at all is refused sooner, with the case.
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import erfc, exp, pi, sqrt
 
 import numpy as np
 from scipy.special import erfcx
@@ -84,6 +84,20 @@ def contact_radius(problem: Problem, elastic: float, central: float) -> float:
     rise = max(rough.mean_height + _EDGE * rough.rms_height - central, 0.0)
     bulk = 0.0 if inputs.structure.deformation == "rigid" else hertz
     return max(sqrt(2.0 * radius * rise), bulk)
+
+
+def covered_share(rough: Asperities, separation: float) -> float:
+    """Share of the area that contacting asperities cover at a separation [m].
+
+    Density times pi radius times the mean overlap: of the summits where they are in use, else of
+    Gaussian heights.
+    """
+    if rough.summits is not None and rough.facts is not None and rough.facts["source"] == "summits":
+        overlap = (rough.summits.heights - separation).clip(0.0)
+        return rough.asperity_density * pi * float((overlap * rough.summits.radii).mean())
+    reduced = (separation - rough.mean_height) / rough.rms_height
+    tail = exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - 0.5 * reduced * erfc(reduced / sqrt(2.0))
+    return rough.asperity_density * pi * rough.asperity_radius * rough.rms_height * tail
 
 
 def mean_overlap(rough: Asperities, separation: float) -> float:

@@ -18,7 +18,7 @@ from ..inputs import Inputs
 from . import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, missed, tabor_number
 from .accuracy import CLOSED, fall_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
-from .model_domain import domain_warnings
+from .model_domain import covered_share, domain_warnings
 from .plastic_validity import yielded
 from .wave_limits import wave_warnings
 
@@ -172,7 +172,7 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
             f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
             "in that number (Poisson)"
         )
-    share = rough.covered(at_depth.central)
+    share = covered_share(rough, at_depth.central)
     if share > 0.1:
         out.append(
             f"contacting asperities cover {100 * share:.0f} % of the area at the axis at closest "
