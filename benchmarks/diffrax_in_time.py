@@ -51,7 +51,7 @@ def field(_: Any, y: jax.Array, given: Any) -> jax.Array:
     goal = separation - contact.law.forming_gap
     rate = jnp.where(forming, (goal - threshold) / contact.time, 0.0)
     lost = bonds * rate * contact.loss(separation - threshold)
-    drag = 0.0 if body.film is None else body.film.drag(separation)
+    drag = sum(film.drag(separation) for film in body.drags)
     pulled = (force - body.weight - drag * speed) / body.mass
     return jnp.stack([speed, pulled, rate, lost])
 

@@ -94,7 +94,8 @@ def _motions(
     mass = 2000.0 * 4.0 / 3.0 * pi * radius**3
 
     def one(speed: jax.Array) -> jax.Array:
-        body = Body(mass, 9.81, 100e-9, speed, film)
+        drags = () if film is None else (film,)
+        body = Body(mass, 9.81, 100e-9, speed, drags)
         motion = simulate(contact, body, tolerance=Tolerance(max_impacts=impacts))
         return motion.impacts.apex_time
 

@@ -45,6 +45,8 @@ class Structure(NamedTuple):
         Whether the contact radiates into the counterface.
     gas
         Whether there is gas in the gap.
+    suspension
+        What holds the body: "none", a "spring", or "damped", a spring and a dashpot.
     heights
         Of the asperities: "smooth" without any, "gaussian", or "summits" as they were measured.
     published
@@ -59,6 +61,7 @@ class Structure(NamedTuple):
     viscoelastic: bool
     waves: bool
     gas: bool
+    suspension: str
     heights: str
     published: bool
 
@@ -148,6 +151,24 @@ class Gas(NamedTuple):
     def free_path(self) -> float:
         """Mean free path [m] that belongs to the slip length."""
         return self.slip_length / SLIP_PER_FREE_PATH
+
+
+class Suspension(NamedTuple):
+    """The spring and the dashpot that hold the body.
+
+    Attributes
+    ----------
+    stiffness
+        Stiffness of the spring [N/m].
+    damping
+        Force of the dashpot over the speed [N s/m].
+    rest_gap
+        Separation of the mean planes at which the spring is relaxed [m].
+    """
+
+    stiffness: float
+    damping: float
+    rest_gap: float
 
 
 class Release(NamedTuple):
@@ -249,6 +270,8 @@ class Inputs:
         Time that menisci take to form [s]; 0 where they form at once.
     gas
         The gas in the gap; None in a vacuum.
+    suspension
+        What holds the body; None where it is free.
     relaxed_modulus_ratio, relaxation_time
         Of a half-space that relaxes [-], [s]; 1 and 0 of an elastic one.
     release
@@ -288,6 +311,7 @@ class Inputs:
     liquid_temperature: float | None
     formation_time: float
     gas: Gas | None
+    suspension: Suspension | None
     relaxed_modulus_ratio: float
     relaxation_time: float
     release: Release | None

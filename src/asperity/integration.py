@@ -161,8 +161,8 @@ def _released(
         if not chosen:
             break
         body, table = problem.body, curves[1]
-        force, power, largest = (np.asarray(x) for x in _at_release(table, body))
-        limit = negligible_force(np.asarray(body.weight), largest, chosen=True)
+        force, power, largest, load = (np.asarray(x) for x in _at_release(table, body))
+        limit = negligible_force(load, largest, chosen=True)
         if force <= limit:
             break
         release = farther(np.asarray(body.release), force, power, limit)
@@ -253,13 +253,16 @@ _integrate_some = Program(
 def _check_release(problem: Problem, table: Table, *, chosen: bool, many: bool) -> None:
     """A release within contact is refused: it would not be a fall."""
     body = problem.body
-    release, weight = float(body.release), float(body.mass) * float(body.gravity)
+    release, load = float(body.release), float(body.mass) * float(body.gravity)
     force = abs(float(read_row(table, 0, release)[FORCE]))
     largest = float(np.max(np.abs(np.asarray(table.values)[..., 0, FORCE])))
-    limit = float(negligible_force(np.asarray(weight), np.asarray(largest), chosen=chosen))
+    if body.forces:
+        load, chosen = float(_at_release(table, body).load), True
+    limit = float(negligible_force(np.asarray(load), np.asarray(largest), chosen=chosen))
     if force <= limit:
         return
-    share = "1e-3 of the weight" if weight > 0.0 else "1e-6 of its peak"
+    share = "1e-3 of the weight" if load > 0.0 else "1e-6 of its peak"
+    share = "1e-3 of the spring's force" if body.forces else share
     at_rest = _at_rest(problem, many)
     raise InputError(
         "`release_separation` must lie outside contact: the contact force there must be below "
@@ -272,7 +275,7 @@ def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     body = problem.body
     release = float(problem.contact.interaction_range) + CLEARANCE
-    clear = Body(body.mass, body.gravity, release, body.speed)
+    clear = dataclasses.replace(body, release=release, drags=())
     prepared = _preparing(problem.contact, many)(problem.contact, clear, many)
     place = float(prepared[1].equilibrium)
     return f"at rest the separation is {place * 1e9:.4g} nm; " if np.isfinite(place) else ""

@@ -9,6 +9,7 @@ from numpy.polynomial.chebyshev import chebval
 
 from .dynamics import Body, Table
 from .dynamics.curve_table import FORCE
+from .dynamics.external_forces import Load
 from .dynamics.problem import CLEARANCE, Problem
 from .dynamics.static_equilibrium import find_reference
 from .errors import InputError, SimulationError
@@ -71,7 +72,7 @@ def turning_at(
 
 def _place(table: Table, load: float) -> float | None:
     """Where an approach first carries a load [m]; None where nothing in the table does."""
-    found = _reference(table, as_float64(load / (1.0 + 1e-9)), 0)
+    found = _reference(table, Load(as_float64(load / (1.0 + 1e-9))), 0)
     return float(found.equilibrium) if bool(found.rests) else None
 
 

@@ -22,8 +22,10 @@ from .contact.profile import Sphere
 from .contact.resolution import Resolution
 from .contact.viscoelastic import Relaxation
 from .dynamics import Body
+from .dynamics.external_forces import Drag, ExternalForce
 from .dynamics.gas_film import SqueezeFilm
 from .dynamics.problem import CLEARANCE, Problem
+from .dynamics.suspension import Dashpot, Spring
 from .dynamics.wave_radiation import WaveRadiation
 from .errors import InputError
 from .inputs import Asperities, Inputs
@@ -79,8 +81,8 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
     body = Body(inputs.mass, 0.0, contact.interaction_range + CLEARANCE)
     if (let_go := inputs.release) is not None:
         release = body.release if let_go.separation is None else let_go.separation
-        film, waves = _film(inputs), _waves(inputs)
-        body = Body(inputs.mass, let_go.gravity, release, let_go.speed, film, waves)
+        drags, forces = _drags(inputs), _forces(inputs)
+        body = Body(inputs.mass, let_go.gravity, release, let_go.speed, drags, forces)
     delayed, relaxation = _delayed(inputs, contact), None
     if inputs.structure.viscoelastic:
         relaxation = Relaxation(contact, inputs.relaxed_modulus_ratio, inputs.relaxation_time)
@@ -197,21 +199,25 @@ def _asperities(inputs: Inputs, rough: Asperities) -> Surfaces:
     )
 
 
-def _film(inputs: Inputs) -> SqueezeFilm | None:
-    """The gas in the gap; None in a vacuum."""
-    gas = inputs.gas
-    if gas is None:
-        return None
-    return SqueezeFilm(inputs.radius, gas.viscosity, gas.slip_length, gas.cutoff_separation)
+def _drags(inputs: Inputs) -> tuple[Drag, ...]:
+    """What takes energy on the way, in the order of the ledger."""
+    drags: list[Drag] = []
+    if (gas := inputs.gas) is not None:
+        film = SqueezeFilm(inputs.radius, gas.viscosity, gas.slip_length, gas.cutoff_separation)
+        drags.append(film)
+    if inputs.structure.waves:
+        solid = inputs.counterface
+        assert solid.density is not None
+        drags.append(WaveRadiation.into(solid.youngs_modulus, solid.poisson, solid.density))
+    if inputs.suspension is not None and inputs.structure.suspension == "damped":
+        drags.append(Dashpot(inputs.suspension.damping))
+    return tuple(drags)
 
 
-def _waves(inputs: Inputs) -> WaveRadiation | None:
-    """What the contact radiates into the counterface; None where that is left out."""
-    if not inputs.structure.waves:
-        return None
-    solid = inputs.counterface
-    assert solid.density is not None
-    return WaveRadiation.into(solid.youngs_modulus, solid.poisson, solid.density)
+def _forces(inputs: Inputs) -> tuple[ExternalForce, ...]:
+    """What acts besides weight, contact and drags."""
+    held = inputs.suspension
+    return () if held is None else (Spring(held.stiffness, held.rest_gap),)
 
 
 def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:

@@ -150,7 +150,8 @@ def _told(
 
 
 def _failure(problem: Problem) -> str:
-    damped = " or the gas film damps it too strongly to be followed" * problem.inputs.structure.gas
+    drags = " and ".join(problem.body.mechanisms)
+    damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
     return f"the motion left the tabulated separations{damped}"
 
 

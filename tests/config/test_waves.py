@@ -70,8 +70,8 @@ def _leg(problem, start, speed, memory):
     """Place of the next turn of an integration in time, in nm and us."""
     contact, body = problem.contact, problem.body
     force = jax.jit(jax.value_and_grad(lambda d: contact.state(d, memory).force))
-    central = jax.jit(lambda d: body.film.drag(contact.state(d, memory).central))
-    mass, weight, waves = (float(x) for x in (body.mass, body.weight, body.waves.coefficient))
+    central = jax.jit(lambda d: body.drags[0].drag(contact.state(d, memory).central))
+    mass, weight, waves = (float(x) for x in (body.mass, body.weight, body.drags[-1].coefficient))
 
     def rate(_, y):
         place = y[0] * 1e-9
@@ -126,7 +126,7 @@ def _from_forces(result, coefficient):
 
 
 def test_loss_is_that_of_the_drawn_force(problem, result):
-    found = _from_forces(result, float(problem.body.waves.coefficient))
+    found = _from_forces(result, float(problem.body.drags[-1].coefficient))
     assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
 
 
@@ -139,7 +139,7 @@ def test_a_rough_half_space_radiates_too():
         }
     )
     result = asperity.solve(case)
-    found = _from_forces(result, float(build(resolve(case)).body.waves.coefficient))
+    found = _from_forces(result, float(build(resolve(case)).body.drags[-1].coefficient))
     assert set(result.ledger["lost"]) == {"capillary", "waves"}
     assert result.ledger["lost"]["waves"] == pytest.approx(found, rel=1e-2)
     assert result.ledger["energy_balance_error"] < 1e-8
@@ -151,10 +151,10 @@ def test_without_waves_there_are_none(table):
 
 
 def test_the_counterface_carries_the_waves_not_the_body(problem):
-    coefficient = float(problem.body.waves.coefficient)
-    other = build(resolve(ROUGH.replace({"body.material": "gold"}))).body.waves
+    coefficient = float(problem.body.drags[-1].coefficient)
+    other = build(resolve(ROUGH.replace({"body.material": "gold"}))).body.drags[-1]
     assert float(other.coefficient) == coefficient
-    other = build(resolve(ROUGH.replace({"counterface.material": "silica"}))).body.waves
+    other = build(resolve(ROUGH.replace({"counterface.material": "silica"}))).body.drags[-1]
     assert float(other.coefficient) > coefficient
 
 

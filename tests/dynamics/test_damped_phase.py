@@ -37,9 +37,9 @@ def integrated(problem):
 
     @jax.jit
     def integrate(viscosity, slip, release=60e-9):
-        old = problem.body.film
+        old = problem.body.drags[0]
         film = SqueezeFilm(old.radius, viscosity, slip, old.closest)
-        body = dataclasses.replace(problem.body, film=film, release=release)
+        body = dataclasses.replace(problem.body, drags=(film,), release=release)
         motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
         return motion, measure(motion, body)
 
@@ -81,7 +81,7 @@ def test_turns_and_times_are_those_of_an_integration_in_time(problem, in_air):
         made = motion.impacts
         for sign, rows in ((-1, (made.closest_approach, made.closest_approach_time)),
                            (1, (made.apex, made.apex_time))):  # fmt: skip
-            place, taken, _ = _in_time(problem, place, sign, memory, problem.body.film)
+            place, taken, _ = _in_time(problem, place, sign, memory, problem.body.drags[0])
             memory, time = problem.contact.remember(memory, place), time + taken
             assert float(rows[0][k]) == pytest.approx(place, rel=1e-8)
             assert float(rows[1][k]) == pytest.approx(time, rel=1e-7)
@@ -96,7 +96,7 @@ def test_what_the_gas_takes_is_missing_from_the_energy(in_air):
 
 
 def test_thin_gas_is_a_vacuum(problem, integrated):
-    body = dataclasses.replace(problem.body, film=None)
+    body = dataclasses.replace(problem.body, drags=())
     motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=IMPACTS))
     thin, _ = integrated(1e-16, 0.0)
     for name in ("closest_approach", "apex", "closest_approach_time", "apex_time"):
@@ -117,7 +117,7 @@ def test_restitution_counts_what_passes_the_end_of_contact(problem, integrated):
     start = 200e-9
     motion, measures = integrated(18.2e-6, 75e-9, start)
     weight, place = float(problem.body.weight), float(measures.contact_end)
-    film, memory = problem.body.film, problem.contact.initial_memory()
+    film, memory = problem.body.drags[0], problem.contact.initial_memory()
     speeds = []
     speeds.append(_in_time(problem, start, -1, memory, film, until=place)[2])
     deepest = float(motion.impacts.closest_approach[0])
@@ -136,7 +136,7 @@ def test_a_body_that_the_gas_holds_creeps_to_rest(problem, integrated, viscosity
     assert np.isnan(measures.rebound_height[0])
     rest = float(motion.reference.equilibrium)
     goal = rest + 1e-3 * (float(problem.body.release) - rest)
-    film = SqueezeFilm(problem.body.film.radius, viscosity, 0.0, problem.body.film.closest)
+    film = SqueezeFilm(problem.body.drags[0].radius, viscosity, 0.0, problem.body.drags[0].closest)
     _, time, _ = _in_time(
         problem, float(problem.body.release), -1, problem.contact.initial_memory(), film, until=goal
     )
@@ -162,9 +162,9 @@ def test_a_batch_in_gas_equals_single_motions(integrated):
 
 def test_gradient_of_the_first_apex_with_respect_to_the_viscosity(problem):
     def apex(viscosity):
-        old = problem.body.film
+        old = problem.body.drags[0]
         film = SqueezeFilm(old.radius, viscosity, old.slip_length, old.closest)
-        body = dataclasses.replace(problem.body, film=film)
+        body = dataclasses.replace(problem.body, drags=(film,))
         motion = simulate(problem.contact, body, tolerance=Tolerance(max_impacts=1))
         return motion.impacts.apex[0]
 

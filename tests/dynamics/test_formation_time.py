@@ -32,7 +32,7 @@ MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
 HERTZ = Hertz(BETA, E)
 WET = Meniscus(BETA, 0.0728, radians(20.0), 10e-9)
 DROP = Body(MASS, 9.81, 120e-9)
-AIR = Body(MASS, 9.81, 120e-9, 0.0, SqueezeFilm(RADIUS, 18.2e-6, 75e-9, SIGMA))
+AIR = Body(MASS, 9.81, 120e-9, 0.0, (SqueezeFilm(RADIUS, 18.2e-6, 75e-9, SIGMA),))
 TWO = Tolerance(max_impacts=2)
 
 _prepare = eqx.filter_jit(prepare)

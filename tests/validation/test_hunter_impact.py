@@ -21,7 +21,7 @@ STEEL = WaveRadiation.into(YOUNG, POISSON, DENSITY)
 
 def _integrated(coefficient, speed):
     contact = SmoothContact(Hertz(RADIUS, MODULUS))
-    body = Body(MASS, 0.0, 1e-9, speed, waves=WaveRadiation(coefficient))
+    body = Body(MASS, 0.0, 1e-9, speed, (WaveRadiation(coefficient),))
     motion = simulate(contact, body, tolerance=Tolerance(max_impacts=1))
     return motion.impacts, measure(motion, body).restitution[0]
 

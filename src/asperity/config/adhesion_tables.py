@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, model_validator
 
@@ -36,6 +36,8 @@ def _one_model(value: object) -> object:
 class Adhesion(Table):
     """Dry adhesion; without this table there is none."""
 
+    loss: ClassVar[str] = "adhesion"
+
     model: Annotated[
         Literal["none", "auto", "bradley", "dmt", "maugis", "jkr"], BeforeValidator(_one_model)
     ] = entry(
@@ -62,6 +64,8 @@ class Adhesion(Table):
 
 class Capillary(Table):
     """Menisci of condensed vapour; without this table there are none."""
+
+    loss: ClassVar[str] = "capillary"
 
     model: Literal["none", "equilibrium", "constant-volume", "kelvin-filling"] = entry(
         "",

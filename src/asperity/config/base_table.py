@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
@@ -13,6 +13,21 @@ class Table(BaseModel):
     """A table of a case file: frozen, no unknown keys, defaults checked like any value."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, strict=True)
+
+    loss: ClassVar[str | None] = None
+    """Name of what the table's mechanism takes, in the ledger; None for one that takes nothing."""
+
+    drives: ClassVar[bool] = False
+    """Whether the table's mechanism sets a body in motion that is at rest."""
+
+    def check_beside(self, case: Any) -> None:
+        """Refuse what the table cannot stand beside in a ``CaseTables``; by default nothing.
+
+        Raises
+        ------
+        InputError
+            With the key at fault and its rule.
+        """
 
 
 def need(table: Any, keys: tuple[str, ...]) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from pydantic import model_validator
 
@@ -24,6 +24,8 @@ _BY_NUMBER = ("viscosity", "slip_length")
 
 class Gas(Table):
     """Gas that is squeezed between the bodies; without this table there is a vacuum."""
+
+    loss: ClassVar[str] = "gas"
 
     name: str | None = entry(
         "", "Name from the catalogue, with `pressure` and `temperature`.", "air", default=None,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 LABELS = {
     "schema": "version of the schema",
-    "body": "body",
     "body.shape": "shape of the body",
     "body.radius": "radius of the body",
     "body.material": "material of the body",
@@ -13,7 +12,6 @@ LABELS = {
     "body.density": "density of the body",
     "body.hardness": "hardness of the body",
     "body.yield_strength": "yield strength of the body",
-    "counterface": "counterface",
     "counterface.material": "material of the counterface",
     "counterface.deformation": "deformation of the bulk",
     "counterface.youngs_modulus": "Young's modulus of the counterface",
@@ -21,10 +19,8 @@ LABELS = {
     "counterface.density": "density of the counterface",
     "counterface.hardness": "hardness of the counterface",
     "counterface.yield_strength": "yield strength of the counterface",
-    "roughness": "roughness",
     "roughness.asperity_density": "asperities per area",
     "roughness.asperity_radius": "tip radius",
-    "roughness.rms_height": "rms height",
     "roughness.files": "measured surfaces",
     "roughness.source": "asperities taken from the maps",
     "roughness.size": "size of the maps",
@@ -45,10 +41,8 @@ LABELS = {
     "capillary": "menisci",
     "capillary.model": "meniscus model",
     "capillary.formation": "formation of menisci",
-    "capillary.liquid": "liquid",
     "capillary.humidity": "relative humidity",
     "capillary.temperature": "temperature of the vapour",
-    "capillary.contact_angle": "contact angle",
     "capillary.tension": "surface tension",
     "capillary.molar_volume": "molar volume of the liquid",
     "capillary.adsorbed_film_thickness": "thickness of the adsorbed film",
@@ -64,42 +58,35 @@ LABELS = {
     "gas.pressure": "gas pressure",
     "gas.temperature": "gas temperature",
     "gas.viscosity": "gas viscosity",
-    "gas.slip_length": "slip length",
     "gas.cutoff_separation": "thinnest gas film",
     "waves": "elastic waves",
     "waves.model": "wave model",
     "viscoelasticity": "creep of the bulk",
     "viscoelasticity.model": "creep model",
     "viscoelasticity.relaxed_modulus_ratio": "relaxed over sudden modulus",
-    "viscoelasticity.relaxation_time": "relaxation time",
     "impact": "release and fall",
     "impact.release_separation": "gap at release",
     "impact.speed": "speed at release",
-    "impact.gravity": "gravity",
     "publication": "assumptions of the publication",
     "publication.attraction_during_retraction_only": "attraction during retraction alone",
     "publication.conjunction_ends": "end of the conjunction over rms height",
     "publication.capillary_factor": "factor on the force of menisci",
     "publication.polynomials": "height integrals",
     "publication.bands": "bands of menisci",
-    "numerics": "numerics",
     "numerics.tolerance": "error allowed to force curves",
     "numerics.rest_height_ratio": "at rest below this share of the first rebound",
     "numerics.time_limit": "longest simulated time",
     "numerics.max_impacts": "largest number of impacts",
     "numerics.rings": "rings of the conjunction",
-    "output": "output",
     "output.directory": "folder of the files",
     "output.motion": "keep the motion",
     "output.pictures": "draw pictures",
     "materials": "materials of your own",
     "materials.youngs_modulus": "Young's modulus",
     "materials.poisson": "Poisson's ratio",
-    "materials.density": "density",
-    "materials.hardness": "hardness",
-    "materials.yield_strength": "yield strength",
 }
-"""Name in words of every table and of every key of a case, by its dotted key."""
+"""Names in words of tables and keys of a case, by their dotted key, that the key itself does not
+say."""
 
 
 PERCENT = frozenset({"capillary.humidity"})
@@ -119,7 +106,7 @@ def label(key: str) -> str:
     -------
     str
         E.g. ``relative humidity``, ``menisci``, ``density of my glass``; without a capital but for
-        names of persons. Of an unknown key its last part, with blanks.
+        names of persons. Of any other key its last part, with blanks.
     """
     found = LABELS.get(key)
     if found is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -29,6 +29,8 @@ _BESIDE_CONTACT = ("dmt", "none")
 
 class Plasticity(Table):
     """Asperities that yield; without this table every contact is elastic."""
+
+    loss: ClassVar[str] = "plastic"
 
     model: Literal["none", "kogut-etsion", "jackson-green", "thornton-ning"] = entry(
         "",

@@ -19,6 +19,7 @@ from asperity.inputs import (
     Inputs,
     Release,
     Structure,
+    Suspension,
 )
 from asperity.materials.solids import contact_modulus, kelvin_radius
 from asperity.regimes.choice import AdhesionChoice, choose_adhesion
@@ -71,6 +72,7 @@ def resolve(case: CaseTables) -> Inputs:
             viscoelastic=relaxing,
             waves=case.waves is not None and case.waves.model != "none",
             gas=case.gas is not None,
+            suspension="none" if case.suspension is None else case.suspension.model,
             heights="smooth" if table is None else table.source or "gaussian",
             published=case.publication is not None,
         ),
@@ -92,6 +94,7 @@ def resolve(case: CaseTables) -> Inputs:
         radius_classes=CLASSES if table is None else table.radius_classes or CLASSES,
         **(wet or _DRY),
         gas=_gas(case, rough),
+        suspension=_suspension(case),
         relaxed_modulus_ratio=_relaxation(case, "relaxed_modulus_ratio") if relaxing else 1.0,
         relaxation_time=_relaxation(case, "relaxation_time") if relaxing else 0.0,
         release=_release(case),
@@ -159,6 +162,11 @@ def _gas(case: CaseTables, rough: Asperities | None) -> Gas | None:
     if closest is None:
         closest = 0.0 if rough is None else rough.rms_height
     return Gas(*table.film(), closest, table.pressure, table.temperature)
+
+
+def _suspension(case: CaseTables) -> Suspension | None:
+    table = case.suspension
+    return None if table is None else Suspension(**table.model_dump())
 
 
 def _relaxation(case: CaseTables, key: str) -> float:

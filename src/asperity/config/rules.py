@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+
 from asperity.config import problems
+from asperity.config.base_table import Table
 from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.limits import refuse_outside
 from asperity.config.tables import CaseTables
@@ -29,8 +32,29 @@ def check_rules(case: CaseTables) -> None:
         lambda: _waves_beside(case),
         lambda: _creep_beside(case),
         lambda: _yielding_beside(case),
+        lambda: _falls(case),
+        *(functools.partial(table.check_beside, case) for table in _tables(case)),
         lambda: refuse_outside(case),
     )
+
+
+def _tables(case: CaseTables) -> list[Table]:
+    """The tables that a case has."""
+    found = (getattr(case, name) for name in CaseTables.model_fields)
+    return [table for table in found if isinstance(table, Table)]
+
+
+def _falls(case: CaseTables) -> None:
+    """Refuse a body that nothing moves."""
+    impact = case.impact
+    if impact is None or impact.speed is not None or impact.gravity != 0.0:
+        return
+    if not any(table.drives for table in _tables(case)):
+        raise InputError(
+            "`gravity` must be positive where there is no `speed`: the body would never fall; "
+            "got 0 m/s^2",
+            key="impact.gravity",
+        )
 
 
 def _publication_beside(case: CaseTables) -> None:

@@ -41,12 +41,6 @@ class Impact(Table):
                 "`release_separation` or `speed` must be given; got neither",
                 key="release_separation",
             )
-        if self.speed is None and self.gravity == 0.0:
-            raise InputError(
-                "`gravity` must be positive where there is no `speed`: the body would never fall; "
-                "got 0 m/s^2",
-                key="gravity",
-            )
         return self
 
 

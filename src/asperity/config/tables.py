@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import functools
-from typing import Annotated, Literal
+import math
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
 from asperity.config.adhesion_tables import Adhesion, Capillary
 from asperity.config.base_table import Table
 from asperity.config.bodies import Body, Counterface, Material
+from asperity.config.fields import Quantity, entry
 from asperity.config.gas import Gas
 from asperity.config.plasticity import Plasticity
 from asperity.config.publication import Publication
@@ -32,6 +34,75 @@ def _known(version: object) -> object:
     return version
 
 
+class Suspension(Table):
+    """A spring and a dashpot between the body and a base at rest; without this table it is free."""
+
+    loss: ClassVar[str] = "damping"
+    drives: ClassVar[bool] = True
+
+    stiffness: Annotated[float, Quantity("N/m", 1e-9, 1e9)] = entry(
+        "N/m", "Stiffness of the spring.", "1 N/m"
+    )
+    damping: Annotated[float, Quantity("N s/m", 1e-18, 1e3, zero=True)] = entry(
+        "N s/m", "Force of the dashpot over the speed; 0 for none.", "1 nN s/m",
+        default="0 N s/m",
+    )  # fmt: skip
+    rest_gap: Annotated[float, Quantity("m", -1.0, 1.0, rule="must lie in [-1, 1] m")] = entry(
+        "m",
+        "Rigid separation at which the spring is relaxed; below 0 it presses on the surface.",
+        "100 nm",
+    )
+
+    @property
+    def model(self) -> str:
+        """The mechanism: a "spring" alone, or one that is "damped"."""
+        return "damped" if self.damping > 0.0 else "spring"
+
+    def check_beside(self, case: Any) -> None:
+        if case.publication is not None:
+            raise InputError(
+                "[suspension] must not be given with a [publication] table, whose body is free",
+                key="suspension",
+            )
+        steps = case.viscoelasticity
+        if steps is not None and steps.model != "none":
+            raise InputError(
+                "[suspension] must not be given with [viscoelasticity] model = "
+                f"'{steps.model}', whose motion in time knows no spring",
+                key="suspension",
+            )
+        if case.capillary.model != "none" and case.capillary.formation_time:
+            raise InputError(
+                "`formation_time` must be absent with [suspension]: a motion with menisci that "
+                f"take time knows no spring; got {shown(f'{case.capillary.formation_time:.6g} s')}",
+                key="capillary.formation_time",
+            )
+        if case.impact is not None:
+            self._check_release(case, case.impact)
+
+    def _check_release(self, case: CaseTables, impact: Impact) -> None:
+        """Refuse a release from nowhere, and one at rest where nothing moves the body."""
+        release = impact.release_separation
+        if release is None:
+            raise InputError(
+                "`release_separation` must be given with a [suspension] table, since the spring's "
+                "force depends on it; got nothing",
+                key="impact.release_separation",
+            )
+        density = case.body.solid(case.materials, "body").density
+        if density is None or impact.speed is not None:
+            return
+        weight = density * 4.0 / 3.0 * math.pi * case.body.radius**3 * impact.gravity
+        still = self.rest_gap - weight / self.stiffness
+        if abs(release - still) <= 1e-9 * abs(release):
+            raise InputError(
+                f"`release_separation` must differ from {still * 1e9:.6g} nm where there is no "
+                "`speed`: there spring and weight hold the body at rest; "
+                f"got {release * 1e9:.6g} nm",
+                key="impact.release_separation",
+            )
+
+
 class CaseTables(Table):
     """The tables of a case, not yet held against each other: that is a `Case`."""
 
@@ -51,6 +122,7 @@ class CaseTables(Table):
     gas: Gas | None = Field(None, json_schema_extra={"rare": True})
     waves: Waves | None = Field(None, json_schema_extra={"rare": True})
     viscoelasticity: Viscoelasticity | None = Field(None, json_schema_extra={"rare": True})
+    suspension: Suspension | None = Field(None, json_schema_extra={"rare": True})
     impact: Impact | None = None
     publication: Publication | None = Field(None, json_schema_extra={"rare": True})
     numerics: Numerics = Field(default_factory=Numerics)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -13,6 +13,8 @@ from asperity.config.fields import Number, entry
 
 class Viscoelasticity(Table):
     """A bulk that creeps under the contact; without this table it is elastic."""
+
+    loss: ClassVar[str] = "viscous"
 
     model: Literal["none", "standard-linear-solid"] = entry(
         "",

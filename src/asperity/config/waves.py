@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from asperity.config.adhesion_tables import Capillary
 from asperity.config.base_table import Table
@@ -15,6 +15,8 @@ from asperity.units import shown
 
 class Waves(Table):
     """Elastic waves into the counterface; without this table none take energy."""
+
+    loss: ClassVar[str] = "waves"
 
     model: Literal["none", "hunter"] = entry(
         "", "Waves that the contact radiates: 'none', or 'hunter'.", "hunter"

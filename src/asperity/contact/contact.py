@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Callable
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -13,6 +14,9 @@ from .._jax import jax, jnp
 
 Memory = Any
 """A pytree that a contact alone understands: its bonds after the last reversal."""
+
+Potential = Callable[[jax.Array], jax.Array]
+"""Potential energy [J] of a body at a separation [m] under what acts on it besides the contact."""
 
 
 class State(NamedTuple):
@@ -270,10 +274,12 @@ class Contact(eqx.Module):
         """Energy [J] lost when one bond forms and when it breaks, per hysteretic law."""
 
     @abc.abstractmethod
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         """A separation [m] that a body cannot reach.
 
-        It leaves ``release`` [m] with ``kinetic`` [J], ``weight`` [N] and no bonds.
+        It leaves ``release`` [m] with ``kinetic`` [J], without bonds, in a ``potential``.
         """
 
     @abc.abstractmethod

@@ -14,7 +14,7 @@ from ..interface.interface import Memory as Thresholds
 from ..interface.layers import Surfaces
 from ..laws.law import Real, quantity
 from ..numerics.compilation import kept
-from .contact import Contact, Held, ScanningCurve, State
+from .contact import Contact, Held, Potential, ScanningCurve, State
 from .continuation import descend, first_size, fitted, retrace
 from .equilibrium import RingEquilibrium, equilibrium_displacement, profile_of, solve_equilibrium
 from .profile import Sphere
@@ -306,13 +306,15 @@ class ElasticContact(Contact):
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         """The rigid contact's, less the depth at which Hertz stores the energy alone."""
-        lowest = self.rigid.lower_bound(release, kinetic, weight)
-        fall = kinetic + weight * (release - lowest)
+        lowest = self.rigid.lower_bound(release, kinetic, potential)
+        fall = jnp.maximum(kinetic + potential(release) - potential(lowest), 0.0)
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         # The deeper fall through that depth feeds it once more.
-        fall = fall + weight * depth
+        fall = fall + potential(lowest) - potential(lowest - depth)
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         return lowest - 1.1 * depth
 

@@ -13,7 +13,7 @@ from .._jax import jax, jnp
 from ..laws.law import Real, quantity
 from ..laws.published_pressures import PublishedPressure
 from ..numerics.polynomials import from_points
-from .contact import Contact, Held, State
+from .contact import Contact, Held, Potential, State
 from .profile import Sphere
 from .scanning_curve import first_out_of_reach
 
@@ -169,7 +169,9 @@ class PublishedContact(Contact):
         """A joule of work undone costs nothing, a joule done is lost."""
         return jnp.zeros(len(self.mechanisms)), jnp.ones(len(self.mechanisms))
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         p = self.pressure
         ladder = jnp.asarray(_LADDER) * p.end
         width = p.end * -np.diff(_LADDER, prepend=1.0)[:, None]
@@ -183,9 +185,9 @@ class PublishedContact(Contact):
         own = jnp.sum(weights * pressure * (places - ladder[:, None]), axis=1)
         stored = jnp.cumsum(own + force * width[:, 0])
         # Three separations between two steps of the search give the energy to 1e-4.
-        level = weight * release + kinetic
+        level = potential(release) + kinetic
         level = level + 1e-3 * jnp.abs(level)
-        return first_out_of_reach(stored + weight * ladder, level, ladder, release)
+        return first_out_of_reach(stored + potential(ladder), level, ladder, release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         marks = jnp.stack([low, *self.pressure.kinks, self.pressure.end])

@@ -15,7 +15,7 @@ from ..interface.interface import Means
 from ..interface.interface import Memory as Thresholds
 from ..interface.layers import Layers, Surfaces
 from ..interface.plastic_interface import PlasticInterface
-from .contact import Contact, ScanningCurve, State
+from .contact import Contact, Potential, ScanningCurve, State
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .scanning_curve import first_out_of_reach, piece_points, pieces_to
@@ -196,10 +196,12 @@ class RigidContact(Contact):
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         ladder = jnp.append(release, _LADDER * self.interface.heights.rms)
         stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
-        energy = stored + weight * ladder
+        energy = stored + potential(ladder)
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 

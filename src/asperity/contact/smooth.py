@@ -10,7 +10,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Law, terms
-from .contact import Contact, State
+from .contact import Contact, Potential, State
 from .scanning_curve import first_out_of_reach, panels_around
 
 Flags = jax.Array
@@ -105,10 +105,12 @@ class SmoothContact(Contact):
         formed, broken = zip(*rows, strict=True)
         return jnp.stack(formed), jnp.stack(broken)
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
         stored = jax.vmap(lambda d: self.state(d, self.initial_memory()).stored)(ladder)
-        energy = stored + weight * ladder
+        energy = stored + potential(ladder)
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..laws.jkr import Jkr
 from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .contact import Contact, State
+from .contact import Contact, Potential, State
 from .scanning_curve import first_out_of_reach, panels_around
 
 PLASTIC = "plastic"
@@ -196,10 +196,12 @@ class SmoothPlasticContact(Contact):
         formed, broken = zip((jnp.ones(()), -jnp.ones(())), *rows, strict=True)
         return jnp.stack(formed), jnp.stack(broken)
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
         ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
         states = jax.vmap(lambda d: self.state(d, self.initial_memory()))(ladder)
-        energy = states.stored + states.bonds @ self.losses()[0] + weight * ladder
+        energy = states.stored + states.bonds @ self.losses()[0] + potential(ladder)
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 

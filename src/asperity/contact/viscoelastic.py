@@ -10,7 +10,7 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..laws import Hertz
 from ..laws.law import Real, quantity
-from .contact import Contact, Held, Memory, ScanningCurve, State
+from .contact import Contact, Held, Memory, Potential, ScanningCurve, State
 from .delayed_formation import DelayedContact
 from .elastic import ElasticContact
 from .smooth import SmoothContact
@@ -140,8 +140,10 @@ class RelaxedContact(Contact):
         formed, broken = self.base.losses()
         return jnp.append(formed, 1.0), jnp.append(broken, 0.0)
 
-    def lower_bound(self, release: jax.Array, kinetic: jax.Array, weight: jax.Array) -> jax.Array:
-        return self.base.lower_bound(release, kinetic, weight)
+    def lower_bound(
+        self, release: jax.Array, kinetic: jax.Array, potential: Potential
+    ) -> jax.Array:
+        return self.base.lower_bound(release, kinetic, potential)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         return self.base.panels(low, high)

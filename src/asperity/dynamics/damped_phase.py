@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import Pieces
 from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
+from .external_forces import Load
 from .phase import TurningPoint, Work, time_along, work_along
 from .record import Body
+from .resolved_pieces import resolved
 
 STILL = 1e-9
 """Share of a body's energy at its release: a force that could not give it so much moves it no more
 once it has stopped."""
 
 _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
-_CUTS, _RATIO = 12, 4.0  # of the way by the film's gaps: how many, each so much wider
-_SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thins without end
 
 
 class Gone(NamedTuple):
@@ -69,51 +67,19 @@ class Passage(NamedTuple):
     stopped: jax.Array
 
 
-def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
-    """Pieces, wide ones cut where the film thins by a factor, and which one each is a part of.
-
-    A film's drag goes as one over the gap, which no polynomial follows over decades.
-
-    Parameters
-    ----------
-    body
-        The body; without a film nothing is cut.
-    pieces
-        The polynomials ahead of it.
-    """
-    count = pieces.low.shape[0]
-    if body.film is None:
-        return pieces, jnp.arange(count)
-    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
-    ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
-    widest = jnp.max(ends)
-    narrow = jnp.maximum(body.film.closest, _SPAN * jnp.abs(widest))
-    cuts = jax.lax.stop_gradient(narrow * _RATIO ** np.arange(_CUTS))
-    cuts = jnp.clip(cuts, jnp.min(ends), widest)
-    here = jnp.clip(jnp.searchsorted(ahead * pieces.leave, ahead * cuts), 0, count - 1)
-    near = jnp.minimum(pieces.enter, pieces.leave)[here]
-    far = jnp.maximum(pieces.enter, pieces.leave)[here]
-    cuts = jnp.where(far > _RATIO * jnp.maximum(near, narrow), cuts, pieces.leave[here])
-    places = jnp.sort(ahead * jnp.concatenate([ends, cuts]))
-    middles = 0.5 * (places[1:] + places[:-1])
-    part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
-    low, high, _, _, values = (leaf[part] for leaf in pieces)
-    return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
-
-
 def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     """Follow the pieces of a phase, entered with a kinetic energy [J], to where the body turns.
 
     Parameters
     ----------
     body
-        The body, with its film or its waves.
+        The body, with its drags.
     pieces
         The polynomials ahead of it, all that there are.
     kinetic
         Kinetic energy at the start [J].
     """
-    work = work_along(pieces, kinetic, body.weight)
+    work = work_along(pieces, kinetic, body.load)
     count = pieces.low.shape[0]
     none = jnp.zeros(len(body.mechanisms))
     first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
@@ -137,7 +103,7 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     )
     duration = gone.time + jnp.where(found, course.duration, 0.0)
     lost = gone.dissipated + jnp.where(found, course.lost, 0.0)
-    followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.weight)
+    followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.load)
     return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
 
@@ -161,22 +127,22 @@ def _over(
     return after, (gone.kinetic, gone.time, gone.dissipated)
 
 
-def _pushed_back(piece: Stretch, place: jax.Array, weight: jax.Array) -> jax.Array:
-    """Whether contact and weight push a body back at a place of a piece."""
-    push = piece.push(place, weight)
-    return piece.ahead * push <= _PUSHED * (jnp.abs(push + weight) + weight)
+def _pushed_back(piece: Stretch, place: jax.Array, load: Load) -> jax.Array:
+    """Whether contact and load push a body back at a place of a piece."""
+    push, press = piece.push(place, load), load.force(place)
+    return piece.ahead * push <= _PUSHED * (jnp.abs(push + press) + jnp.abs(press))
 
 
 def _left_alone(body: Body, piece: Stretch, place: jax.Array) -> jax.Array:
-    """Whether nothing moves a body that the film has stopped at a place of a piece."""
-    if body.film is None:
+    """Whether nothing moves a body that drag has stopped at a place of a piece."""
+    if not body.damped_apart or body.forces:
         return jnp.asarray(False)
-    push = jnp.abs(piece.push(place, body.weight)) * jnp.abs(body.release)
+    push = jnp.abs(piece.push(place, body.load)) * jnp.abs(body.release)
     return (body.weight == 0.0) & (push <= STILL * body.kinetic)
 
 
 def _spent(body: Body, piece: Stretch, kinetic: jax.Array, place: jax.Array) -> jax.Array:
-    """Where on a piece, entered with a kinetic energy [J], the film has taken all momentum [m].
+    """Where on a piece, entered with a kinetic energy [J], drag has taken all momentum [m].
 
     By Newton's method from a place near by. Energies, which are squares of momenta, tell a place
     to half as many digits.
@@ -184,54 +150,11 @@ def _spent(body: Body, piece: Stretch, kinetic: jax.Array, place: jax.Array) -> 
     momentum = jnp.sqrt(2.0 * body.mass * jnp.maximum(kinetic, 0.0))
     for _ in range(2):
         places = piece.enter + (place - piece.enter) * SHARES
-        drag = piece.drags(body, jnp.append(places, place), jnp.ones(POINTS + 1))[0]
+        drags = piece.drags(body, jnp.append(places, place), jnp.ones(POINTS + 1))
+        drag = jnp.sum(drags, axis=0)
         taken = jnp.abs(place - piece.enter) * whole_of(drag[:-1])
         place = place + piece.ahead * (momentum - taken) / drag[-1]
     return place
-
-
-def fall_to_rest(
-    body: Body, pieces: Pieces, kinetic: jax.Array, resting: jax.Array, goal: jax.Array
-) -> Passage:
-    """Like :func:`pass_through`, for a fall that may creep to rest.
-
-    A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
-    time. Such a phase ends at ``goal``, where what is left of the energy goes to the gas too.
-    Waves alone never do that: their drag acts in contact, and is weak.
-
-    Parameters
-    ----------
-    body, pieces, kinetic
-        As for :func:`pass_through`.
-    resting
-        Separation of the equilibrium [m], or NaN.
-    goal
-        Separation, a little outside it, that counts as rest [m].
-    """
-    whole = pass_through(body, pieces, kinetic)
-    if body.film is None:
-        return whole
-    turn = whole.turn
-    here = jnp.argmax(pieces.leave <= goal)
-    near = turn.place > resting - (goal - resting)
-    at_rest = turn.found & near & (turn.piece >= here) & (goal < pieces.enter[0])
-    place = jnp.where(at_rest, goal, pieces.leave[here])
-    work = work_along(pieces, kinetic, body.weight)
-    course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
-    # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
-    still = slow_at(body, course.kinetic, turn.maximum_kinetic, (resting, goal))
-    at_rest = at_rest & (still | jnp.logical_not(whole.followed)) & jnp.logical_not(whole.stopped)
-    stop = TurningPoint(here, goal, jnp.asarray(True), turn.maximum_kinetic, jnp.zeros(()))
-    lost = whole.heats[here] + course.lost
-    ends = (stop, whole.times[here] + course.duration, lost.at[0].add(course.kinetic))
-    turned = (turn, whole.duration, whole.lost)
-    turn, duration, lost = jax.tree_util.tree_map(
-        lambda a, b: jnp.where(at_rest, a, b), ends, turned
-    )
-    followed = at_rest | whole.followed
-    return whole._replace(
-        turn=turn, duration=duration, lost=lost, at_rest=at_rest, followed=followed
-    )
 
 
 def slow_at(body: Body, kinetic: Real, maximum_kinetic: Real, rest: tuple[Real, Real]) -> jax.Array:
@@ -257,7 +180,7 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
     Each of shape (pieces, POINTS + 1), the last two with an axis of drags more, at SHARES of
     every piece and at its end.
     """
-    work = work_along(pieces, kinetic, body.weight)
+    work = work_along(pieces, kinetic, body.load)
     entered = pass_through(body, pieces, kinetic).kinetic
 
     def one(k: jax.Array, entry: jax.Array) -> tuple[jax.Array, ...]:
@@ -306,6 +229,7 @@ def time_to(
     """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
     passed = cut(pieces, jnp.asarray(unloading), place)
     if body.damped:
+        passed = resolved(body, passed)[0] if body.forces else passed
         return pass_through(body, passed, kinetic).duration
-    work = work_along(passed, kinetic, body.weight)
+    work = work_along(passed, kinetic, body.load)
     return time_along(work, (passed.enter, passed.leave), body.mass)

@@ -1,4 +1,4 @@
-"""A phase of a motion with drag, of a gas or of radiated waves: it takes energy on the way.
+"""A phase of a motion with drag: it takes energy on the way.
 
 Along a piece of the way the speed v obeys m v^2/2 + (work of the drag c v) = energy, E(x), that
 the other forces give. With x = L sin^2(pi y/2) both ends of a phase, where v starts or ends as
@@ -16,6 +16,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from .curve_table import CENTRAL
+from .external_forces import Along, Load
 from .phase import Work
 from .phase_time import NEAR, missed_time
 from .record import Body
@@ -103,31 +104,26 @@ class Stretch(NamedTuple):
             work.integral[:, k, 0], p.values[k, :, CENTRAL],
         )  # fmt: skip
 
-    def energy(self, places: jax.Array, weight: jax.Array) -> jax.Array:
-        """What contact and weight add to the kinetic energy from the entry to there [J]."""
+    def energy(self, places: jax.Array, load: Load) -> jax.Array:
+        """What contact and load add to the kinetic energy from the entry to there [J]."""
         x = local(self.low, self.high, places)
         first = local(self.low, self.high, self.enter)
         gain = chebyshev_sum(self.integral, x) - chebyshev_sum(self.integral, first)
-        return gain - weight * (places - self.enter)
+        return gain - load.climb(self.enter, places - self.enter)
 
-    def push(self, place: jax.Array, weight: jax.Array) -> jax.Array:
-        """Force of contact and weight at a place [N], positive apart."""
-        return chebyshev_sum(self.force, local(self.low, self.high, place)) - weight
+    def push(self, place: jax.Array, load: Load) -> jax.Array:
+        """Force of contact and load at a place [N], positive apart."""
+        return chebyshev_sum(self.force, local(self.low, self.high, place)) - load.force(place)
 
     def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
         """Each drag [N s/m] at places [m] and about these speeds [m/s], (drags, places)."""
         x = local(self.low, self.high, places)
-        found = []
-        if body.film is not None:
-            found.append(body.film.drag(chebyshev_sum(self.central, x)))
-        if body.waves is not None:
-            width = self.high - self.low
-            rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
-            slope = rate * (DERIVATIVE @ self.force)
-            bend = rate * (DERIVATIVE[:-1, :-1] @ slope)
-            stiffness, change = chebyshev_sum(slope, x), chebyshev_sum(bend, x)
-            found.append(body.waves.drag(stiffness, change, speed))
-        return jnp.stack(found)
+        width = self.high - self.low
+        rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
+        slope = rate * (DERIVATIVE @ self.force)
+        bend = rate * (DERIVATIVE[:-1, :-1] @ slope)
+        central, stiffness, change = (chebyshev_sum(c, x) for c in (self.central, slope, bend))
+        return body.resistances(Along(central, stiffness, change, speed))
 
     @property
     def ahead(self) -> jax.Array:
@@ -139,8 +135,8 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
     """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
     span = stop - piece.enter
     places = piece.enter + span * SHARES
-    energy = kinetic + piece.energy(places, body.weight)
-    last = kinetic + piece.energy(stop, body.weight)
+    energy = kinetic + piece.energy(places, body.load)
+    last = kinetic + piece.energy(stop, body.load)
     most = jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last))
     most = jnp.where(most > 0.0, most, 1.0)
     unit = jnp.sqrt(2.0 * most / body.mass)
@@ -186,7 +182,7 @@ def _missed_time(
         (ends[0], piece.enter, 1.0, energies[NEAR], 0.0),
         (ends[1], stop, -1.0, energies[-1 - NEAR], _TURNED),
     ):
-        gain = towards * piece.push(place, body.weight) * span
+        gain = towards * piece.push(place, body.load) * span
         grown = energy + gain * SHARES[NEAR]
         counts = (jnp.abs(beside - grown) < 0.1 * grown) & (energy > least * gain)
         missed = missed_time(energy, gain, SHARES, _WHOLE * _PACE)
@@ -280,7 +276,7 @@ def turning_place(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
         course = course_on(body, piece, kinetic, place)
         alive = course.passed
         inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
-        falls = ahead * piece.push(place, body.weight)
+        falls = ahead * piece.push(place, body.load)
         target = place - ahead * course.kinetic / jnp.where(falls < 0.0, falls, -1.0)
         # Past the root by a hair, so that it is enclosed from both sides.
         target = target + ahead * close
@@ -303,6 +299,6 @@ def _turning_place_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Arra
         return course_on(body, piece, kinetic, place).kinetic
 
     _, change = eqx.filter_jvp(spent, primals, tangents)
-    falls = piece.ahead * piece.push(place, body.weight)
+    falls = piece.ahead * piece.push(place, body.load)
     moved = -piece.ahead * change / jnp.where(falls < 0.0, falls, -1.0)
     return place, jnp.where(falls < 0.0, moved, 0.0)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import pi
+from typing import ClassVar
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Real, quantity
+from .external_forces import Along, Drag
 
 
 def slip_factor(separation: Real, slip_length: Real) -> jax.Array:
@@ -29,7 +30,7 @@ def slip_factor(separation: Real, slip_length: Real) -> jax.Array:
     return jnp.where(little, 1.0 - x / 3.0 + x**2 / 6.0, whole)
 
 
-class SqueezeFilm(eqx.Module):
+class SqueezeFilm(Drag):
     """Gas between a sphere and a plane: a drag in both directions.
 
     Parameters
@@ -58,6 +59,15 @@ class SqueezeFilm(eqx.Module):
     viscosity: Real = quantity()
     slip_length: Real = quantity(0.0)
     closest: Real = quantity(0.0)
+
+    name: ClassVar[str] = "gas"
+
+    @property
+    def thinnest(self) -> Real | None:
+        return self.closest
+
+    def resistance(self, along: Along) -> jax.Array:
+        return self.drag(along.central)
 
     def drag(self, separation: Real) -> jax.Array:
         """Force over speed [N s/m] at a central separation [m], any shape."""

@@ -21,8 +21,8 @@ from .curve_table import (
     tabulate,
     tabulate_again,
 )
-from .damped_phase import fall_to_rest, resolved
 from .motion_end import EndRules
+from .overdamped import Rest, come_to_rest
 from .phase import (
     TurningPoint,
     in_order,
@@ -33,6 +33,7 @@ from .phase import (
     travel_time,
 )
 from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
+from .resolved_pieces import resolved
 from .scanning_table import inner_pieces, solve_reversals
 from .static_equilibrium import Reference, find_reference
 from .turning_point import find_turning_point
@@ -51,10 +52,11 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     With the scanning curves where ``many`` impacts follow (static): a few are integrated sooner
     without.
     """
-    low = jax.lax.stop_gradient(contact.lower_bound(body.release, body.kinetic, body.weight))
-    falls = body.weight > 0.0
-    rise = body.kinetic / jnp.where(falls, body.weight, 1.0)
-    top = body.release + jnp.where(falls, rise, 0.0)
+    low = jax.lax.stop_gradient(
+        contact.lower_bound(body.release, body.kinetic, body.load.potential)
+    )
+    rise = body.load.rise(body.release, body.kinetic)
+    top = body.release + jnp.where(jnp.isfinite(rise), rise, 0.0)
     high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
@@ -63,7 +65,7 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     else:
         table = tabulate(contact, low, high)
     if contact.reference is None:
-        reference = find_reference(table, body.weight, contact.rest_branch)
+        reference = find_reference(table, body.load, contact.rest_branch)
     else:
         reference = Reference(contact.reference, jnp.zeros(()), jnp.asarray(True))
     if many and not contact.yields:
@@ -78,10 +80,8 @@ def _yielded_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array
     """
     before = tabulate(contact, low, high)
     progress, _origin = start(contact, body, before)
-    rest = find_reference(before, body.weight, 0).equilibrium
-    after, _fall = _phase_of_impact(
-        contact, body, before, (rest, rest), progress, jnp.asarray(False)
-    )
+    rest = Rest(find_reference(before, body.load, 0).equilibrium, jnp.zeros(()))
+    after, _fall = _phase_of_impact(contact, body, before, rest, progress, jnp.asarray(False))
     return tabulate_again(contact, before, after.memory, after.place)
 
 
@@ -101,7 +101,7 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
         outcome=jnp.asarray(IN_MOTION),
         made=jnp.asarray(0),
     )
-    return progress, row[STORED] + body.kinetic + body.weight * body.release
+    return progress, row[STORED] + body.kinetic + body.load.potential(body.release)
 
 
 def integrate_impacts(
@@ -182,28 +182,23 @@ def _phase_of_impact(
     contact: Contact,
     body: Body,
     table: Table,
-    rest: tuple[jax.Array, jax.Array],
+    rest: Rest,
     progress: Progress,
     unloading: jax.Array,
 ) -> tuple[Progress, _Leg]:
-    """One phase down or up, and the bonds that it makes or breaks.
-
-    ``rest`` is the equilibrium, and the separation that counts as there [m].
-    """
+    """One phase down or up, and the bonds that it makes or breaks."""
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
     branch = contact.branch_of(progress.memory, unloading)
-    ahead = look_ahead(
-        table, branch, inner, progress.kinetic, body.weight, progress.place, unloading
-    )
+    ahead = look_ahead(table, branch, inner, progress.kinetic, body.load, progress.place, unloading)
     if not body.damped:
-        wanted = jnp.logical_and(progress.made == 0, jnp.logical_not(unloading))
+        inwards = jnp.logical_or(bool(body.forces), jnp.logical_not(unloading))
+        wanted = jnp.logical_and(progress.made == 0, inwards)
         turn, dissipated = find_turning_point(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
         way, part = resolved(body, join(table, branch, inner, progress.place, unloading))
-        goal = jnp.where(unloading, jnp.inf, rest[1])
-        passage = fall_to_rest(body, way, progress.kinetic, rest[0], goal)
+        passage = come_to_rest(body, way, progress.kinetic, rest, unloading)
         turn = passage.turn._replace(piece=part[passage.turn.piece])
         turn, dissipated = in_order(ahead, turn), passage.lost
         fate = passage.at_rest, passage.followed, passage.stopped
@@ -233,7 +228,7 @@ def _phase_of_impact(
 
 
 def _no_rise(fall: tuple[Progress, _Leg], rise: tuple[Progress, _Leg]) -> tuple[Progress, _Leg]:
-    """A way up that is none where the film stopped the body on its way down."""
+    """A way up that is none where drag stopped the body on its way down."""
     after, here = fall
     stay = here._replace(
         phase=rise[1].phase._replace(stop=rise[1].phase.start), pull_work=jnp.zeros(())
@@ -254,8 +249,7 @@ def _impact(
     limits: Limits,
 ) -> tuple[Progress, Impacts]:
     """Down to closest approach and up to the next apex."""
-    resting = reference.equilibrium
-    rest = resting, resting + limits.rest * (body.release - resting)
+    rest = Rest(reference.equilibrium, limits.rest)
 
     def leg(progress: Progress, unloading: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
         after, way = _phase_of_impact(contact, body, table, rest, progress, unloading)
@@ -264,21 +258,25 @@ def _impact(
     # One body of code for both directions: half to compile.
     _, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
     down, up = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
-    up = up if body.film is None else _no_rise(down, up)
+    up = _no_rise(down, up) if body.damped_apart else up
     fall, (end, rise) = down[1], up
     legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
-    mechanical = legs.turn.kinetic + body.weight * legs.turn.place + legs.row[:, STORED]
+    potential = body.load.potential(legs.turn.place)
+    mechanical = legs.turn.kinetic + potential + legs.row[:, STORED]
     energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
-    height = end.place - reference.equilibrium
+    # On a spring a body may be held anywhere: how far it swings tells whether it rests.
+    height = end.place - (fall.turn.place if body.forces else reference.equilibrium)
     first = jnp.where(progress.made == 0, height, progress.first)
-    energy = jnp.where(progress.made == 0, fall.turn.maximum_kinetic, progress.impact_energy)
+    energies = legs.turn.maximum_kinetic
+    largest = jnp.max(energies) if body.forces else energies[0]
+    energy = jnp.where(progress.made == 0, largest, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
     risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
     sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
     rules = EndRules.of(
         limits,
         failed=jnp.logical_not(sound),
-        at_rest=fall.at_rest,
+        at_rest=jnp.any(legs.at_rest),
         stopped=fall.stopped | rise.stopped,
         # Flattened tips may pull at once by more than what they press.
         stuck=jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen),

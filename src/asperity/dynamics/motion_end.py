@@ -22,7 +22,7 @@ class EndRules(NamedTuple):
     at_rest, stuck
         It came to rest without a turn; flattened tips hold it.
     stopped, escaped
-        The gas film alone stopped it; it left for good.
+        Drag alone stopped it; it left for good.
     late, low, repeats, enough
         Past the time limit; too low a rebound; no loss in a cycle; as many impacts as asked for.
     """
@@ -64,11 +64,12 @@ class EndRules(NamedTuple):
         failed, at_rest, stuck, escaped
             See the attributes.
         stopped
-            By the film alone; it counts before the time limit.
+            By drag alone; it counts before the time limit.
         time
             Of the apex [s].
         height, first
-            Of the apex after this impact and after the first, over the static equilibrium [m].
+            Of the apex after this impact and after the first, over the static equilibrium; on a
+            spring over the closest approach [m].
         cycle, energy
             What the impact lost, and the impact energy of the first [J].
         made

@@ -16,6 +16,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.polynomials import NODES, antiderivative, chebyshev_sum, local
 from .curve_table import DRIVE, FORCE, STORED, TIME_NODES, Pieces, Table
+from .external_forces import Load
 from .phase_time import Ends, time_over
 
 _TIME_NODES_AND_ENDS = np.concatenate([[0.0], TIME_NODES, [1.0]])  # with both ends
@@ -35,14 +36,14 @@ class Work(NamedTuple):
         (NODES + 1, pieces, 2).
     kinetic
         Kinetic energy [J] where each piece is entered, and after the last, (pieces + 1,).
-    weight
-        Weight [N].
+    load
+        What presses the body towards the surface.
     """
 
     pieces: Pieces
     integral: jax.Array
     kinetic: jax.Array
-    weight: jax.Array
+    load: Load
 
 
 class Ahead(NamedTuple):
@@ -90,7 +91,8 @@ class Ahead(NamedTuple):
 
     def gained(self, work: jax.Array, distance: jax.Array) -> jax.Array:
         """The same, by the ``distance`` [m] from where the branch begins."""
-        return self.inner.kinetic[-1] + (work - self.before[0] - self.inner.weight * distance)
+        climbed = self.inner.load.climb(self.begin, distance)
+        return self.inner.kinetic[-1] + (work - self.before[0] - climbed)
 
 
 class TurningPoint(NamedTuple):
@@ -115,7 +117,7 @@ def in_order(ahead: Ahead, turn: TurningPoint) -> TurningPoint:
     return turn._replace(piece=jnp.where(step < 0, turn.piece, ahead.pieces + panel))
 
 
-def work_along(pieces: Pieces, kinetic: jax.Array, weight: jax.Array) -> Work:
+def work_along(pieces: Pieces, kinetic: jax.Array, load: Load) -> Work:
     """Integrate the force along pieces that are entered with a kinetic energy [J]."""
     half = 0.5 * (pieces.high - pieces.low)
     integral = antiderivative(jnp.moveaxis(pieces.values[..., DRIVE], 1, 0)) * half[:, None]
@@ -123,9 +125,9 @@ def work_along(pieces: Pieces, kinetic: jax.Array, weight: jax.Array) -> Work:
     first = local(pieces.low, pieces.high, pieces.enter)
     last = local(pieces.low, pieces.high, pieces.leave)
     gain = chebyshev_sum(force, last) - chebyshev_sum(force, first)
-    gain = gain - weight * (pieces.leave - pieces.enter)
+    gain = gain - load.climb(pieces.enter, pieces.leave - pieces.enter)
     energies = kinetic + jnp.concatenate([jnp.zeros(1), jnp.cumsum(gain)])
-    return Work(pieces, integral, energies, weight)
+    return Work(pieces, integral, energies, load)
 
 
 def kinetic_along(work: Work, places: jax.Array) -> jax.Array:
@@ -135,7 +137,8 @@ def kinetic_along(work: Work, places: jax.Array) -> jax.Array:
     x = local(p.low[:, None], p.high[:, None], places)
     first = local(p.low, p.high, p.enter)
     gain = chebyshev_sum(force[:, :, None], x) - chebyshev_sum(force, first)[:, None]
-    return work.kinetic[:-1, None] + gain - work.weight * (places - p.enter[:, None])
+    enter = p.enter[:, None]
+    return work.kinetic[:-1, None] + gain - work.load.climb(enter, places - enter)
 
 
 def look_ahead(
@@ -143,12 +146,12 @@ def look_ahead(
     branch: jax.Array,
     inner: Pieces,
     kinetic: jax.Array,
-    weight: jax.Array,
+    load: Load,
     start: jax.Array,
     unloading: jax.Array,
 ) -> Ahead:
     """What lies ahead of a body that leaves ``start`` with a kinetic energy [J]."""
-    work = work_along(inner, kinetic, weight)
+    work = work_along(inner, kinetic, load)
     begin = inner.leave[-1] if inner.leave.shape[0] else start
     meets = jnp.sum(table.ends[1:-1] <= begin)
     panel = jnp.where(unloading, meets, table.panel_at(begin))
@@ -185,8 +188,12 @@ def _time_of_whole(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Arr
         for k, places in ((0, table.ends[:-1]), (-1, table.ends[1:]))
     )
     force = table.values[ahead.branch, :, :, FORCE]
-    forces = jnp.sum(force * _ALTERNATE, axis=1), jnp.sum(force, axis=1)
-    ends = Ends(first, last, *forces, ahead.inner.weight)
+    load = ahead.inner.load
+    pushes = (
+        jnp.sum(force * _ALTERNATE, axis=1) - load.force(table.ends[:-1]),
+        jnp.sum(force, axis=1) - load.force(table.ends[1:]),
+    )
+    ends = Ends(first, last, *pushes)
     energies = ahead.outer(nodes, table.nodes)
     return time_over(jnp.diff(table.ends), whole, energies, mass, ends)
 
@@ -210,7 +217,8 @@ def _time_of_parts(ahead: Ahead, turn: TurningPoint, mass: jax.Array) -> jax.Arr
     energies = ahead.gained(chebyshev_sum(integral.T[:, :, None], x), distance)
     energies = _resting(turn, last, energies.at[0, 0].set(ahead.inner.kinetic[-1]))
     force = table.values[ahead.branch, panels, :, FORCE]
-    ends = Ends.of(energies, chebyshev_sum(force.T[:, :, None], x[:, _BOTH]), ahead.inner.weight)
+    both = chebyshev_sum(force.T[:, :, None], x[:, _BOTH])
+    ends = Ends.of(energies, both - ahead.inner.load.force(jnp.stack([first, last], axis=1)))
     used = (panel >= 0) & jnp.stack([jnp.asarray(True), panel != ahead.panel])
     return time_over(span, used, energies[:, 1:-1], mass, ends)
 
@@ -245,9 +253,10 @@ def time_along(
     span = leave - enter
     places = enter[:, None] + span[:, None] * _TIME_NODES_AND_ENDS
     energies = resting(leave, kinetic_along(work, places))
-    x = local(p.low[:, None], p.high[:, None], places[:, _BOTH])
+    both = places[:, _BOTH]
+    x = local(p.low[:, None], p.high[:, None], both)
     force = chebyshev_sum(p.values[..., FORCE].T[:, :, None], x)
-    at_ends = Ends.of(energies, force, work.weight)
+    at_ends = Ends.of(energies, force - work.load.force(both))
     return time_over(span, span != 0.0, energies[:, 1:-1], mass, at_ends)
 
 
@@ -277,10 +286,11 @@ def pull_work(ahead: Ahead, turn: TurningPoint) -> jax.Array:
 def mechanical_at_end(ahead: Ahead) -> jax.Array:
     """Mechanical energy [J] at the end of the table, were a body that moves out not to turn."""
     place = ahead.table.ends[-1]
-    weight = ahead.inner.weight
-    kinetic = ahead.inner.kinetic[-1] - ahead.before[0] - weight * (place - ahead.begin)
+    load = ahead.inner.load
+    climbed = load.climb(ahead.begin, place - ahead.begin)
+    kinetic = ahead.inner.kinetic[-1] - ahead.before[0] - climbed
     stored = chebyshev_sum(ahead.table.values[ahead.branch, -1, :, STORED], jnp.ones(()))
-    return kinetic + weight * place + stored
+    return kinetic + load.potential(place) + stored
 
 
 def row_at(ahead: Ahead, turn: TurningPoint) -> jax.Array:

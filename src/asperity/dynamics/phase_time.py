@@ -17,22 +17,21 @@ _SLOW = 0.01  # of the energy that a piece adds: entered with more, it is summed
 
 
 class Ends(NamedTuple):
-    """Kinetic energy [J] and force [N] of contact where pieces begin and end, and the weight."""
+    """Kinetic energy [J] where pieces begin and end, and force on the body there [N]."""
 
     first: jax.Array
     last: jax.Array
-    first_force: jax.Array
-    last_force: jax.Array
-    weight: jax.Array
+    first_push: jax.Array
+    last_push: jax.Array
 
     @classmethod
-    def of(cls, energies: jax.Array, forces: jax.Array, weight: jax.Array) -> Ends:
+    def of(cls, energies: jax.Array, pushes: jax.Array) -> Ends:
         """From columns of which the outermost are the ends."""
-        return cls(energies[:, 0], energies[:, -1], forces[:, 0], forces[:, -1], weight)
+        return cls(energies[:, 0], energies[:, -1], pushes[:, 0], pushes[:, -1])
 
     def gains(self, span: jax.Array) -> tuple[jax.Array, jax.Array]:
         """Energy [J] that each end's force would give over the whole piece, away from that end."""
-        return (self.first_force - self.weight) * span, (self.weight - self.last_force) * span
+        return self.first_push * span, -self.last_push * span
 
 
 def time_over(

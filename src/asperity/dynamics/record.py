@@ -13,9 +13,8 @@ from ..errors import Outcome, Tolerance
 from ..laws.law import Real, as_float64, quantity
 from ..numerics.compilation import kept
 from .curve_table import Pieces, Table
-from .gas_film import SqueezeFilm
+from .external_forces import Along, Drag, ExternalForce, Load
 from .static_equilibrium import Reference
-from .wave_radiation import WaveRadiation
 
 IN_MOTION = -1
 ENDS = (
@@ -43,34 +42,47 @@ class Body(eqx.Module):
         Rigid separation at time 0 [m].
     speed
         Speed towards the surface at time 0 [m/s], 0 or more.
-    film
-        The gas that it squeezes; None in a vacuum.
-    waves
-        The waves that its contact radiates; None where they are left out.
+    drags
+        What takes energy on its way, in the order of the ledger.
+    forces
+        What acts on it besides its weight, its contact and the drags.
     """
 
     mass: Real = quantity()
     gravity: Real = quantity()
     release: Real = quantity()
     speed: Real = quantity(0.0)
-    film: SqueezeFilm | None = None
-    waves: WaveRadiation | None = None
+    drags: tuple[Drag, ...] = ()
+    forces: tuple[ExternalForce, ...] = ()
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
-        """Names of the losses that are not the contact's: drags, that of the gas first."""
-        gas = () if self.film is None else ("gas",)
-        return gas if self.waves is None else (*gas, "waves")
+        """Names of the losses that are not the contact's."""
+        return tuple(drag.name for drag in self.drags)
 
     @property
     def damped(self) -> bool:
         """Whether a drag takes energy on the way."""
-        return bool(self.mechanisms)
+        return bool(self.drags)
+
+    @property
+    def damped_apart(self) -> bool:
+        """Whether one does outside contact too."""
+        return any(drag.acts_apart for drag in self.drags)
+
+    def resistances(self, along: Along) -> jax.Array:
+        """Each drag's force over speed [N s/m] along a way, shape (drags, ...)."""
+        return jnp.stack([drag.resistance(along) for drag in self.drags])
 
     @property
     def weight(self) -> jax.Array:
         """Weight [N]."""
         return self.mass * self.gravity
+
+    @property
+    def load(self) -> Load:
+        """What presses it towards the surface."""
+        return Load(self.weight, self.forces)
 
     @property
     def kinetic(self) -> jax.Array:
@@ -155,7 +167,8 @@ class Impacts(NamedTuple):
     pull_work
         Work of the attractive parts on the way out [J], as in the publication's eq. 23.
     maximum_kinetic
-        Largest kinetic energy on the first way in [J], the same in all rows.
+        Largest kinetic energy on the first way in, on a spring of the first impact [J]; the same
+        in all rows.
     fall, rise
         The two phases.
     """

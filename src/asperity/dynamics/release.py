@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .._jax import jax, jnp
+from ..numerics.compilation import kept
 from .curve_table import FORCE, Table, outer_row
 from .record import Body
 
@@ -17,8 +20,29 @@ _MOST = 100.0  # times as far in one step
 _BEYOND = 1.02  # of the distance, for what the power misses
 
 
-def at_release(table: Table, body: Body) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """The force at the release, by which power of the distance it falls there, and the largest.
+@kept
+class AtRelease(NamedTuple):
+    """What tells whether a body is released outside contact.
+
+    Attributes
+    ----------
+    force, power
+        Size of the contact force at the release [N], and by which power of the distance it falls
+        there [-].
+    largest
+        Largest contact force in the table [N].
+    load
+        Largest force that presses the body, or holds it, on its way without contact [N].
+    """
+
+    force: jax.Array
+    power: jax.Array
+    largest: jax.Array
+    load: jax.Array
+
+
+def at_release(table: Table, body: Body) -> AtRelease:
+    """The forces at the release.
 
     Parameters
     ----------
@@ -26,39 +50,38 @@ def at_release(table: Table, body: Body) -> tuple[jax.Array, jax.Array, jax.Arra
         Curves of the contact.
     body
         The body.
-
-    Returns
-    -------
-    Size of the force at the release [N], the power [-], and the largest force in the table [N].
     """
     places = jnp.stack([body.release * 1.0, _WITHIN * body.release])
     force, nearer = jnp.abs(jax.vmap(lambda d: outer_row(table, 0, d)[FORCE])(places))
     both = (force > 0.0) & (nearer > 0.0)
     ratio = jnp.where(both, nearer, 1.0) / jnp.where(both, force, 1.0)
     power = jnp.log(ratio) / -np.log(_WITHIN)
-    return force, power, jnp.max(jnp.abs(table.values[..., 0, FORCE]))
+    load = body.weight
+    if body.forces:
+        ends = jnp.stack([body.release * 1.0, table.ends[-1]])
+        load = jnp.max(jnp.abs(body.load.force(ends)))
+    return AtRelease(force, power, jnp.max(jnp.abs(table.values[..., 0, FORCE])), load)
 
 
-def negligible_force(
-    weight: np.ndarray, largest: np.ndarray, *, chosen: bool = False
-) -> np.ndarray:
+def negligible_force(load: np.ndarray, largest: np.ndarray, *, chosen: bool = False) -> np.ndarray:
     """Force [N] below which a body counts as outside contact.
 
     Parameters
     ----------
-    weight
-        Weight of the body [N].
+    load
+        Weight of the body, or what :class:`AtRelease` says of a spring [N].
     largest
         Largest force of the contact [N].
     chosen
-        Whether the release is the program's. It then lies where the force is 1e-3 of the weight or
-        1e-6 of the largest, whichever is nearer: a body that was given a speed is not to fall far.
-        A release that the user gives is held to the first of these, or without weight the second.
+        Whether the release is the program's, or a spring holds the body. It then lies where the
+        force is 1e-3 of the load or 1e-6 of the largest, whichever is nearer: a body that was
+        given a speed is not to fall far. A release that the user gives is held to the first of
+        these, or without weight the second.
     """
-    of_weight, of_largest = 1e-3 * weight, 1e-6 * largest
+    of_load, of_largest = 1e-3 * load, 1e-6 * largest
     if chosen:
-        return np.maximum(of_weight, of_largest)
-    return np.where(weight > 0.0, of_weight, of_largest)
+        return np.maximum(of_load, of_largest)
+    return np.where(load > 0.0, of_load, of_largest)
 
 
 def farther(

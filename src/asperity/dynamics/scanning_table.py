@@ -101,7 +101,7 @@ def solve_reversals(contact: Contact, body: Body, table: Table, reference: Refer
     """A table with the scanning curves from where a body can turn on its major branches.
 
     It turns between its deepest point and the static equilibrium on the way in, and between that
-    and its highest point, or where forces end, on the way out. Without weight it does not return.
+    and its highest point, or where forces end, on the way out. What is not pressed does not return.
     """
     curves = contact.reversals
     if not curves:
@@ -114,7 +114,8 @@ def solve_reversals(contact: Contact, body: Body, table: Table, reference: Refer
         rest, jnp.minimum(within[1], interaction_range), jax.lax.stop_gradient(contact.scale)
     )
     low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
-    wanted = jax.lax.stop_gradient(contact.alike(low, high)) & (body.weight > 0.0) & (low < high)
+    returns = jnp.asarray(bool(body.forces)) | (body.weight > 0.0)
+    wanted = jax.lax.stop_gradient(contact.alike(low, high)) & returns & (low < high)
     nodes, parted = chebyshev.chebpts1(curves), np.arange(RANGES) > 0
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
     rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
@@ -168,7 +169,7 @@ def _first_fall(table: Table, body: Body) -> tuple[jax.Array, jax.Array]:
     panel = table.panel_at(body.release)
     x = local(table.ends[panel], table.ends[panel + 1], body.release)
     gained = work - chebyshev_sum(table.works.integral[0, panel, :, 0], x)
-    kinetic = body.kinetic + gained - body.weight * (places - body.release)
+    kinetic = body.kinetic + gained - body.load.climb(body.release, places - body.release)
     below = places < body.release
     deepest = jnp.max(jnp.where(below & (kinetic < 0.0), places, table.ends[0]))
     passed = below & (places > deepest)

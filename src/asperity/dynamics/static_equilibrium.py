@@ -11,6 +11,7 @@ from .._jax import jax, jnp
 from ..numerics.compilation import kept
 from ..numerics.polynomials import chebyshev_sum, local
 from .curve_table import FORCE, STORED, Table
+from .external_forces import Load
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
 _PLACES = 32
@@ -26,7 +27,8 @@ class Reference(NamedTuple):
     ----------
     equilibrium
         Static equilibrium on approach [m]: the outermost separation at which the contact
-        carries the weight. NaN where there is none (no gravity and no adhesion).
+        carries the load, or a spring alone holds the body. NaN where there is none (no
+        gravity and no adhesion).
     stored
         Stored energy there [J].
     rests
@@ -38,15 +40,19 @@ class Reference(NamedTuple):
     rests: jax.Array
 
 
-def find_reference(table: Table, weight: jax.Array, branch: int) -> Reference:
+def find_reference(table: Table, load: Load, branch: int) -> Reference:
     """Static equilibrium on a branch of approach."""
-    values, still = table.values[branch], jax.lax.stop_gradient(weight)
-    place, panel, found = _outermost(
-        table.ends, values[..., FORCE], lambda force: force - (1.0 + 1e-9) * still
-    )
+    values, still = table.values[branch], jax.lax.stop_gradient(load)
+
+    def carries(force: jax.Array, place: jax.Array) -> jax.Array:
+        pressed = still.force(place)
+        return force - (pressed + 1e-9 * jnp.abs(pressed))
+
+    place, panel, found = _outermost(table.ends, values[..., FORCE], carries)
     x = local(table.ends[panel], table.ends[panel + 1], place)
-    excess = chebyshev_sum(values[panel, :, FORCE], x) - weight
-    place = _carrying(place, excess, _slope(values[panel, :, FORCE], x, table.ends, panel))
+    excess = chebyshev_sum(values[panel, :, FORCE], x) - load.force(place)
+    slope = _slope(values[panel, :, FORCE], x, table.ends, panel) - still.slope(place)
+    place = _carrying(place, excess, slope)
     x = local(table.ends[panel], table.ends[panel + 1], place)
     stored = chebyshev_sum(values[panel, :, STORED], x)
     return Reference(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
@@ -61,7 +67,7 @@ def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
 def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:
     """The outermost separation [m] at which the size of a branch's force is above ``least``."""
     still = jax.lax.stop_gradient(least)
-    place, panel, _ = _outermost(ends, force, lambda size: jnp.abs(size) - still)
+    place, panel, _ = _outermost(ends, force, lambda size, _: jnp.abs(size) - still)
     x = local(ends[panel], ends[panel + 1], place)
     carried = chebyshev_sum(force[panel], x)
     # Where the force jumps over that size there is no root to follow, only an end of a panel.
@@ -78,9 +84,9 @@ def _carrying(place: jax.Array, excess: jax.Array, slope: jax.Array) -> jax.Arra
 
 
 def _outermost(
-    ends: jax.Array, force: jax.Array, excess: Callable[[jax.Array], jax.Array]
+    ends: jax.Array, force: jax.Array, excess: Callable[[jax.Array, jax.Array], jax.Array]
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """The largest separation at which a function of the force begins to be positive.
+    """The largest separation at which a function of force and separation begins to be positive.
 
     By Newton's method, kept between two places that are looked at.
     """
@@ -89,13 +95,15 @@ def _outermost(
     sampled = jax.vmap(lambda row: chebyshev_sum(row[:, None], jnp.asarray(2.0 * fractions - 1.0)))(
         force
     )
-    holds = jnp.logical_and(excess(sampled) > 0.0, (ends[1:] > ends[:-1])[:, None]).ravel()
+    places = ends[:-1, None] + jnp.diff(ends)[:, None] * fractions
+    filled = (ends[1:] > ends[:-1])[:, None]
+    holds = jnp.logical_and(excess(sampled, places) > 0.0, filled).ravel()
     index = holds.shape[0] - 1 - jnp.argmax(holds[::-1])
     panel, place = index // _PLACES, index % _PLACES
     low, width, row = ends[panel], ends[panel + 1] - ends[panel], force[panel]
 
     def value(at: jax.Array) -> jax.Array:
-        return excess(chebyshev_sum(row, 2.0 * at - 1.0))
+        return excess(chebyshev_sum(row, 2.0 * at - 1.0), low + width * at)
 
     def go_on(now: _Between) -> jax.Array:
         return jnp.logical_and(now.moved > _CLOSE, now.steps < _STEPS)

@@ -131,7 +131,7 @@ class Course(NamedTuple):
         formed, broken = (np.asarray(x) for x in contact.losses())
         still, release = float(reference.equilibrium), float(frame.body.release)
         goal = still + rest * (release - still)
-        if frame.body.film is not None and np.isfinite(goal):
+        if frame.body.damped and np.isfinite(goal):
             frame = frame._replace(marks=np.append(frame.marks, goal))
         return cls(frame, (formed, broken), (still, goal), asked)
 
@@ -190,8 +190,8 @@ def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
     gone = np.maximum(bonds[0] - bonds, 0.0) * broken
     by_law = np.maximum(bonds - bonds[0], 0.0) * formed + gone
     by_law[:, delayed] = done.delayed if here.forming else gone[:, delayed]
-    gas = [done.dissipated[:, None]] if course.frame.body.film is not None else []
-    return np.concatenate([by_law, *gas], axis=1)
+    dragged = [done.dissipated[:, None]] if course.frame.body.damped else []
+    return np.concatenate([by_law, *dragged], axis=1)
 
 
 def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
@@ -255,7 +255,7 @@ def _kinetic(frame: Frame, place: Place) -> float:
 def _stands(frame: Frame, way: Leg) -> bool:
     """Whether the film has stopped a body where nothing moves it; see :data:`STILL`."""
     body = frame.body
-    if body.film is None or float(body.weight) > 0.0:
+    if not body.damped or float(body.weight) > 0.0:
         return False
     released = float(body.kinetic)
     push = abs(float(way.samples[-1].rows[-1, FORCE]) * float(body.release))

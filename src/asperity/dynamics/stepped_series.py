@@ -10,6 +10,7 @@ from numpy.polynomial.legendre import legval
 from .._jax import jnp
 from ..laws.law import as_float64
 from .curve_table import CENTRAL, CONTACTING, FORCE
+from .external_forces import Along
 from .record import Body
 from .stepped_phase import Samples
 from .time_collocation import STAGES
@@ -48,8 +49,8 @@ class Trajectory(NamedTuple):
         # Where phases meet, rounding may set the clock back.
         whole = whole._replace(time=np.maximum.accumulate(whole.time))
         drag = np.zeros((whole.time.size, drags))
-        if body.film is not None:
-            drag[:, 0] = body.film.drag(whole.rows[:, CENTRAL])
+        if body.damped:
+            drag[:] = body.resistances(Along.apart(jnp.asarray(whole.rows[:, CENTRAL]))).T
         series = Series(
             whole.time, whole.separation, whole.speed, whole.rows, np.concatenate(heats), drag,
             np.concatenate(phases),

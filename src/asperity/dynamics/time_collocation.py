@@ -19,6 +19,7 @@ from ..contact.delayed_formation import DelayedContact
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import rows_of
+from .external_forces import Along
 from .record import Body
 
 STAGES = 8
@@ -187,7 +188,7 @@ def _look(
         )
 
     def drag_at(place: jax.Array) -> jax.Array:
-        return jnp.zeros(()) if body.film is None else body.film.drag(place)
+        return jnp.sum(body.resistances(Along.apart(place))) if body.damped else jnp.zeros(())
 
     slopes, (forces, rows) = jax.vmap(jax.jacfwd(contacts, has_aux=True))(
         jnp.stack([separation, threshold], axis=1)

@@ -11,9 +11,11 @@ from .._jax import jax, jnp
 from ..numerics.compilation import Program
 from ..numerics.polynomials import chebyshev_sum, local
 from .curve_table import CENTRAL, RATE, TIME_NODES, Pieces, Table, join, read_row
-from .damped_phase import cut, follow, resolved
+from .damped_phase import cut, follow
+from .external_forces import Along
 from .phase import Work, kinetic_along, work_along
 from .record import Body, Impacts, Phase
+from .resolved_pieces import resolved
 
 _ROUNDING = 1e-12  # of a motion's time
 _BATCH = 16  # phases a compiled call
@@ -70,9 +72,8 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     values, dissipated, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
-    still, acting = np.zeros((2, len(body.mechanisms)))
-    if body.film is not None:
-        acting[0] = body.film.drag(row[CENTRAL])  # waves need contact
+    still = np.zeros(len(body.drags))
+    acting = body.resistances(Along.apart(jnp.asarray(row[CENTRAL]))) if body.drags else still
     release = (0.0, body.release, -np.asarray(body.speed), row, still, acting, 0)
     rest = (time, separation, speed, values, dissipated, drag, phase.ravel())
     return Series(
@@ -86,12 +87,12 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
 def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
     """Times [s] without steps back by rounding; larger ones stay, for they are errors.
 
-    A body that a film stops takes for ever to do so: where nothing else acts the times of its last
+    A body that drag stops takes for ever to do so: where nothing else acts the times of its last
     samples are not resolved, and none is before another.
     """
     latest = np.maximum.accumulate(np.where(keep, np.maximum(time, 0.0), 0.0))
     back = np.max(np.where(keep, latest - time, 0.0), initial=0.0)
-    stops = body.film is not None and not float(body.weight) > 0.0
+    stops = body.damped_apart and not (body.forces or float(body.weight) > 0.0)
     return latest if stops or back <= _ROUNDING * latest[-1] else time
 
 
@@ -138,7 +139,7 @@ def _draw_one(
     pieces = join(table, phase.branch, phase.inner, phase.start, unloading)
     if body.damped:
         return _draw_damped(body, resolved(body, pieces)[0], phase, unloading)
-    work = work_along(pieces, phase.kinetic, body.weight)
+    work = work_along(pieces, phase.kinetic, body.load)
     ahead = jnp.where(unloading, 1.0, -1.0)
     path = _path(pieces, phase, places)
     along = jnp.sort(ahead * path)
@@ -150,7 +151,7 @@ def _draw_one(
         Pieces(*(leaf[index] for leaf in pieces)),
         work.integral[:, index],
         jnp.append(work.kinetic[index], 0.0),
-        work.weight,
+        work.load,
     )
     energy = kinetic_along(here, ends[:-1, None] + spans[:, None] * TIME_NODES)
     moving = jnp.logical_and(energy > 0.0, (spans != 0.0)[:, None])

@@ -10,6 +10,7 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from .curve_table import ENERGY_SAMPLES
+from .external_forces import Load
 from .phase import Ahead, TurningPoint, kinetic_along
 
 _SHARES = np.linspace(0.0, 1.0, ENERGY_SAMPLES)[1:]
@@ -20,7 +21,7 @@ _CLIMBS = 3  # Newton steps to the largest energy, from a place that is near
 
 
 class _Piece(NamedTuple):
-    """Kinetic energy along one piece: offset + sum(integral) - weight (place - origin)."""
+    """Kinetic energy along one piece: offset + sum(integral) less what the load takes."""
 
     low: jax.Array
     high: jax.Array
@@ -28,16 +29,17 @@ class _Piece(NamedTuple):
     force: jax.Array
     offset: jax.Array
     origin: jax.Array
-    weight: jax.Array
+    load: Load
 
     def energy(self, place: jax.Array) -> jax.Array:
         """Kinetic energy [J], any shape."""
         work = chebyshev_sum(self.integral, local(self.low, self.high, place))
-        return self.offset + work - self.weight * (place - self.origin)
+        return self.offset + work - self.load.climb(self.origin, place - self.origin)
 
     def slope(self, place: jax.Array) -> jax.Array:
-        """Force less weight [N]."""
-        return chebyshev_sum(self.force, local(self.low, self.high, place)) - self.weight
+        """Force of contact less the load [N]."""
+        contact = chebyshev_sum(self.force, local(self.low, self.high, place))
+        return contact - self.load.force(place)
 
     def towards_top(self, place: jax.Array) -> jax.Array:
         """Nearer to where the energy is largest [m], within the piece; else the place itself."""
@@ -45,7 +47,7 @@ class _Piece(NamedTuple):
         bend = chebyshev_sum(
             jnp.asarray(DERIVATIVE) @ self.force, local(self.low, self.high, place)
         )
-        bend = bend * 2.0 / jnp.where(width > 0.0, width, 1.0)
+        bend = bend * 2.0 / jnp.where(width > 0.0, width, 1.0) - self.load.slope(place)
         step = jnp.where(bend < 0.0, -self.slope(place) / jnp.where(bend < 0.0, bend, 1.0), 0.0)
         return jnp.clip(place + step, self.low, self.high)
 
@@ -58,7 +60,7 @@ def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
         table.ends[panel], table.ends[panel + 1],
         table.works.integral[ahead.branch, panel, :, 0],
         table.values[ahead.branch, panel, :, 0],
-        work.kinetic[-1] - ahead.before[0], ahead.begin, work.weight,
+        work.kinetic[-1] - ahead.before[0], ahead.begin, work.load,
     )  # fmt: skip
     if not ahead.pieces:
         return outer
@@ -68,7 +70,7 @@ def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
     integral = work.integral[:, k, 0]
     inner = _Piece(
         p.low[k], p.high[k], integral, p.values[k, :, 0],
-        work.kinetic[k] - chebyshev_sum(integral, first), p.enter[k], work.weight,
+        work.kinetic[k] - chebyshev_sum(integral, first), p.enter[k], work.load,
     )  # fmt: skip
     return jax.tree_util.tree_map(
         lambda near, far: jnp.where(piece < ahead.pieces, near, far), inner, outer

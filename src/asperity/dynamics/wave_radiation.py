@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import pi
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Real, quantity
+from .external_forces import Along, Drag
 
 _NEWTON = 12  # steps from 0, far more than double precision needs
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(48)
@@ -105,7 +105,7 @@ def _residue(least: jax.Array, s2: jax.Array) -> jax.Array:
     return pi * alpha / jnp.abs(slope)
 
 
-class WaveRadiation(eqx.Module):
+class WaveRadiation(Drag):
     """Waves that a contact sends into the half-space below it: a drag on the body.
 
     Parameters
@@ -122,11 +122,17 @@ class WaveRadiation(eqx.Module):
 
     coefficient: Real = quantity()
 
+    name: ClassVar[str] = "waves"
+    acts_apart: ClassVar[bool] = False
+
     @classmethod
     def into(cls, modulus: Real, poisson: Real, density: Real) -> WaveRadiation:
         """Into a half-space: Young's modulus [Pa], Poisson's ratio, density [kg/m^3]."""
         speed = shear_speed(modulus, poisson, density)
         return cls(radiated(poisson).whole / (density * speed**3))
+
+    def resistance(self, along: Along) -> jax.Array:
+        return self.drag(along.stiffness, along.bend, along.speed)
 
     def drag(self, stiffness: jax.Array, bend: jax.Array, speed: jax.Array) -> jax.Array:
         """Force over speed [N s/m], any shape.

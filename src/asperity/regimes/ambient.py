@@ -129,7 +129,8 @@ def gas_warnings(inputs: Inputs, central: float, motion: Motion) -> list[str]:
         *_compressed(inputs, gas, thinnest, motion),
     ]
     if not float(motion.impacts.apex[0]) > float(motion.impacts.closest_approach[0]):
-        held = inputs.release is not None and inputs.release.gravity > 0.0
+        falls = inputs.release is not None and inputs.release.gravity > 0.0
+        held = falls or inputs.suspension is not None
         end = "creeps to rest" if held else "never touches"
         out.append(f"the gas film damps the fall so strongly that the body {end}")
     return out

@@ -32,7 +32,7 @@ def wave_warnings(problem: Problem, elastic: float, central: float, motion: Moti
     motion
         The motion.
     """
-    if problem.body.waves is None or not elastic > 0.0:
+    if not problem.inputs.structure.waves or not elastic > 0.0:
         return []
     mass, energy = float(problem.body.mass), float(motion.impacts.maximum_kinetic[0])
     # Of a pulse of this force that turns the body back; half a period of it is the contact time.
@@ -47,7 +47,8 @@ def wave_warnings(problem: Problem, elastic: float, central: float, motion: Moti
 
 def _strong(problem: Problem, motion: Motion, energy: float) -> list[str]:
     """Waves that change the motion by more than the first order tells."""
-    share = float(motion.impacts.lost[0, -1]) / energy
+    place = len(problem.contact.mechanisms) + problem.body.mechanisms.index("waves")
+    share = float(motion.impacts.lost[0, place]) / energy
     if share <= SMALL:
         return []
     return [

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._jax import jax
+from .._jax import jax, jnp
 from ..config import Case
 from ..contact import Contact
 from ..dynamics import Body, Motion
@@ -34,8 +34,8 @@ from ..regimes.validity import (
 from .measures import FirstContact, Measures, least_peak, measure
 from .result import Result
 
-_ROWS, _ROWS_IN_GAS = 256, 32
-"""Rows of impacts that are measured at least: more than most motions have. In a gas each costs."""
+_ROWS, _ROWS_DRAGGED = 256, 32
+"""Rows of impacts that are measured at least: more than most motions have. With drag each costs."""
 
 _measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
@@ -65,7 +65,7 @@ def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
 
 
 def _least_rows(body: Body) -> int:
-    return _ROWS if body.film is None else _ROWS_IN_GAS
+    return _ROWS_DRAGGED if body.damped_apart else _ROWS
 
 
 def contact_end(table: Table, peak: float) -> float:
@@ -86,7 +86,7 @@ def measured(solution: Solution, body: Body) -> Measures:
     if solution.trajectory is None:
         return _measure(whole, body, None, None)
     first, passing = _stepped_contact(solution.trajectory, motion, body), None
-    if body.film is not None:
+    if body.damped_apart:
         found = solution.trajectory.passing(float(first.end), float(body.mass))
         passing = jax.tree_util.tree_map(pad, found)
     return _measure(whole, body, passing, first)
@@ -179,7 +179,7 @@ def result_of(
         warnings=[
             *warnings_of(problem, regime, at_depth, motion),
             *pull_warnings(inputs, float(measures.pull_off), float(measures.held_at_pull_off)),
-            *release_warnings(float(measures.contact_end)),
+            *(release_warnings(float(measures.contact_end)) if measures.touched else ()),
             *slow_menisci(problem, motion, solution.trajectory),
             *kept_elastic(inputs, float(np.asarray(measures.restitution)[0]), elastic),
         ],
@@ -289,19 +289,22 @@ def _histories(
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Forces and energies along the motion."""
     layout = quantities(contact)
-    weight = float(body.mass) * float(body.gravity)
     rows: np.ndarray = series.rows
     parts = rows[:, layout.components]
     forces: dict[str, np.ndarray] = {name: parts[:, k] for k, name in enumerate(contact.components)}
     forces["contact"] = rows[:, FORCE]
-    forces["weight"] = np.full(len(rows), -weight)
-    forces["total"] = rows[:, FORCE] - weight
+    forces["weight"] = np.full(len(rows), -float(body.weight))
+    forces["total"] = rows[:, FORCE] + forces["weight"]
+    for force in body.forces:
+        forces[force.name] = -np.asarray(force.force(jnp.asarray(series.separation)))
+        forces["total"] = forces["total"] + forces[force.name]
     for k, name in enumerate(body.mechanisms):
         forces[name] = -series.drag[:, k] * series.speed
         forces["total"] = forces["total"] + forces[name]
+    zero = jnp.asarray(_zero_height(motion.reference))
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
-        "potential": weight * (series.separation - _zero_height(motion.reference)),
+        "potential": np.asarray(body.load.climb(zero, jnp.asarray(series.separation) - zero)),
         "stored": rows[:, STORED],
     }
     for name, lost in losses.items():
@@ -349,14 +352,14 @@ def _zero_height(ground: Reference) -> float:
 
 def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str, Any]:
     """Energy at the release, lost by mechanism, and how well all of it adds up."""
-    weight = float(body.weight)
     lost: dict[str, float] = {}
     names = (*contact.mechanisms, *body.mechanisms)
     for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
     impact_energy = float(motion.impacts.maximum_kinetic[0])
     energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
-    initial = float(motion.release) - weight * _zero_height(motion.reference)
+    zero = jnp.asarray(_zero_height(motion.reference))
+    initial = float(motion.release - body.load.potential(zero))
     return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
 
 
@@ -364,7 +367,7 @@ def _plain(measures: Measures, made: int) -> dict[str, Any]:
     """Measures as plain numbers and lists, None where one does not apply."""
     out: dict[str, Any] = {}
     for name, value in measures._asdict().items():
-        if name in ("contact_end", "outset", "held_at_pull_off"):
+        if name in ("contact_end", "touched", "outset", "held_at_pull_off"):
             continue
         array = np.asarray(value)
         if array.ndim == 0:

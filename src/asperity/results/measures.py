@@ -20,8 +20,9 @@ from ..errors import Outcome
 from ..laws.law import Real
 from ..numerics.compilation import kept
 
+_TOUCH = 1e-9  # of what a spring presses or holds with: less force is no contact
 _LEAST = 1e-6  # of the force of one impact: none is gentler
-_IN_GAS = 1e-3  # of the weight, which gas leaves a contact to carry at a turn
+_DRAGGED = 1e-3  # of the load, which drag leaves a contact to carry at a turn
 
 
 @kept
@@ -31,14 +32,14 @@ class Measures(NamedTuple):
     Attributes
     ----------
     impact_speed
-        Speed of approach where forces begin, at the end of contact [m/s]; NaN where a gas film
+        Speed of approach where forces begin, at the end of contact [m/s]; NaN where a drag
         stops the body before. Of a body released within that, the speed at its static
         equilibrium, the largest.
     maximum_speed
         Largest speed on the first way in [m/s]: with attraction, above that of approach.
     captured
         Whether the first impact captures: its apex lies within the end of contact, where the
-        force is 1e-6 of its peak, and in gas below the static equilibrium too. Of a body that is
+        force is 1e-6 of its peak, and with drag below the static equilibrium too. Of a body that is
         released within the end of contact the static equilibrium alone is asked.
     capture_time
         Time of the first impact, of all, that captures so [s].
@@ -71,7 +72,10 @@ class Measures(NamedTuple):
         same.
     contact_end
         Separation [m] at which energies in and out are compared: the end of contact, or
-        NaN where the body is released within it and the static equilibrium is taken.
+        NaN where the body is released within it, or never comes there, and the static equilibrium
+        is taken.
+    touched
+        Whether there is a contact at all.
     held_at_pull_off
         Expected number of asperities that touch or are bonded at pull-off.
     outset
@@ -97,6 +101,7 @@ class Measures(NamedTuple):
     work_of_separation: jax.Array
     preload: jax.Array
     contact_end: jax.Array
+    touched: jax.Array
     held_at_pull_off: jax.Array
     outset: jax.Array
 
@@ -109,7 +114,7 @@ class FirstContact(NamedTuple):
     ----------
     end
         End of contact: the outermost separation [m] at which the force is 1e-6 of the largest
-        one, at a deepest point or at pull-off.
+        one, at a deepest point or at pull-off. NaN of a body on a spring that never touches.
     time
         Time spent within it in the first impact [s]; NaN where the body is captured.
     force
@@ -144,7 +149,8 @@ def measure(
     motion, body
         The motion, and what moved.
     passing
-        For a motion in gas of which no phases are kept: its energies at the end of contact.
+        For a motion with drag outside contact of which no phases are kept: its energies at the
+        end of contact.
     first
         Its first contact, where that is known; :func:`first_contact` needs the table.
     """
@@ -157,10 +163,7 @@ def measure(
     gone = jnp.logical_and(escaped, last)
     away = gone | (last & (end.outcome == ENDS.index(Outcome.STOPPED)))  # of no further maximum
 
-    falls = body.weight > 0.0
-    top = body.release + jnp.where(
-        falls, body.kinetic / jnp.where(falls, body.weight, 1.0), jnp.inf * (body.kinetic > 0)
-    )
+    top = body.release + body.load.rise(body.release, body.kinetic)
     rebounds = rows.made & (
         rows.apex > rows.closest_approach
     )  # a body that creeps to rest has none
@@ -175,7 +178,8 @@ def measure(
     total = jnp.sum(rows.lost, axis=1)
     rests = end.outcome == ENDS.index(Outcome.REST)
     captures = _captures(motion, body, contact_end, outside, away)
-    captures = jnp.logical_or(captures, rests & rows.made & ~rebounds)
+    held = ~jnp.isnan(contact_end) if body.forces else jnp.asarray(True)
+    captures = (captures | (rests & rows.made & ~rebounds)) & held
     capture_time = rows.closest_approach_time[jnp.argmax(captures)]
     energies = _energies(motion, body, contact_end, outside, passing)
     safe = jnp.where(jnp.isfinite(period), period, 1.0)
@@ -199,6 +203,7 @@ def measure(
         work_of_separation=pulled.work,
         preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
         contact_end=jnp.where(outside, contact_end, jnp.nan),
+        touched=~jnp.isnan(contact_end),
         held_at_pull_off=pulled.held,
         outset=first.outset,
     )
@@ -211,7 +216,12 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
     )
     pulled = unloading(table, rise)
     peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
-    end = end_of_contact(table, jnp.maximum(peak, pulled.pull_off))
+    largest = jnp.maximum(peak, pulled.pull_off)
+    end = end_of_contact(table, largest)
+    if body.forces:
+        ends = jnp.stack([body.release, rows.apex[0], rows.closest_approach[0]])
+        most = jnp.max(jnp.abs(body.load.force(ends)))
+        end = jnp.where(largest > _TOUCH * most, end, jnp.nan)
     inwards = time_to(body, _ahead(table, fall, unloading=False), fall.kinetic, False, end)
     outwards = time_to(body, _ahead(table, rise, unloading=True), rise.kinetic, True, end)
     time = rows.closest_approach_time[0] - fall.begun - inwards + outwards
@@ -225,11 +235,12 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
 
 
 def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
-    """Largest force of the gentlest impact [N]: the weight or the pull-off force.
+    """Largest force of the gentlest impact [N]: the load or the pull-off force.
 
-    Gas may stop a body where it carries far less than its weight.
+    Drag may stop a body where the contact carries far less than its load.
     """
-    carried = body.weight if body.film is None else _IN_GAS * body.weight
+    carried = jnp.maximum(body.load.force(jnp.zeros(())), 0.0)
+    carried = _DRAGGED * carried if body.damped_apart else carried
     return jnp.maximum(jnp.maximum(carried, pull_off), _LEAST * peak)
 
 
@@ -260,11 +271,11 @@ def _captures(
 ) -> jax.Array:
     """Whether a rebound stays within the contact, per impact.
 
-    Gas alone may keep one within its range: that is no capture, and the static equilibrium
+    Drag alone may keep one within its range: that is no capture, and the static equilibrium
     counts in place of the end of contact.
     """
     rows, still = motion.impacts, motion.reference.equilibrium
-    held = contact_end if body.film is None else jnp.fmin(contact_end, still)
+    held = jnp.fmin(contact_end, still) if body.damped_apart else contact_end
     held = jnp.where(outside, held, still)
     return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
 
@@ -283,14 +294,14 @@ def _energies(
     A body released within the range of the contact has no such place on its path: there they
     count from the static equilibrium.
     """
-    rows, weight = motion.impacts, body.weight
+    rows, potential = motion.impacts, body.load.potential
     still = motion.reference
-    at_rest = still.stored + weight * still.equilibrium
-    zero = jnp.where(outside, weight * contact_end, at_rest)
+    at_rest = still.stored + potential(still.equilibrium)
+    zero = jnp.where(outside, potential(contact_end), at_rest)
     after = rows.mechanical - zero
     before = _shift(after, motion.release - zero)
-    if body.film is not None:
-        # Gas takes energy beyond the end of contact too: count what passes there.
+    if body.damped_apart:
+        # It takes energy beyond the end of contact too: count what passes there.
         kinetic_in, kinetic_out = passing or passing_at(body, motion.table, rows, contact_end)
         before = jnp.where(outside, kinetic_in, before)
         after = jnp.where(outside, kinetic_out, after)
@@ -308,7 +319,7 @@ def _restitution(
 ) -> jax.Array:
     """Square root of the ratio of the energies after and before each impact.
 
-    The impact that captures has 0, later ones NaN, and so has a rebound that gas alone keeps
+    The impact that captures has 0, later ones NaN, and so has a rebound that drag alone keeps
     from coming back to the end of contact.
     """
     rows, (before, after) = motion.impacts, energies
@@ -318,7 +329,7 @@ def _restitution(
     ratio = jnp.where(usable, after, 1.0) / jnp.where(usable, before, 1.0)
     free_before = jnp.logical_or(_shift(counts.astype(float), 1.0) > 0.5, ~outside)
     ends = jnp.logical_and(outside, free_before)
-    if body.film is not None:
+    if body.damped_apart:
         ends = jnp.logical_and(ends, captures)
     otherwise = jnp.where(ends, 0.0, jnp.nan)
     value = jnp.where(usable, jnp.sqrt(jnp.where(usable, ratio, 1.0)), otherwise)

@@ -23,7 +23,7 @@ from asperity.dynamics import (
     start,
 )
 from asperity.dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
-from asperity.dynamics.release import at_release
+from asperity.dynamics.release import AtRelease, at_release
 from asperity.dynamics.static_equilibrium import Reference
 from asperity.numerics.compilation import QUICKLY, Program, kept
 from asperity.results.measures import (
@@ -79,18 +79,15 @@ class Checks(NamedTuple):
     ----------
     error, residual
         Relative errors of the interpolation and of the contact's equilibrium.
-    at_release, power, largest
-        Force at the release [N], by which power of the distance it falls there [-], and the
-        largest in the table [N].
+    at_release
+        The forces at the release.
     at_depth
         :class:`asperity.regimes.validity.AtDepth` of the first impact.
     """
 
     error: jax.Array
     residual: jax.Array
-    at_release: jax.Array
-    power: jax.Array
-    largest: jax.Array
+    at_release: AtRelease
     at_depth: jax.Array
 
 
@@ -105,14 +102,14 @@ def _begin(batch: Batch) -> tuple[Begun, Checks, Rows]:
         contact, body = batch.contact, batch.body
         table, reference = prepare(contact, body, True)
         progress, origin = start(contact, body, table)
-        force, power, largest = at_release(table, body)
         begun = Begun(table, reference, origin, progress, None)
         progress, impacts = _integrated(batch, begun)
         deepest = outer_row(table, 0, impacts.closest_approach[0])
         at_depth = jnp.stack(
             [deepest[CONTACTING], deepest[FORCE] - deepest[ATTRACTION], deepest[CENTRAL]]
         )
-        checks = Checks(table.error, table.residual, force, power, largest, at_depth)
+        outset = at_release(table, body)
+        checks = Checks(table.error, table.residual, outset, at_depth)
         begun = begun._replace(progress=progress, first=first_contact(table, impacts, body))
         return begun, checks, _slim(body, begun, impacts)
 
@@ -140,7 +137,7 @@ def _integrated(batch: Batch, begun: Begun) -> tuple[Progress, Impacts]:
 
 def _slim(body: Body, begun: Begun, impacts: Impacts) -> Rows:
     passing = None
-    if body.film is not None:
+    if body.damped_apart:
         assert begun.first is not None
         passing = passing_at(body, begun.table, impacts, begun.first.end)
     return impacts._replace(fall=None, rise=None), passing  # type: ignore[arg-type]

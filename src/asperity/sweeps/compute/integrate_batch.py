@@ -166,10 +166,8 @@ class _Cases:
         """Whether each case is begun anew, from a release further out, where none was given."""
         if not self.group.launched:
             return np.zeros(places.shape, bool)
-        force, power = np.asarray(checks.at_release), np.asarray(checks.power)
-        limit = negligible_force(
-            np.asarray(here.body.weight), np.asarray(checks.largest), chosen=True
-        )
+        force, power, largest, load = (np.asarray(leaf) for leaf in checks.at_release)
+        limit = negligible_force(load, largest, chosen=True)
         again = (force > limit) & (places >= 0) & (self.tries[places] < TRIES - 1)
         at = places[again]
         self.tries[at] += 1
@@ -250,9 +248,9 @@ class _Cases:
     def _sound(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
         """Whether each case is released outside contact, and in equilibrium; reasons else."""
         body = here.body
-        force, release = np.asarray(checks.at_release), np.asarray(body.release)
-        weight = np.asarray(body.weight)
-        limit = negligible_force(weight, np.asarray(checks.largest), chosen=self.group.launched)
+        force, _power, largest, load = (np.asarray(leaf) for leaf in checks.at_release)
+        release, near = np.asarray(body.release), self.group.launched or bool(body.forces)
+        limit = negligible_force(load, largest, chosen=near)
         inside = ~(force <= limit) & self.checked
         residual = np.asarray(checks.residual)
         unsolved = ~(residual <= _RESIDUAL)

@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from asperity.config.problems import did_you_mean
+from asperity.config.base_table import Table
+from asperity.config.problems import did_you_mean, tables_of
+from asperity.config.tables import CaseTables
 from asperity.errors import InputError, Outcome
 from asperity.units import shown
 
@@ -68,7 +70,12 @@ ALWAYS: tuple[Column, ...] = (
 )
 """Columns of every study."""
 
-LOSSES = ("adhesion", "capillary", "plastic", "gas", "waves", "viscous")
+LOSSES = tuple(
+    table.loss
+    for field in CaseTables.model_fields.values()
+    for table in tables_of(field.annotation)
+    if issubclass(table, Table) and table.loss is not None
+)
 """Mechanisms whose losses can be kept, as ``lost_NAME``."""
 
 MEASURES: tuple[Column, ...] = (

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from pydantic.fields import FieldInfo
+
+from asperity.config.problems import tables_of
+from asperity.config.tables import CaseTables
 from asperity.sweeps.study.definition import StudyDefinition
 from asperity.sweeps.study.keys import place
 
@@ -33,11 +37,9 @@ def largest_max_impacts(study: StudyDefinition) -> int:
 
 
 def _quick(study: StudyDefinition) -> bool:
-    """Whether no case has a rate, a memory of time, single summits, or adhesion beyond DMT's."""
-    lossy = ("waves", "viscoelasticity", "plasticity")
+    """Whether no case has a rare mechanism, single summits, or adhesion beyond DMT's."""
     return not (
-        _has(study, "gas")
-        or any(_values(study, table, "model") - {"none"} for table in lossy)
+        any(_acts(study, name, field) for name, field in _mechanisms())
         or _values(study, "adhesion", "model") - {"dmt", "none"}
         or any(_values(study, "capillary", "formation_time"))
         or "summits" in _values(study, "roughness", "source")
@@ -48,6 +50,24 @@ def _has(study: StudyDefinition, table: str) -> bool:
     """Whether a case of the study can have a table."""
     varied = any(place(axis.key)[0] == table for axis in study.axes)
     return varied or getattr(study.base, table) is not None
+
+
+def _mechanisms() -> list[tuple[str, FieldInfo]]:
+    """The tables of mechanisms that few cases have."""
+    rare = [
+        (name, field)
+        for name, field in CaseTables.model_fields.items()
+        if isinstance(field.json_schema_extra, dict) and field.json_schema_extra.get("rare")
+    ]
+    return [(name, field) for name, field in rare if name != "publication"]
+
+
+def _acts(study: StudyDefinition, table: str, field: FieldInfo) -> bool:
+    """Whether the mechanism of a table can act in a case of the study."""
+    if not _has(study, table):
+        return False
+    models = any("model" in kind.model_fields for kind in tables_of(field.annotation))
+    return not models or bool(_values(study, table, "model") - {"none"})
 
 
 def _values(study: StudyDefinition, table: str, key: str) -> set[object]:

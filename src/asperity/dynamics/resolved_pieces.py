@@ -1,0 +1,104 @@
+"""Pieces of a way with drag, cut where the speed changes over less than a piece."""
+
+from __future__ import annotations
+
+from functools import reduce
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..numerics.polynomials import chebyshev_sum, local
+from .curve_table import FORCE, Pieces
+from .record import Body
+
+_CUTS, _RATIO = 12, 4.0  # of the way by a film's gaps: how many, each so much wider
+_SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thins without end
+
+_EQUILIBRIA = 2  # to which a body may creep on one way: the first of them
+_LOOKS = np.linspace(0.0, 1.0, 9)  # on a piece for them
+_HALVINGS = 50
+_NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the way: cuts about its start and about them
+
+
+def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
+    """Pieces cut where drags ask for it, and which one each is a part of.
+
+    Parameters
+    ----------
+    body
+        The body; without a film, and without a spring under drag, nothing is cut.
+    pieces
+        The polynomials ahead of it.
+    """
+    count = pieces.low.shape[0]
+    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
+    ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
+    cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, ends, ahead)]
+    if not cuts:
+        return pieces, jnp.arange(count)
+    places = jnp.sort(ahead * jnp.concatenate([ends, *cuts]))
+    middles = 0.5 * (places[1:] + places[:-1])
+    part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
+    low, high, _, _, values = (leaf[part] for leaf in pieces)
+    return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
+
+
+def _in_film(body: Body, pieces: Pieces, ends: jax.Array, ahead: jax.Array) -> list[jax.Array]:
+    """Wide pieces are cut where a film thins by a factor.
+
+    Its drag goes as one over the separation, which no polynomial follows over decades.
+    """
+    thinnest = [drag.thinnest for drag in body.drags if drag.thinnest is not None]
+    if not thinnest:
+        return []
+    widest, count = jnp.max(ends), pieces.low.shape[0]
+    narrow = jnp.maximum(reduce(jnp.minimum, thinnest), _SPAN * jnp.abs(widest))
+    cuts = jax.lax.stop_gradient(narrow * _RATIO ** np.arange(_CUTS))
+    cuts = jnp.clip(cuts, jnp.min(ends), widest)
+    here = jnp.clip(jnp.searchsorted(ahead * pieces.leave, ahead * cuts), 0, count - 1)
+    near = jnp.minimum(pieces.enter, pieces.leave)[here]
+    far = jnp.maximum(pieces.enter, pieces.leave)[here]
+    return [jnp.where(far > _RATIO * jnp.maximum(near, narrow), cuts, pieces.leave[here])]
+
+
+def _to_rest(body: Body, pieces: Pieces, ends: jax.Array, ahead: jax.Array) -> list[jax.Array]:
+    """Cuts closer and closer to the start, and to where an overdamped body creeps.
+
+    From rest it comes to a speed at which drag balances the other forces, and this falls to
+    nothing at an equilibrium. A body without a spring is at rest in contact alone, where pieces
+    are short.
+    """
+    if not (body.forces and body.damped_apart):
+        return []
+    pieces, body = jax.lax.stop_gradient((pieces, body))
+    start, low, high = ends[0], jnp.min(ends), jnp.max(ends)
+    still = _equilibria(body, pieces, ahead)
+    about = [(start, jnp.abs(ends[-1] - start)), *((one, jnp.abs(one - start)) for one in still)]
+    cuts = [place + sign * way * _NEARER for place, way in about for sign in (-1.0, 1.0)]
+    return [jnp.clip(jnp.concatenate([still, *cuts]), low, high)]
+
+
+def _equilibria(body: Body, pieces: Pieces, ahead: jax.Array) -> jax.Array:
+    """The first places on a way where a push ahead becomes one back [m]; else its end."""
+    span, force = pieces.leave - pieces.enter, pieces.values[..., FORCE]
+
+    def push(piece: jax.Array, place: jax.Array) -> jax.Array:
+        x = local(pieces.low[piece], pieces.high[piece], place)
+        return ahead * (chebyshev_sum(force[piece], x) - body.load.force(place))
+
+    every = jnp.arange(span.shape[0])
+    places = pieces.enter[:, None] + span[:, None] * _LOOKS
+    pushes = jax.vmap(jax.vmap(push, in_axes=(None, 0)))(every, places)
+    ends = (pushes[:, :-1] > 0.0) & (pushes[:, 1:] <= 0.0) & (span != 0.0)[:, None]
+    (found,) = jnp.nonzero(ends.ravel(), size=_EQUILIBRIA, fill_value=-1)
+    piece, look = found // (_LOOKS.size - 1), found % (_LOOKS.size - 1)
+
+    def halve(_: int, both: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+        near, far = both
+        middle = 0.5 * (near + far)
+        on = jax.vmap(push)(piece, middle) > 0.0
+        return jnp.where(on, middle, near), jnp.where(on, far, middle)
+
+    both = places[piece, look], places[piece, look + 1]
+    near, far = jax.lax.fori_loop(0, _HALVINGS, halve, both)
+    return jnp.where(found >= 0, 0.5 * (near + far), pieces.leave[-1])
