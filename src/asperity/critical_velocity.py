@@ -118,7 +118,7 @@ class Launcher:
             float(measures.impact_speed),
             float(np.asarray(measures.restitution)[0]),
             bool(measures.captured),
-            leaving - float(body.weight) * float(measures.contact_end),
+            leaving - float(body.load.potential(measures.contact_end)),
         )
 
     def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:

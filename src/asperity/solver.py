@@ -105,7 +105,9 @@ def explore(
         raise SimulationError(_failure(problem), result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
         return result, _curve_of(case, name, problem, lambda _, text: report(0.95, text))
-    drawn, _ = quasi_static_curve(solution.contact, solution.motion.table, solution.motion.impacts)
+    motion, held = solution.motion, problem.inputs.suspension
+    stiffness = None if held is None else held.stiffness
+    drawn, _ = quasi_static_curve(solution.contact, motion.table, motion.impacts, stiffness)
     report(1.0, "done")
     return result, Curve(case, name, **drawn, warnings=result.warnings)
 
@@ -198,7 +200,9 @@ def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     contact, motion = first_impact(problem, report)
     warnings = assessment_of(name, problem, contact, motion).warnings
     report(0.6, "unloading")
-    drawn, held = quasi_static_curve(contact, motion.table, motion.impacts)
+    spring = problem.inputs.suspension
+    stiffness = None if spring is None else spring.stiffness
+    drawn, held = quasi_static_curve(contact, motion.table, motion.impacts, stiffness)
     warnings += pull_warnings(problem.inputs, drawn["pull_off"], held)
     report(1.0, "done")
     return Curve(case, name, **drawn, warnings=warnings)

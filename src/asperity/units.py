@@ -25,7 +25,7 @@ _KINDS = {
     "Pa": ("a pressure", "80 GPa"),
     "kg/m^3": ("a density", "2200 kg/m^3"),
     "J/m^2": ("an energy per area", "30 mJ/m^2"),
-    "N/m": ("a surface tension", "75 mN/m"),
+    "N/m": ("a force per length", "75 mN/m"),
     "m^3/mol": ("a molar volume", "18.05 cm^3/mol"),
     "K": ("a temperature", "20 degC"),
     "rad": ("an angle", "73 deg"),

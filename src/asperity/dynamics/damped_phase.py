@@ -219,7 +219,7 @@ def kinetic_at(
     body: Body, pieces: Pieces, kinetic: jax.Array, unloading: jax.Array, place: jax.Array
 ) -> jax.Array:
     """Kinetic energy [J] with which a body passes a place [m] of a phase."""
-    pieces, _ = resolved(body, pieces)
+    pieces, _ = resolved(body, pieces, kinetic)
     return pass_through(body, cut(pieces, unloading, place), kinetic).turn.kinetic
 
 
@@ -229,7 +229,7 @@ def time_to(
     """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
     passed = cut(pieces, jnp.asarray(unloading), place)
     if body.damped:
-        passed = resolved(body, passed)[0] if body.forces else passed
+        passed = resolved(body, passed, kinetic)[0] if body.forces else passed
         return pass_through(body, passed, kinetic).duration
     work = work_along(passed, kinetic, body.load)
     return time_along(work, (passed.enter, passed.leave), body.mass)

@@ -197,7 +197,9 @@ def _phase_of_impact(
         turn, dissipated = find_turning_point(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
-        way, part = resolved(body, join(table, branch, inner, progress.place, unloading))
+        way, part = resolved(
+            body, join(table, branch, inner, progress.place, unloading), progress.kinetic
+        )
         passage = come_to_rest(body, way, progress.kinetic, rest, unloading)
         turn = passage.turn._replace(piece=part[passage.turn.piece])
         turn, dissipated = in_order(ahead, turn), passage.lost

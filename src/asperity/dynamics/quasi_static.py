@@ -11,11 +11,13 @@ from numpy.polynomial import chebyshev
 from .._jax import jax
 from ..contact.contact import Contact
 from ..numerics.compilation import AT_ONCE, Program
-from .curve_table import CENTRAL, FORCE, Table, quantities
+from .curve_table import CENTRAL, FORCE, STORED, Table, quantities
+from .jumps import Segment, jumps
 from .record import Impacts
 from .unloading import Unloading, unloading
 
 _POINTS = 240
+_FAR = 1e6  # times the separations of the curve: as far as a soft spring may let a body jump
 
 
 class _Piece(NamedTuple):
@@ -25,7 +27,7 @@ class _Piece(NamedTuple):
 
 
 def quasi_static_curve(
-    contact: Contact, table: Table, impacts: Impacts
+    contact: Contact, table: Table, impacts: Impacts, stiffness: float | None = None
 ) -> tuple[dict[str, Any], float]:
     """Both branches from where the forces begin to the depth of the first impact.
 
@@ -37,6 +39,8 @@ def quasi_static_curve(
         Its curves.
     impacts
         A motion's impacts, of which the first is taken.
+    stiffness
+        Stiffness of the spring that holds the body [N/m]; None of a free one.
 
     Returns
     -------
@@ -65,8 +69,24 @@ def quasi_static_curve(
         "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
         "work_of_separation": float(pulled.work),
         "loss": _loss(contact, approach[:, layout.bonds], unloading[:, layout.bonds]),
+        "jumps": None,
     }
+    if stiffness is not None:
+        ways = _segments(inward, inward[0].low), _segments(outward, deepest)
+        found["jumps"] = jumps(*ways, stiffness)
     return found, float(pulled.held)
+
+
+def _segments(pieces: list[_Piece], begin: float) -> list[Segment]:
+    """Force and stored energy along pieces from a separation on [m], and the nothing beyond."""
+    found, low = [], begin
+    for piece in pieces:
+        if piece.high > low:
+            ends, (force, stored) = (piece.low, piece.high), piece.values[:, [FORCE, STORED]].T
+            found.append(Segment(low, piece.high, ends, force, stored))
+            low = piece.high
+    far, none = low + _FAR * max(abs(low), abs(begin)), np.zeros(2)
+    return [*found, Segment(low, far, (low, far), none, none)]
 
 
 def _branch(table: Table, branch: int) -> list[_Piece]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import chebyshev_sum, local
-from .curve_table import FORCE, Pieces
+from .curve_table import CENTRAL, FORCE, Pieces
+from .external_forces import Along
 from .record import Body
 
 _CUTS, _RATIO = 12, 4.0  # of the way by a film's gaps: how many, each so much wider
@@ -20,7 +21,7 @@ _HALVINGS = 50
 _NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the way: cuts about its start and about them
 
 
-def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
+def resolved(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[Pieces, jax.Array]:
     """Pieces cut where drags ask for it, and which one each is a part of.
 
     Parameters
@@ -29,11 +30,13 @@ def resolved(body: Body, pieces: Pieces) -> tuple[Pieces, jax.Array]:
         The body; without a film, and without a spring under drag, nothing is cut.
     pieces
         The polynomials ahead of it.
+    kinetic
+        Kinetic energy at the start [J].
     """
     count = pieces.low.shape[0]
     ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
     ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
-    cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, ends, ahead)]
+    cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, kinetic, ahead)]
     if not cuts:
         return pieces, jnp.arange(count)
     places = jnp.sort(ahead * jnp.concatenate([ends, *cuts]))
@@ -61,21 +64,27 @@ def _in_film(body: Body, pieces: Pieces, ends: jax.Array, ahead: jax.Array) -> l
     return [jnp.where(far > _RATIO * jnp.maximum(near, narrow), cuts, pieces.leave[here])]
 
 
-def _to_rest(body: Body, pieces: Pieces, ends: jax.Array, ahead: jax.Array) -> list[jax.Array]:
-    """Cuts closer and closer to the start, and to where an overdamped body creeps.
+def _to_rest(body: Body, pieces: Pieces, kinetic: jax.Array, ahead: jax.Array) -> list[jax.Array]:
+    """Cuts closer and closer to where the speed of an overdamped body changes quickly.
 
-    From rest it comes to a speed at which drag balances the other forces, and this falls to
-    nothing at an equilibrium. A body without a spring is at rest in contact alone, where pieces
-    are short.
+    From its start, or from where drag has taken the momentum that it starts with, it goes on at a
+    speed at which drag balances the other forces. This falls to nothing at an equilibrium. A body
+    without a spring is at rest in contact alone, where pieces are short.
     """
     if not (body.forces and body.damped_apart):
         return []
-    pieces, body = jax.lax.stop_gradient((pieces, body))
-    start, low, high = ends[0], jnp.min(ends), jnp.max(ends)
-    still = _equilibria(body, pieces, ahead)
-    about = [(start, jnp.abs(ends[-1] - start)), *((one, jnp.abs(one - start)) for one in still)]
-    cuts = [place + sign * way * _NEARER for place, way in about for sign in (-1.0, 1.0)]
-    return [jnp.clip(jnp.concatenate([still, *cuts]), low, high)]
+    pieces, body, kinetic = jax.lax.stop_gradient((pieces, body, kinetic))
+    start, end = pieces.enter[0], pieces.leave[-1]
+    row = chebyshev_sum(pieces.values[0], local(pieces.low[0], pieces.high[0], start)[None])
+    drag = jnp.sum(body.resistances(Along.apart(row[CENTRAL])))
+    momentum = jnp.sqrt(2.0 * body.mass * kinetic)
+    spent = start + ahead * momentum / jnp.where(drag > 0.0, drag, 1.0)
+    places = jnp.append(_equilibria(body, pieces, ahead), spent)
+    about = places[:, None] + jnp.abs(places - start)[:, None] * _NEARER
+    before = places[:, None] - jnp.abs(places - start)[:, None] * _NEARER
+    begin = start + (end - start) * _NEARER
+    cuts = jnp.concatenate([places, about.ravel(), before.ravel(), begin])
+    return [jnp.clip(cuts, jnp.minimum(start, end), jnp.maximum(start, end))]
 
 
 def _equilibria(body: Body, pieces: Pieces, ahead: jax.Array) -> jax.Array:

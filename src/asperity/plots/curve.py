@@ -37,6 +37,7 @@ def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
     axes.fill_between(gap, inward, outward, color=colour("lost"), lw=0.0, label="energy lost")
     axes.plot(gap, inward, color=colour("loading"), label="loading")
     axes.plot(gap, outward, color=colour("unloading"), ls=(0, (5, 1.5)), label="unloading")
+    _jumps(axes, curve, metres, newtons)
     axes.set_xlabel(style.label("rigid separation", length_unit))
     axes.set_ylabel(style.label("force", unit))
     axes.margins(x=0.02)
@@ -45,6 +46,28 @@ def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
         axes.set_title("pull-off")
     else:
         style.legend_above(axes)
+
+
+def _jumps(axes: Axes, curve: Curve, metres: float, newtons: float) -> None:
+    """Jump-in and jump-out of a body on a spring, each along the spring's line.
+
+    A soft spring may let the body jump far off the picture.
+    """
+    low, high = curve.rigid_separation.min(), curve.rigid_separation.max()
+    found = [jump for jump in (curve.jumps or {}).values() if isinstance(jump, dict)]
+    ends = [jump["landing_separation"] for jump in found]
+    seen = [low, high, *(end for end in ends if low - end < high - low > end - high)]
+    margin = 0.03 * (max(seen) - min(seen))
+    axes.set_xlim((min(seen) - margin) / metres, (max(seen) + margin) / metres)
+    for way, tint in (("in", "loading"), ("out", "unloading")):
+        jump = (curve.jumps or {}).get(way)
+        if jump is None:
+            continue
+        places = np.array([jump["separation"], jump["landing_separation"]]) / metres
+        forces = np.array([jump["force"], jump["landing_force"]]) / newtons
+        axes.plot(places, forces, ":", lw=0.9, color=colour(tint))
+        axes.plot(places[:1], forces[:1], "o", ms=3.5, color=colour(tint), label=f"jump-{way}")
+        axes.plot(places[1:], forces[1:], "o", ms=3.5, mfc="none", color=colour(tint))
 
 
 def _difference(axes: Axes, curve: Curve) -> None:

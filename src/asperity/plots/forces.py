@@ -23,14 +23,15 @@ def panels(result: Result) -> Row:
     shown = [name for name in ("contact", "elastic", *_PULLS) if name in result.forces]
     others = [name for name in result.forces if name not in (*shown, "weight", "total")]
     if impacts.first_contact(result) is None and "weight" in result.forces:
-        shown.append("weight")  # nothing else acts yet
+        shown.append("weight")  # no contact acts yet
     row = [Panel(1.0, lambda axes: _contact(axes, result, [*shown, *others]))]
     pulls = [name for name in _PULLS if np.any(result.forces.get(name, 0.0))]
     peak = np.max(np.abs(result.forces.get("contact", np.zeros(1))))
     pull = max((np.max(np.abs(result.forces[name])) for name in pulls), default=0.0)
     if 0.0 < pull < _SMALL * peak:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, pulls)))
-    if result.events.get("closest_approach_time", np.empty(0)).size >= _MANY:
+    many = result.events.get("closest_approach_time", np.empty(0)).size >= _MANY
+    if many and (peak > 0.0 or pull > 0.0):
         row.append(Panel(0.9, lambda axes: _peaks(axes, result)))
     return row
 

@@ -275,7 +275,8 @@ def _captures(
     counts in place of the end of contact.
     """
     rows, still = motion.impacts, motion.reference.equilibrium
-    held = jnp.fmin(contact_end, still) if body.damped_apart else contact_end
+    alone = body.damped_apart and not body.forces  # a spring draws a body out that drag held
+    held = jnp.fmin(contact_end, still) if alone else contact_end
     held = jnp.where(outside, held, still)
     return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
 

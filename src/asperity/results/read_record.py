@@ -116,6 +116,7 @@ def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[s
         components_unloading=_below(arrays, "force_unloading_"),
         **numbers,
         warnings=json.loads(said["warnings"]),
+        jumps=json.loads(said["jumps"]) if "jumps" in said else None,
     )
 
 

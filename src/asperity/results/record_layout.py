@@ -28,7 +28,7 @@ _FORCES = {
 }
 _ENERGIES = {
     "kinetic": "kinetic energy",
-    "potential": "potential energy in the field of gravity",
+    "potential": "potential energy of weight and spring",
     "stored": "energy stored in the contact",
 }
 _EVENTS = {
@@ -99,6 +99,8 @@ def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
         found["case_file"] = result.case_file
     if isinstance(result, CurveData):
         found["warnings"] = json.dumps(result.warnings)
+        if result.jumps is not None:
+            found["jumps"] = json.dumps(plain(result.jumps), allow_nan=False)
     if isinstance(result, ResultData):
         found["outcome"] = result.outcome.value
         for part in ("regime", "measures", "ledger", "warnings"):
@@ -120,7 +122,8 @@ def json_object(result: ResultData | CurveData) -> dict[str, Any]:
     """What ``--json`` prints: plain Python values in SI, None where a value does not apply."""
     if isinstance(result, CurveData):
         arrays = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
-        return {name: plain(getattr(result, name)) for name in (*arrays, *_CURVE, "warnings")}
+        names = (*arrays, *_CURVE, *(("jumps",) if result.jumps is not None else ()), "warnings")
+        return {name: plain(getattr(result, name)) for name in names}
     parts = ("regime", "measures", "ledger", "warnings")
     found = {name: plain(getattr(result, name)) for name in parts}
     if result.surface is not None:

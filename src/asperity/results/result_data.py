@@ -103,6 +103,10 @@ class CurveData:
         gives the same.
     loss : float
         Energy lost over in and out [J].
+    jumps : dict, optional
+        Where a body on a spring jumps in and out while the spring's base is moved slowly: "in" and
+        "out", each None or "separation", "force", "landing_separation", "landing_force" and the
+        "energy" that is lost, in SI, and a "note" where one is missing. None without a spring.
     warnings : list of str
         What to know before the numbers are used.
     input_sha256 : str, optional
@@ -126,5 +130,6 @@ class CurveData:
     preload: float | None
     loss: float
     warnings: list[str]
+    jumps: dict[str, Any] | None = None
     input_sha256: str | None = None
     case_file: str | None = None

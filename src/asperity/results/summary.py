@@ -230,7 +230,27 @@ def _curve(curve: CurveData) -> list[tuple[str, str]]:
         ("closest rigid separation", amount(curve.minimum_separation, "m")),
         *_pull(vars(curve)),
         ("lost over in and out", amount(curve.loss, "J")),
+        *_jumps(curve.jumps),
     ]
+
+
+def _jumps(found: dict[str, Any] | None) -> list[tuple[str, str]]:
+    """Where a body on a spring jumps in and out, and what each jump loses."""
+    if found is None:
+        return []
+    rows = []
+    for way in ("in", "out"):
+        if (jump := found[way]) is not None:
+            rows += [
+                (f"jump-{way} at", _place(jump["separation"], jump["force"])),
+                ("  lands at", _place(jump["landing_separation"], jump["landing_force"])),
+                ("  and loses", amount(jump["energy"], "J")),
+            ]
+    return [*rows, ("note", found["note"])] if found["note"] else rows
+
+
+def _place(separation: float, force: float) -> str:
+    return f"{amount(separation, 'm')}, {amount(force, 'N')}"
 
 
 def _impacts(result: ResultData, most: int | None, published: bool | None) -> list[str]:

@@ -20,6 +20,7 @@ _TAKERS = {
     "viscous": "the viscoelastic bulk takes",
     "waves": "elastic waves take",
 }
+_TOUCH = 1e-9  # of the spring's force: less is no contact
 _LITTLE = 1e-9
 """Share of the energy at the release below which nothing was lost that is worth a word."""
 
@@ -43,6 +44,8 @@ def verdict(result: ResultData) -> str:
         )
     if not result.measures["rebound_height"]:
         return "touched nothing before the run ended"
+    if _swings(result):
+        return f"never touches, and {_swinging(result)}; {_taken(result.ledger)}"
     parts = [_first(result.measures), _ending(result)]
     if result.outcome is Outcome.STOPPED:
         parts = [_first(result.measures) if not _untouched(result) else "", _stopped(result)]
@@ -94,6 +97,23 @@ def _untouched(result: ResultData) -> bool:
     return len(apexes) == 1 and bool(apexes[0] <= deepest[0])
 
 
+def _swings(result: ResultData) -> bool:
+    """Whether a body on a spring never comes to the surface."""
+    if result.case.suspension is None:
+        return False
+    contact, spring = (np.abs(result.forces[name]).max() for name in ("contact", "spring"))
+    return bool(contact <= _TOUCH * spring)
+
+
+def _swinging(result: ResultData) -> str:
+    """How it ends then."""
+    if result.outcome is Outcome.REST:
+        return "comes to rest on its spring"
+    if result.outcome is Outcome.OSCILLATING:
+        return "swings on its spring for ever"
+    return "still swings on its spring where the run was stopped"
+
+
 def _stopped(result: ResultData) -> str:
     """Where the gas film stopped the body."""
     place = f"{result.events['apex_separation'][-1] * 1e9:.4g} nm"
@@ -109,9 +129,9 @@ def _ending(result: ResultData) -> str:
     if outcome is Outcome.TIME_LIMIT:
         impacts = _rebounds_made(result)
     if measures["captured"]:
-        return "" if _held(result) else "held there by its weight alone"
+        return "" if _held(result) else f"held there by {_presses(result)} alone"
     if measures["capture_time"] is not None:
-        held = "sticks" if _held(result) else "comes to rest, held by its weight alone,"
+        held = "sticks" if _held(result) else f"comes to rest, held by {_presses(result)} alone,"
         return f"{held} {_after(_rebounds_before(result))}"
     if outcome is Outcome.REST:
         return f"comes to rest {_after(impacts)}"
@@ -131,6 +151,11 @@ def _ending(result: ResultData) -> str:
 def _held(result: ResultData) -> bool:
     """Whether anything pulls the body to the surface, be it captured or at rest in a gas."""
     return bool(np.min(result.forces["contact"], initial=0.0) < 0.0)
+
+
+def _presses(result: ResultData) -> str:
+    """What presses a body on the surface that nothing pulls there."""
+    return "its weight" if result.case.suspension is None else "weight and spring"
 
 
 def _rebounds_made(result: ResultData) -> int:

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 
 from asperity._jax import jax, jnp
+from asperity.dynamics import Body
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
 from asperity.dynamics.problem import CLEARANCE
 from asperity.dynamics.record import ENDS
@@ -42,7 +43,6 @@ def critical_velocities(group: Group, solution: BatchSolution, clock: Clock) -> 
 def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clock) -> np.ndarray:
     cases: Batch = taken(group.batch, some)
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
-    weight = mass * np.asarray(cases.body.gravity)
     release = _launched_from(cases, solution.measures["outset"][some])
     few = group.rows.size <= batch_steps.FEW_CASES
     width = batch_steps.width(group.batch, group.rows.size) if few else None
@@ -57,7 +57,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
         launched = Group(np.arange(index.size), batch, allowed)
         # A small study launches in calls of its cases' own width: those are compiled already.
         made = integrate_batch(launched, clock, checked=False, width=width)
-        return _first_impacts(made, mass[index], weight[index])
+        return _first_impacts(made, mass[index], body)
 
     past = solution.history
     leaving, lost = past["leaving"][some, 0], np.sum(past["lost"][some, 0], axis=1)
@@ -77,11 +77,13 @@ def _launched_from(cases: Batch, outset: np.ndarray) -> np.ndarray:
     return np.where(known, np.minimum(interaction_range, outset), interaction_range) + CLEARANCE
 
 
-def _first_impacts(made: BatchSolution, mass: np.ndarray, weight: np.ndarray) -> FirstImpacts:
+def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstImpacts:
     """What became of bodies that were launched; those that were not integrated are not known."""
     failed = ENDS.index(Outcome.FAILED)
     contact_end = made.measures["contact_end"]
     known = (made.made > 0) & (made.outcome != failed) & np.isfinite(contact_end)
     speed = np.where(known, made.measures["impact_speed"], np.nan)
-    excess = made.history["leaving"][:, 0] - weight * contact_end
+    ends = jnp.asarray(contact_end)
+    potential = jax.vmap(lambda body, place: body.load.potential(place))(body, ends)
+    excess = made.history["leaving"][:, 0] - np.asarray(potential)
     return FirstImpacts.of(speed, made.measures["captured"].astype(bool), excess, mass)

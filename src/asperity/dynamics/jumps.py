@@ -1,0 +1,222 @@
+"""Static jump-in and jump-out: where a spring can no longer hold a body against its contact.
+
+Its base is moved so slowly that the body stays at rest. With the spring's stiffness k, the rest is
+stable while dF/dd < k. Where dF/dd comes to k, or the force jumps, the body jumps along the
+spring's line F + k (d - separation) to where the contact carries it again. Israelachvili,
+Intermolecular and Surface Forces (2011), chapter 12.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+_STEP, _OFF = 1e-5, 1e-9  # of the force near by, of the largest: more is a jump of the force
+_ROUNDING = 1e-11  # of the force: a spring whose force changes by less over a piece holds there
+_LOOKS = np.linspace(0.0, 1.0, 129)[1:]  # on a piece for where the contact carries a body again
+_REAL = 1e-9  # imaginary part of a root that counts as none
+
+
+class Segment(NamedTuple):
+    """A piece of a force curve, used from ``low`` to ``high`` [m], ascending.
+
+    Attributes
+    ----------
+    low, high
+        Ends of what is used of it.
+    ends
+        Separations between which its polynomials are defined.
+    force, stored
+        Chebyshev coefficients of force [N] and stored energy [J].
+    """
+
+    low: float
+    high: float
+    ends: tuple[float, float]
+    force: np.ndarray
+    stored: np.ndarray
+
+    def value(self, coefficients: np.ndarray, place: np.ndarray | float) -> np.ndarray:
+        """A polynomial at places [m]."""
+        low, high = self.ends
+        found: np.ndarray = chebyshev.chebval(
+            (2.0 * np.asarray(place) - low - high) / (high - low), coefficients
+        )
+        return found
+
+    @property
+    def size(self) -> float:
+        """Size of its force [N]."""
+        return float(np.max(np.abs(self.force)))
+
+    @property
+    def slope(self) -> np.ndarray:
+        """Coefficients of the derivative of the force [N/m]."""
+        low, high = self.ends
+        slope: np.ndarray = chebyshev.chebder(self.force) * 2.0 / (high - low)
+        return slope
+
+    def roots(self, coefficients: np.ndarray) -> np.ndarray:
+        """Zeros of a polynomial on what is used, ascending [m]."""
+        low, high = self.ends
+        kept = np.trim_zeros(coefficients, "b")
+        if kept.size < 2:
+            return np.zeros(0)
+        found = chebyshev.chebroots(kept)
+        real = found.real[np.abs(found.imag) < _REAL]
+        places = 0.5 * (low + high) + 0.5 * (high - low) * real
+        return np.sort(places[(places >= self.low) & (places <= self.high)])
+
+
+class Jump(NamedTuple):
+    """A jump of a body on a spring whose base stands still meanwhile.
+
+    Attributes
+    ----------
+    separation, force
+        Rigid separation [m] and contact force [N] before it.
+    landing_separation, landing_force
+        The same where the body comes to rest.
+    energy
+        What contact and spring hold less of afterwards [J].
+    """
+
+    separation: float
+    force: float
+    landing_separation: float
+    landing_force: float
+    energy: float
+
+
+def jumps(
+    inward: list[Segment], outward: list[Segment], stiffness: float
+) -> dict[str, dict[str, float] | str | None]:
+    """Jump-in and jump-out of a body on a spring, as plain numbers.
+
+    Parameters
+    ----------
+    inward, outward
+        The force curve while loading, all of it, and while unloading from the deepest point, each
+        ascending in separation.
+    stiffness
+        Stiffness of the spring [N/m].
+
+    Returns
+    -------
+    ``in`` and ``out``, the fields of :class:`Jump` or None where there is none, and ``note``: why
+    not, or None.
+    """
+    pulled_in = first_jump(inward, stiffness, False)
+    note, let_go, deepest = None, None, outward[0].low
+    if pulled_in is not None and deepest > pulled_in.landing_separation:
+        note = (
+            f"jump-out not sought: loading ends at {deepest * 1e9:.4g} nm, before the jump-in does"
+        )
+    else:
+        let_go = first_jump(outward, stiffness, True)
+        missing = [name for name, one in (("in", pulled_in), ("out", let_go)) if one is None]
+        if missing:
+            largest = largest_slope(
+                [way for way, one in ((inward, pulled_in), (outward, let_go)) if one is None]
+            )
+            note = (
+                f"no jump-{' and no jump-'.join(missing)}: the stiffness of {stiffness:.4g} N/m "
+                f"is above the largest dF/dd, {largest:.4g} N/m"
+            )
+    plain = [
+        None if one is None else {name: float(value) for name, value in one._asdict().items()}
+        for one in (pulled_in, let_go)
+    ]
+    return {"in": plain[0], "out": plain[1], "note": note}
+
+
+def largest_slope(ways: list[list[Segment]]) -> float:
+    """Largest derivative of the force with the separation on some ways [N/m]."""
+    found = [0.0]
+    for segment in (segment for way in ways for segment in way):
+        ends = np.array([segment.low, segment.high])
+        turns = segment.roots(chebyshev.chebder(segment.slope))
+        slopes = segment.value(segment.slope, np.concatenate([ends, turns]))
+        found.append(float(np.max(slopes)))
+    return max(found)
+
+
+def first_jump(way: list[Segment], stiffness: float, unloading: bool) -> Jump | None:
+    """The first jump on a way, None where the spring holds the body all along it.
+
+    Parameters
+    ----------
+    way
+        The force curve along it, ascending in separation.
+    stiffness
+        Stiffness of the spring [N/m].
+    unloading
+        Whether the body is drawn outwards; else it comes in from the last segment.
+    """
+    ordered = way if unloading else way[::-1]
+    off = _OFF * max(one.size for one in way)
+    before: float | None = None
+    for number, segment in enumerate(ordered):
+        near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
+        force = float(segment.value(segment.force, near))
+        step = 0.0 if before is None else (force - before) * (1.0 if unloading else -1.0)
+        if before is not None and step > max(_STEP * abs(before), _STEP * segment.size, off):
+            start = near, before
+            return _landing(ordered[number:], stiffness, start, ordered[number - 1], unloading)
+        place = _unstable(segment, stiffness, near, unloading)
+        if place is not None:
+            at = float(segment.value(segment.force, place))
+            return _landing(ordered[number:], stiffness, (place, at), segment, unloading)
+        before = float(segment.value(segment.force, far))
+    return None
+
+
+def _unstable(segment: Segment, stiffness: float, near: float, unloading: bool) -> float | None:
+    """The first place on a segment at which dF/dd rises to the stiffness [m]."""
+    slope = segment.slope
+    # Pieces next to a kink may be so narrow that rounding of the force is all of their slope.
+    if _ROUNDING * segment.size > stiffness * (segment.ends[1] - segment.ends[0]):
+        return None
+    if float(segment.value(slope, near)) > stiffness:
+        return near
+    above = slope.copy()
+    above[0] -= stiffness
+    found = segment.roots(above)
+    return None if not found.size else float(found[0] if unloading else found[-1])
+
+
+def _landing(
+    ordered: list[Segment],
+    stiffness: float,
+    start: tuple[float, float],
+    before: Segment,
+    unloading: bool,
+) -> Jump | None:
+    """The jump from a place [m] and its force [N] on to where contact and spring balance again."""
+    place, force = start
+    stored = float(before.value(before.stored, place))
+    for segment in ordered:
+        net = segment.force.copy()
+        low, high = segment.ends
+        # Less the spring's line, which falls by its stiffness over a distance outwards.
+        net[0] -= force + stiffness * (0.5 * (low + high) - place)
+        net[1] -= stiffness * 0.5 * (high - low)
+        near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
+        near = np.clip(place, min(near, far), max(near, far))
+        looks = near + (far - near) * _LOOKS
+        held = segment.value(net, looks) * (1.0 if unloading else -1.0) < 0.0
+        if not np.any(held):
+            continue
+        first = int(np.argmax(held))
+        inside = near if first == 0 else looks[first - 1]
+        roots = segment.roots(net)
+        between = (roots - inside) * (roots - looks[first]) <= 0.0
+        landing = float(roots[between][-1 if unloading else 0] if np.any(between) else inside)
+        after = float(segment.value(segment.stored, landing))
+        way = place - landing
+        energy = stored - after + force * way - 0.5 * stiffness * way**2
+        there = float(segment.value(segment.force, landing))
+        return Jump(place, force, landing, there, energy)
+    return None
