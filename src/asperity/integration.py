@@ -21,10 +21,9 @@ from .dynamics.release import TRIES, at_release, farther, negligible_force
 from .dynamics.static_equilibrium import Reference
 from .dynamics.stepped_motion import integrate_stepped
 from .dynamics.stepped_phase import Ended
-from .dynamics.time_series import compile_ahead
 from .errors import InputError, Outcome, SimulationError
 from .numerics.compilation import AT_ONCE, Program
-from .results.conversion import Solution, measure_ahead
+from .results.conversion import Solution
 
 Report = Callable[[float, str], None]
 
@@ -87,7 +86,7 @@ def integrate(
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
     limits = Limits.of(problem.inputs.tolerance)
-    problem, (contact, table, reference) = _released(problem, limits, report, drawn=True, many=many)
+    problem, (contact, table, reference) = _released(problem, limits, report, many=many)
     return integrate_prepared(problem, contact, (table, reference), limits, report, stop)
 
 
@@ -136,7 +135,8 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
         As :func:`solve`.
     """
     limits = Limits.of(dataclasses.replace(problem.inputs.tolerance, max_impacts=1))
-    problem, (contact, table, reference) = _released(problem, limits, report, drawn=False)
+    problem = problem._replace(delayed=None, relaxation=None)  # it has all the time that it needs
+    problem, (contact, table, reference) = _released(problem, limits, report)
     body = problem.body
     report(0.3, "first impact")
     first, origin = _start(contact, body, table)
@@ -148,7 +148,7 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
 
 
 def _released(
-    problem: Problem, limits: Limits, report: Report, *, drawn: bool, many: bool = False
+    problem: Problem, limits: Limits, report: Report, *, many: bool = False
 ) -> tuple[Problem, tuple[Contact, Table, Reference]]:
     """A problem whose body is released outside contact, and its curves.
 
@@ -157,7 +157,7 @@ def _released(
     """
     chosen = problem.inputs.chosen_release
     for _ in range(TRIES):
-        curves = _prepared(problem, limits, report, drawn=drawn, many=many)
+        curves = _prepared(problem, limits, report, many=many)
         if not chosen:
             break
         body, table = problem.body, curves[1]
@@ -173,28 +173,23 @@ def _released(
 
 
 def _prepared(
-    problem: Problem,
-    limits: Limits,
-    report: Report,
-    *,
-    drawn: bool,
-    many: bool = False,
+    problem: Problem, limits: Limits, report: Report, *, many: bool = False
 ) -> tuple[Contact, Table, Reference]:
     """Tables whose interpolation error meets the tolerance, by more panels where needed.
 
-    Meanwhile the motion compiles, with its drawing where it is to be drawn.
+    Meanwhile the impacts compile.
     """
     tolerance = problem.inputs.tolerance.relative
     allowed, errors = tolerance, [np.inf, np.inf]
     for factor in _REFINEMENTS:
         report(0.02, "tracing")
         contact = problem.contact.refined(factor)
-        if not drawn or (problem.delayed is None and problem.relaxation is None):
-            _compile(contact, problem.body, limits, drawn=drawn, many=many)
-        else:
-            _preparing(contact, many).ahead(contact, problem.body, many)
+        preparing = _preparing(contact, many)
+        shapes = preparing.ahead(contact, problem.body, many)
+        if problem.delayed is None and problem.relaxation is None:
+            _compile_impacts(contact, problem.body, shapes, limits)
         report(0.04, COMPILATION)
-        prepared = _preparing(contact, many).ready(contact, problem.body, many)
+        prepared = preparing.ready(contact, problem.body, many)
         report(0.06, "force curves")
         table, reference = prepared()
         error, allowed = float(table.error), max(tolerance, contact.error_floor)
@@ -215,18 +210,12 @@ def _prepared(
     return contact, table, reference
 
 
-def _compile(
-    contact: Contact, body: Body, limits: Limits, *, drawn: bool, many: bool = False
+def _compile_impacts(
+    contact: Contact, body: Body, curves: tuple[Table, Reference], limits: Limits
 ) -> None:
-    """Compile the curves, the motion and, where wanted, its drawing and measures side by side."""
-    table, reference = _preparing(contact, many).ahead(contact, body, many)
-    progress, origin = _start.ahead(contact, body, table)
-    end, impacts = _integrate_some.ahead(
-        contact, body, table, reference, origin, progress, limits, _at_once(contact, body)
-    )
-    if drawn:
-        compile_ahead(body, table, impacts)
-        measure_ahead(contact, body, Motion(impacts, end, table, reference, origin))
+    """Compile the loop over impacts in a thread, for curves or their shapes."""
+    progress, origin = _start.ahead(contact, body, curves[0])
+    _integrate_some.ahead(contact, body, *curves, origin, progress, limits, _at_once(contact, body))
 
 
 def _preparing(contact: Contact, many: bool) -> Program[..., tuple[Table, Reference]]:

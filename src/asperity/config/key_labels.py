@@ -111,8 +111,8 @@ def label(key: str) -> str:
     found = LABELS.get(key)
     if found is not None:
         return found
-    *above, last = key.split(".")
-    name = ".".join(above[1:])
-    if above and above[0] == "materials" and (what := LABELS.get(f"materials.{last}")) is not None:
-        return f"{what} of {name}"
-    return last.replace("_", " ")
+    table, _, rest = key.partition(".")
+    material, _, last = rest.rpartition(".")
+    if table == "materials" and material:
+        return f"{label(f'materials.{last}')} of {material}"
+    return key.rpartition(".")[2].replace("_", " ")

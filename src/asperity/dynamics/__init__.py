@@ -2,13 +2,16 @@
 
 `problem`: what moves. `record`: what is kept of a motion. `motion`: the loop over impacts.
 `motion_end`: when and how a motion ends.
-`phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`:
-the same with gas (`gas_film`) or radiated waves (`wave_radiation`).
+`external_forces`: what acts on the body besides its contact; `gas_film`, `wave_radiation`,
+`suspension`: one mechanism each.
+`phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`,
+`resolved_pieces`, `overdamped`: the same with drag.
 `stepped_motion`: the loop over impacts of motions in time, of `delayed_bounce` (by `stepped_phase`,
 `time_stepping`, `time_collocation`) and on `viscoelastic` half-spaces.
 `stepped_record`: the records of such motions.
 `curve_table`, `scanning_table`: force curves as Chebyshev polynomials.
-`static_equilibrium`, `release`, `unloading`, `capture_edges`: single questions to the curves.
+`static_equilibrium`, `release`, `unloading`, `quasi_static`, `jumps`, `capture_edges`: single
+questions to the curves.
 """
 
 from .curve_table import Table, tabulate

@@ -13,9 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-_STEP, _OFF = 1e-5, 1e-9  # of the force near by, of the largest: more is a jump of the force
-_ROUNDING = 1e-11  # of the force: a spring whose force changes by less over a piece holds there
+_STEP = 1e-5  # of the force near by: more is a jump of the force
+_CUT = 2e-6  # of the largest pull: less is where forces are cut off, at the end of their range
+_ROUNDING = 1e-11  # of the force: what a piece may be off by
 _LOOKS = np.linspace(0.0, 1.0, 129)[1:]  # on a piece for where the contact carries a body again
+_SEEN = 33  # places on a piece
 _REAL = 1e-9  # imaginary part of a root that counts as none
 
 
@@ -50,6 +52,17 @@ class Segment(NamedTuple):
     def size(self) -> float:
         """Size of its force [N]."""
         return float(np.max(np.abs(self.force)))
+
+    @property
+    def noise(self) -> float:
+        """What rounding may make of its slope [N/m]: all, on narrow pieces next to a kink."""
+        return _ROUNDING * self.size / (self.ends[1] - self.ends[0])
+
+    @property
+    def pull(self) -> float:
+        """Its largest attraction [N], about."""
+        seen = self.value(self.force, np.linspace(self.low, self.high, _SEEN))
+        return max(-float(np.min(seen)), 0.0)
 
     @property
     def slope(self) -> np.ndarray:
@@ -139,7 +152,7 @@ def largest_slope(ways: list[list[Segment]]) -> float:
         ends = np.array([segment.low, segment.high])
         turns = segment.roots(chebyshev.chebder(segment.slope))
         slopes = segment.value(segment.slope, np.concatenate([ends, turns]))
-        found.append(float(np.max(slopes)))
+        found.append(float(np.max(slopes)) - segment.noise)
     return max(found)
 
 
@@ -156,7 +169,7 @@ def first_jump(way: list[Segment], stiffness: float, unloading: bool) -> Jump | 
         Whether the body is drawn outwards; else it comes in from the last segment.
     """
     ordered = way if unloading else way[::-1]
-    off = _OFF * max(one.size for one in way)
+    off = _CUT * max(one.pull for one in way)
     before: float | None = None
     for number, segment in enumerate(ordered):
         near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
@@ -176,8 +189,7 @@ def first_jump(way: list[Segment], stiffness: float, unloading: bool) -> Jump | 
 def _unstable(segment: Segment, stiffness: float, near: float, unloading: bool) -> float | None:
     """The first place on a segment at which dF/dd rises to the stiffness [m]."""
     slope = segment.slope
-    # Pieces next to a kink may be so narrow that rounding of the force is all of their slope.
-    if _ROUNDING * segment.size > stiffness * (segment.ends[1] - segment.ends[0]):
+    if segment.noise > stiffness:
         return None
     if float(segment.value(slope, near)) > stiffness:
         return near

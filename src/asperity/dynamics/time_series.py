@@ -96,15 +96,6 @@ def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
     return latest if stops or back <= _ROUNDING * latest[-1] else time
 
 
-def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
-    """Compile what :func:`sample` needs, for arguments or their shapes, in a thread."""
-    phase, ended = jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype),
-        (impacts.fall, impacts.closest_approach_time),
-    )
-    _draw.ahead(body, table, phase, ended, np.asarray(False), _places(table))
-
-
 def _places(table: Table) -> int:
     """Samples on each piece of the curves, besides those close to the turning points."""
     return 1 + 2 * _SAMPLES // table.ends.shape[0]

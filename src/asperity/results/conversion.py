@@ -34,8 +34,8 @@ from ..regimes.validity import (
 from .measures import FirstContact, Measures, least_peak, measure
 from .result import Result
 
-_ROWS, _ROWS_DRAGGED = 256, 32
-"""Rows of impacts that are measured at least: more than most motions have. With drag each costs."""
+_ROWS = 32
+"""Rows of impacts that are measured at least: more than most motions have."""
 
 _measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
@@ -54,20 +54,6 @@ class Solution(NamedTuple):
     body: Body | None = None
 
 
-def measure_ahead(contact: Contact, body: Body, motion: Motion) -> None:
-    """Compile what measures such a motion, in a thread; shapes serve in place of arrays."""
-    rows = jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct((_least_rows(body), *leaf.shape[1:]), leaf.dtype),
-        motion.impacts,
-    )
-    _measure.ahead(motion._replace(impacts=rows), body, None, None)
-    losses.ahead(contact)
-
-
-def _least_rows(body: Body) -> int:
-    return _ROWS_DRAGGED if body.damped_apart else _ROWS
-
-
 def contact_end(table: Table, peak: float) -> float:
     """The end of a contact whose largest force is ``peak`` [N]: a separation [m]."""
     return float(_end_of_contact(table, as_float64(peak)))
@@ -77,7 +63,7 @@ def measured(solution: Solution, body: Body) -> Measures:
     """Measures over a power of two of rows, seldom more than the first: one compilation."""
     motion, body = solution.motion, solution.body or body
     rows = motion.impacts.made.shape[0]
-    size = max(_least_rows(body), 1 << (rows - 1).bit_length())
+    size = max(_ROWS, 1 << (rows - 1).bit_length())
 
     def pad(leaf: Any) -> Any:
         return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])

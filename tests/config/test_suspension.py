@@ -1,0 +1,151 @@
+"""A case of a body on a spring: what is refused, what it answers, a study of it, its record."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.config.case_file import load
+from asperity.errors import InputError, Outcome
+from asperity.sweeps.compute.batch import compute
+from asperity.sweeps.study.study import parse
+
+SWITCH = """
+schema = 1
+[body]
+radius = "5 um"
+material = "silica"
+[counterface]
+material = "silicon"
+[adhesion]
+model = "jkr"
+work = "50 mJ/m^2"
+[suspension]
+stiffness = "20 N/m"
+damping = "20 nN s/m"
+rest_gap = "100 nm"
+[impact]
+release_separation = "300 nm"
+gravity = "9.81 m/s^2"
+[numerics]
+max_impacts = 5
+"""
+
+
+def refused(changes):
+    with pytest.raises(InputError) as error:
+        load(SWITCH).replace(changes)
+    return str(error.value), error.value.key
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "says"),
+    [
+        ({"suspension.stiffness": "0 N/m"}, "suspension.stiffness", "must be positive"),
+        ({"suspension.stiffness": "2 GN/m"}, "suspension.stiffness", "must lie in [1e-09, 1e+09]"),
+        ({"suspension.stiffness": "1 N"}, "suspension.stiffness", "a force per length"),
+        ({"suspension.stiffness": None}, "suspension.stiffness", "is missing"),
+        ({"suspension.damping": "-1 N s/m"}, "suspension.damping", "must not be negative"),
+        ({"suspension.rest_gap": "2 m"}, "suspension.rest_gap", "must lie in [-1, 1] m"),
+        ({"suspension.rest_gap": None}, "suspension.rest_gap", "is missing"),
+        (
+            {"impact.release_separation": None, "impact.speed": "1 m/s"},
+            "impact.release_separation",
+            "since the spring's force depends on it",
+        ),
+        (
+            {"impact.release_separation": "100 nm", "impact.gravity": "0 m/s^2"},
+            "impact.release_separation",
+            "must differ from 100 nm where there is no `speed`",
+        ),
+        (
+            {
+                "viscoelasticity.model": "standard-linear-solid",
+                "viscoelasticity.relaxed_modulus_ratio": 0.5,
+                "viscoelasticity.relaxation_time": "1 us",
+                "counterface.deformation": "half-space",
+                "adhesion": None,
+            },
+            "suspension",
+            "knows no spring",
+        ),
+    ],
+)
+def test_what_a_suspension_cannot_be_is_refused_with_its_key(changes, key, says):
+    text, found = refused(changes)
+    assert says in text
+    assert found == key
+
+
+def test_menisci_that_take_time_are_refused_beside_a_spring():
+    wet = {
+        "capillary.model": "equilibrium",
+        "capillary.liquid": "water",
+        "capillary.humidity": 0.6,
+        "capillary.temperature": "20 degC",
+        "capillary.contact_angle": "30 deg",
+        "capillary.formation_time": "1 us",
+    }
+    text, key = refused(wet)
+    assert "`formation_time` must be absent with [suspension]" in text
+    assert key == "capillary.formation_time"
+
+
+def test_the_publication_has_no_spring():
+    case = asperity.load("published")
+    with pytest.raises(InputError, match="whose body is free"):
+        case.replace({"suspension.stiffness": "1 N/m", "suspension.rest_gap": "0 nm"})
+
+
+def test_a_misspelt_key_is_answered_with_the_right_one():
+    with pytest.raises(InputError, match="did you mean 'stiffness'"):
+        load(SWITCH.replace("stiffness =", "stifness ="))
+
+
+def test_a_spring_alone_may_set_a_body_in_motion():
+    """Without gravity and without a speed: only beside a spring."""
+    resting = {"impact.gravity": "0 m/s^2"}
+    assert load(SWITCH).replace(resting).suspension is not None
+    assert "the body would never fall" in refused({**resting, "suspension": None})[0]
+
+
+@pytest.fixture(scope="module")
+def switch():
+    return asperity.solve(load(SWITCH))
+
+
+def test_a_switch_bounces_and_says_what_its_dashpot_took(switch):
+    lost = switch.ledger["lost"]
+    assert switch.outcome is Outcome.MAX_IMPACTS
+    assert set(lost) == {"adhesion", "damping"}
+    assert switch.ledger["energy_balance_error"] < 1e-10
+    total = sum(switch.forces[name] for name in ("contact", "weight", "spring", "damping"))
+    np.testing.assert_allclose(total, switch.forces["total"], rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(
+        switch.forces["spring"], -20.0 * (switch.separation - 100e-9), rtol=1e-12, atol=1e-18
+    )
+    whole = sum(switch.energies[name] for name in ("kinetic", "potential", "stored"))
+    whole = whole + sum(np.asarray(switch.energies[f"lost_{name}"]) for name in lost)
+    np.testing.assert_allclose(whole, switch.ledger["initial"], rtol=1e-9)
+
+
+def test_a_record_reads_back(switch, tmp_path):
+    switch.save(tmp_path / "out")
+    again = asperity.read(tmp_path / "out" / "record.nc")
+    assert again.case == switch.case
+    np.testing.assert_array_equal(again.forces["spring"], switch.forces["spring"])
+
+
+def test_a_study_of_springs_has_the_numbers_of_its_cases(switch):
+    study = parse(
+        "schema = 1\n"
+        'keep = ["captured", "restitution", "lost_damping", "lost_adhesion", "energy_lost"]\n'
+        '[axes]\n"suspension.stiffness" = {values = ["20 N/m", "21 N/m"]}\n'
+        + SWITCH.replace("schema = 1\n", "").replace("[", "[base.")
+    )
+    columns, _ = compute(study, 0)
+    for name in ("damping", "adhesion"):
+        assert columns[f"lost_{name}"][0] == pytest.approx(switch.ledger["lost"][name], rel=1e-9)
+    assert columns["lost_damping"][1] > 1.01 * columns["lost_damping"][0]
+    assert columns["energy_balance_error"].max() < 1e-10
