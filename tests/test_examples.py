@@ -39,6 +39,7 @@ def test_there_is_an_example_for_each_question():
         "jkr-stick",
         "measured-surface",
         "published-exact",
+        "switch",
         "wet-drop",
         "wet-surface",
         "yielding-drop",
@@ -97,6 +98,17 @@ def test_wet_drop_leaves_its_first_impact_and_is_captured_by_menisci_later(solve
     assert measures["restitution"][0] == pytest.approx(0.811883, abs=1e-5)
     assert measures["time_to_rest"] == pytest.approx(3.641e-3, rel=1e-3)
     assert set(result.ledger["lost"]) == {"capillary"}
+
+
+def test_a_switch_sticks_at_its_third_touch(solved):
+    result = solved("switch")
+    assert result.outcome is Outcome.REST
+    assert result.measures["restitution"][:3] == pytest.approx([0.8044, 0.4835, 0.0], abs=1e-4)
+    assert not result.measures["captured"]
+    lost = result.ledger["lost"]
+    assert lost["damping"] == pytest.approx(0.8966 * result.ledger["initial"], rel=1e-3)
+    stiff = result.case.replace({"suspension.stiffness": "2 N/m"})
+    assert asperity.solve(stiff, critical=False).measures["capture_time"] is None
 
 
 def test_glass_bead_is_captured_by_menisci_at_its_sixth_touch(solved):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
 
 from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import Pieces
-from .drag import POINTS, SHARES, Stretch, course_on, turning_place, whole_of
+from .drag import POINTS, SHARES, Course, Stretch, course_on, turning_place, whole_of
 from .external_forces import Load
 from .phase import TurningPoint, Work, time_along, work_along
 from .record import Body
@@ -80,12 +81,7 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
         Kinetic energy at the start [J].
     """
     work = work_along(pieces, kinetic, body.load)
-    count = pieces.low.shape[0]
-    none = jnp.zeros(len(body.mechanisms))
-    first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
-    gone, entered = jax.lax.scan(
-        lambda gone, k: _over(body, work, gone, k), first, jnp.arange(count)
-    )
+    gone, entered = _walk(body, work, lambda gone, *_: (gone.kinetic, gone.time, gone.dissipated))
     piece = Stretch.of(work, gone.piece)
     found = jnp.logical_not(gone.going)
     stop = turning_place(body, piece, gone.kinetic)
@@ -107,24 +103,45 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
     return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
 
-def _over(
-    body: Body, work: Work, gone: Gone, k: jax.Array
-) -> tuple[Gone, tuple[jax.Array, jax.Array, jax.Array]]:
-    """Piece ``k``, passed by a body that still goes; and energy, time, loss at its entry."""
-    piece = Stretch.of(work, k)
-    course = course_on(body, piece, gone.kinetic, piece.leave)
-    on = gone.going & course.passed
-    after = Gone(
-        kinetic=jnp.where(on, course.kinetic, gone.kinetic),
-        time=gone.time + jnp.where(on, course.duration, 0.0),
-        dissipated=gone.dissipated + jnp.where(on, course.lost, 0.0),
-        going=on,
-        piece=jnp.where(gone.going, k, gone.piece),
-        maximum_kinetic=jnp.maximum(
-            gone.maximum_kinetic, jnp.where(on, course.maximum_kinetic, 0.0)
-        ),
-    )
-    return after, (gone.kinetic, gone.time, gone.dissipated)
+Seen = TypeVar("Seen")
+
+
+def _walk(
+    body: Body, work: Work, see: Callable[[Gone, Stretch, Course], Seen]
+) -> tuple[Gone, Seen]:
+    """From piece to piece until the body turns, and what is seen of each on the way.
+
+    What is seen of empty pieces, and of those beyond the turn, is as if they took no time.
+    """
+    kinetic = work.kinetic[0]
+    none = jnp.zeros(len(body.drags))
+    first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
+
+    def over(gone: Gone, k: jax.Array) -> tuple[Gone, Seen]:
+        piece = Stretch.of(work, k)
+
+        def move() -> tuple[Gone, Seen]:
+            course = course_on(body, piece, gone.kinetic, piece.leave)
+            on = course.passed
+            after = Gone(
+                kinetic=jnp.where(on, course.kinetic, gone.kinetic),
+                time=gone.time + jnp.where(on, course.duration, 0.0),
+                dissipated=gone.dissipated + jnp.where(on, course.lost, 0.0),
+                going=on,
+                piece=k,
+                maximum_kinetic=jnp.maximum(
+                    gone.maximum_kinetic, jnp.where(on, course.maximum_kinetic, 0.0)
+                ),
+            )
+            return after, see(gone, piece, course)
+
+        def stay() -> tuple[Gone, Seen]:
+            on = gone._replace(piece=jnp.where(gone.going, k, gone.piece))
+            return on, see(gone, piece, Course.none(body, gone.kinetic))
+
+        return jax.lax.cond(gone.going & (piece.leave != piece.enter), move, stay)
+
+    return jax.lax.scan(over, first, jnp.arange(work.pieces.low.shape[0]))
 
 
 def _pushed_back(piece: Stretch, place: jax.Array, load: Load) -> jax.Array:
@@ -180,30 +197,16 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
     Each of shape (pieces, POINTS + 1), the last two with an axis of drags more, at SHARES of
     every piece and at its end.
     """
-    work = work_along(pieces, kinetic, body.load)
-    entered = pass_through(body, pieces, kinetic).kinetic
 
-    def one(k: jax.Array, entry: jax.Array) -> tuple[jax.Array, ...]:
-        piece = Stretch.of(work, k)
-        course = course_on(body, piece, entry, piece.leave)
-        places = piece.enter + (piece.leave - piece.enter) * SHARES
+    def see(gone: Gone, piece: Stretch, course: Course) -> tuple[jax.Array, ...]:
+        places = jnp.append(piece.enter + (piece.leave - piece.enter) * SHARES, piece.leave)
         last = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
-        places, speeds = jnp.append(places, piece.leave), jnp.append(course.speed, last)
-        return (
-            places,
-            jnp.append(course.time, course.duration),
-            speeds,
-            jnp.column_stack([course.dissipated, course.lost]).T,
-            piece.drags(body, places, speeds).T,
-        )
+        speeds = jnp.append(course.speed, last)
+        heats = gone.dissipated + jnp.column_stack([course.dissipated, course.lost]).T
+        times = gone.time + jnp.append(course.time, course.duration)
+        return places, times, speeds, heats, piece.drags(body, places, speeds).T
 
-    places, times, speeds, heats, drags = jax.vmap(one)(jnp.arange(entered.shape[0]), entered)
-
-    def summed(values: jax.Array) -> jax.Array:
-        before = jnp.cumsum(values[:, -1], axis=0) - values[:, -1]
-        return values + before[:, None]
-
-    return places, summed(times), speeds, summed(heats), drags
+    return _walk(body, work_along(pieces, kinetic, body.load), see)[1]
 
 
 def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
@@ -215,21 +218,17 @@ def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
     return pieces._replace(enter=until(pieces.enter), leave=until(pieces.leave))
 
 
-def kinetic_at(
+def pass_by(
     body: Body, pieces: Pieces, kinetic: jax.Array, unloading: jax.Array, place: jax.Array
-) -> jax.Array:
-    """Kinetic energy [J] with which a body passes a place [m] of a phase."""
-    pieces, _ = resolved(body, pieces, kinetic)
-    return pass_through(body, cut(pieces, unloading, place), kinetic).turn.kinetic
+) -> tuple[jax.Array, jax.Array]:
+    """Kinetic energy [J] with which a body passes a place [m] of a phase, and when [s].
 
-
-def time_to(
-    body: Body, pieces: Pieces, kinetic: jax.Array, unloading: bool, place: jax.Array
-) -> jax.Array:
-    """Time [s] from the start of a phase until it passes a place [m], with drag or without."""
-    passed = cut(pieces, jnp.asarray(unloading), place)
-    if body.damped:
-        passed = resolved(body, passed, kinetic)[0] if body.forces else passed
-        return pass_through(body, passed, kinetic).duration
-    work = work_along(passed, kinetic, body.load)
-    return time_along(work, (passed.enter, passed.leave), body.mass)
+    Since the start of the phase. Without energy where it turns before.
+    """
+    if not body.damped:
+        passed = cut(pieces, unloading, place)
+        work = work_along(passed, kinetic, body.load)
+        return work.kinetic[-1], time_along(work, (passed.enter, passed.leave), body.mass)
+    passed = cut(resolved(body, pieces, kinetic)[0], unloading, place)
+    gone, _ = _walk(body, work_along(passed, kinetic, body.load), lambda *_: ())
+    return jnp.where(gone.going, gone.kinetic, 0.0), gone.time

@@ -83,6 +83,13 @@ class Course(NamedTuple):
     passed: jax.Array
     maximum_kinetic: jax.Array
 
+    @classmethod
+    def none(cls, body: Body, kinetic: jax.Array) -> Course:
+        """On a piece without length, of a body with a kinetic energy [J]."""
+        still, drags = jnp.zeros(POINTS), jnp.zeros(len(body.drags))
+        taken = jnp.zeros((len(body.drags), POINTS))
+        return cls(still, still, taken, jnp.zeros(()), drags, kinetic, jnp.asarray(True), kinetic)
+
 
 class Stretch(NamedTuple):
     """One of :class:`Pieces`, with the integral of its force."""

@@ -10,6 +10,7 @@ from .._jax import jax, jnp
 from ..numerics.polynomials import chebyshev_sum, local
 from .curve_table import CENTRAL, FORCE, Pieces
 from .external_forces import Along
+from .phase import work_along
 from .record import Body
 
 _CUTS, _RATIO = 12, 4.0  # of the way by a film's gaps: how many, each so much wider
@@ -18,6 +19,7 @@ _SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thi
 _EQUILIBRIA = 2  # to which a body may creep on one way: the first of them
 _LOOKS = np.linspace(0.0, 1.0, 9)  # on a piece for them
 _HALVINGS = 50
+_LIGHT = 0.5  # of the largest momentum: a drag that takes less over a way turns no body slowly
 _NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the way: cuts about its start and about them
 
 
@@ -69,21 +71,26 @@ def _to_rest(body: Body, pieces: Pieces, kinetic: jax.Array, ahead: jax.Array) -
 
     From its start, or from where drag has taken the momentum that it starts with, it goes on at a
     speed at which drag balances the other forces. This falls to nothing at an equilibrium. A body
-    without a spring is at rest in contact alone, where pieces are short.
+    without a spring is at rest in contact alone, where pieces are short. Where drag takes little of
+    the momentum nothing is cut.
     """
     if not (body.forces and body.damped_apart):
         return []
     pieces, body, kinetic = jax.lax.stop_gradient((pieces, body, kinetic))
     start, end = pieces.enter[0], pieces.leave[-1]
-    row = chebyshev_sum(pieces.values[0], local(pieces.low[0], pieces.high[0], start)[None])
-    drag = jnp.sum(body.resistances(Along.apart(row[CENTRAL])))
-    momentum = jnp.sqrt(2.0 * body.mass * kinetic)
-    spent = start + ahead * momentum / jnp.where(drag > 0.0, drag, 1.0)
+    both = np.array([0, -1])
+    ends = local(pieces.low[both], pieces.high[both], jnp.stack([start, end]))
+    central = jax.vmap(chebyshev_sum)(pieces.values[both, :, CENTRAL], ends)
+    drags = jnp.sum(body.resistances(Along.apart(central)), axis=0)
+    spent = start + ahead * jnp.sqrt(2.0 * body.mass * kinetic) / drags[0]
+    energy = jnp.max(work_along(pieces, kinetic, body.load).kinetic)
+    heavy = jnp.max(drags) * jnp.abs(end - start) > _LIGHT * jnp.sqrt(2.0 * body.mass * energy)
     places = jnp.append(_equilibria(body, pieces, ahead), spent)
     about = places[:, None] + jnp.abs(places - start)[:, None] * _NEARER
     before = places[:, None] - jnp.abs(places - start)[:, None] * _NEARER
     begin = start + (end - start) * _NEARER
     cuts = jnp.concatenate([places, about.ravel(), before.ravel(), begin])
+    cuts = jnp.where(heavy, cuts, end)
     return [jnp.clip(cuts, jnp.minimum(start, end), jnp.maximum(start, end))]
 
 

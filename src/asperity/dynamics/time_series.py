@@ -117,6 +117,8 @@ def _draw_all(
     def one(phase: Phase, end: jax.Array) -> tuple[jax.Array, ...]:
         return _draw_one(body, table, phase, end, unloading, places)
 
+    if body.damped:  # phases of few pieces do not wait for those of many
+        return jax.lax.map(lambda way: one(*way), (phases, ended))
     return jax.vmap(one)(phases, ended)
 
 

@@ -12,6 +12,7 @@ from asperity.results.result import Result
 
 _PULLS = ("adhesion", "capillary")
 _SMALL = 0.2
+_VISIBLE = 0.01  # of the force of contact
 _MANY = 3
 
 
@@ -22,6 +23,7 @@ def panels(result: Result) -> Row:
     """
     shown = [name for name in ("contact", "elastic", *_PULLS) if name in result.forces]
     others = [name for name in result.forces if name not in (*shown, "weight", "total")]
+    others = [name for name in others if _seen(result, name)]
     if impacts.first_contact(result) is None and "weight" in result.forces:
         shown.append("weight")  # no contact acts yet
     row = [Panel(1.0, lambda axes: _contact(axes, result, [*shown, *others]))]
@@ -34,6 +36,13 @@ def panels(result: Result) -> Row:
     if many and (peak > 0.0 or pull > 0.0):
         row.append(Panel(0.9, lambda axes: _peaks(axes, result)))
     return row
+
+
+def _seen(result: Result, name: str) -> bool:
+    """Whether a force of the first contact is more than a line at 0 beside the contact's."""
+    points = impacts.first_contact(result) or slice(None)
+    largest, whole = (np.max(np.abs(result.forces[key][points])) for key in (name, "contact"))
+    return bool(largest >= _VISIBLE * whole)
 
 
 def _contact(axes: Axes, result: Result, names: list[str]) -> None:

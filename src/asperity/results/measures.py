@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._jax import jax, jnp
 from ..dynamics import Body, Impacts, Motion, Table
-from ..dynamics.curve_table import Pieces, join
-from ..dynamics.damped_phase import kinetic_at, time_to
+from ..dynamics.curve_table import join
+from ..dynamics.damped_phase import pass_by
 from ..dynamics.record import ENDS, Phase
 from ..dynamics.static_equilibrium import end_of_contact
 from ..dynamics.unloading import Unloading, unloading
@@ -222,8 +224,9 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
         ends = jnp.stack([body.release, rows.apex[0], rows.closest_approach[0]])
         most = jnp.max(jnp.abs(body.load.force(ends)))
         end = jnp.where(largest > _TOUCH * most, end, jnp.nan)
-    inwards = time_to(body, _ahead(table, fall, unloading=False), fall.kinetic, False, end)
-    outwards = time_to(body, _ahead(table, rise, unloading=True), rise.kinetic, True, end)
+    ways = jax.tree_util.tree_map(lambda *two: jnp.stack(two), fall, rise)
+    made = jnp.repeat(rows.made[:1], 2)
+    _, (inwards, outwards) = _passing(body, table, ways, np.array([False, True]), made, end)
     time = rows.closest_approach_time[0] - fall.begun - inwards + outwards
     return FirstContact(
         end=end,
@@ -244,21 +247,35 @@ def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
     return jnp.maximum(jnp.maximum(carried, pull_off), _LEAST * peak)
 
 
-def _ahead(table: Table, phase: Phase, *, unloading: bool) -> Pieces:
-    return join(table, phase.branch, phase.inner, phase.start, jnp.asarray(unloading))
-
-
 def passing_at(body: Body, table: Table, rows: Impacts, place: jax.Array) -> Passing:
     """Kinetic energies [J] with which each impact passes a place [m] outside contact."""
+    ways = jax.tree_util.tree_map(lambda *two: jnp.concatenate(two), rows.fall, rows.rise)
+    count = rows.made.shape[0]
+    unloading = np.repeat([False, True], count)
+    kinetic, _ = _passing(body, table, ways, unloading, jnp.tile(rows.made, 2), place)
+    return kinetic[:count], kinetic[count:]
 
-    def passing(phase: Phase, unloading: bool) -> jax.Array:
-        pieces = _ahead(table, phase, unloading=unloading)
-        return kinetic_at(body, pieces, phase.kinetic, jnp.asarray(unloading), place)
 
-    return (
-        jax.vmap(lambda phase: passing(phase, False))(rows.fall),
-        jax.vmap(lambda phase: passing(phase, True))(rows.rise),
-    )
+def _passing(
+    body: Body,
+    table: Table,
+    ways: Phase,
+    unloading: np.ndarray,
+    made: jax.Array,
+    place: jax.Array,
+) -> tuple[jax.Array, jax.Array]:
+    """Kinetic energy [J] and time [s] with which phases that were made pass a place [m]."""
+
+    def one(way: tuple[Phase, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+        phase, unloads, real = way
+        pieces = join(table, phase.branch, phase.inner, phase.start, unloads)
+        return jax.lax.cond(
+            real,
+            lambda: pass_by(body, pieces, phase.kinetic, unloads, place),
+            lambda: (jnp.zeros(()), jnp.zeros(())),
+        )
+
+    return jax.lax.map(one, (ways, jnp.asarray(unloading), made))
 
 
 def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
