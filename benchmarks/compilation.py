@@ -1,4 +1,4 @@
-"""What the two flags of compilation save: the time to an answer each way.
+"""What it saves to compile otherwise than one by one: the time to an answer each way.
 
 ``python -m benchmarks.compilation`` prints a row for each way: seconds until the first answer with
 nothing compiled, and the least of some answers after that. Each is the median of three processes,
@@ -34,7 +34,7 @@ QUESTIONS = {
     "glass-bead": ("as they come", "tabulated"),
     "published-exact": ("as they come", "tabulated"),
     "study of 64 cases": ("as they come", "tabulated"),
-    "solve glass-bead": ("side by side", "drawing waits", "one by one"),
+    "solve glass-bead": ("side by side", "one by one"),
 }
 """What is asked, and the ways in which it is computed."""
 
@@ -89,15 +89,12 @@ def _computed(way: str) -> Iterator[None]:
     from asperity.dynamics import prepare
     from asperity.sweeps.compute import batch_steps
 
-    compiled: Any = integration._compile
-    none: Any = lambda *args, **given: None  # noqa: E731
-    undrawn: Any = lambda *args, **given: compiled(*args, **{**given, "drawn": False})  # noqa: E731
+    none: Any = lambda *args: None  # noqa: E731
     alone: Any = lambda contact, body, many: prepare(contact, body)  # noqa: E731
     place, name, other = {
-        "drawing waits": (integration, "_compile", undrawn),
-        "one by one": (integration, "_compile", none),
+        "one by one": (integration, "_compile_impacts", none),
         "as they come": (batch_steps, "prepare", alone),
-    }.get(way, (integration, "_compile", compiled))
+    }.get(way, (integration, "_compile_impacts", integration._compile_impacts))
     with mock.patch.object(place, name, other):
         yield
 

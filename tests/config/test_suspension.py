@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import asperity
+import jkr_spheres
 from asperity.config.case_file import load
 from asperity.errors import InputError, Outcome
 from asperity.sweeps.compute.batch import compute
@@ -149,3 +150,16 @@ def test_a_study_of_springs_has_the_numbers_of_its_cases(switch):
         assert columns[f"lost_{name}"][0] == pytest.approx(switch.ledger["lost"][name], rel=1e-9)
     assert columns["lost_damping"][1] > 1.01 * columns["lost_damping"][0]
     assert columns["energy_balance_error"].max() < 1e-10
+
+
+def test_a_spring_does_not_change_what_a_jkr_cycle_loses():
+    """Undamped: the critical velocity, at the end of contact, is that of the free sphere."""
+    held = {
+        "impact.release_separation": "5 nm",
+        "suspension.stiffness": "100 N/m",
+        "suspension.rest_gap": "3 nm",
+    }
+    measures = asperity.solve(jkr_spheres.smooth("jkr", "2 m/s").replace(held)).measures
+    assert measures["critical_velocity"] == pytest.approx(jkr_spheres.CRITICAL, rel=1e-8)
+    lost = (jkr_spheres.CRITICAL / measures["impact_speed"]) ** 2
+    assert measures["restitution"][0] == pytest.approx(np.sqrt(1.0 - lost), rel=1e-8)

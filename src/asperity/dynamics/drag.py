@@ -15,6 +15,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
+from ..numerics.roots import root_between
 from .curve_table import CENTRAL
 from .external_forces import Along, Load
 from .phase import Work
@@ -26,6 +27,8 @@ _CLOSE = 1e-13  # relative change of the speeds that is small enough
 _DIRECT = 20  # steps of direct iteration, before Newton's
 _STEPS = 40
 _TURNED = 1e-8  # of the energy of a piece: more than a turning place is off by
+_MEAN = 0.75  # of the speed, on the way to nothing: 2/3 by a constant force
+_NEARLY = 0.9  # of the way to where no speed is left
 _SEARCH = 80  # steps towards a turning point, at most
 
 _GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
@@ -270,7 +273,12 @@ def _solved(matrix: jax.Array, right: jax.Array) -> jax.Array:
 
 @eqx.filter_custom_jvp
 def turning_place(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
-    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m]."""
+    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m].
+
+    From a place before it, where the body still moves, by the forces' energy, which is known
+    beyond, and the drag's, as it would be if the speed fell to nothing by a constant force, and
+    somewhat more. So the next place lies before the root too.
+    """
     ahead = piece.ahead
     close = 4e-15 * jnp.maximum(jnp.abs(piece.enter), jnp.abs(piece.leave))
 
@@ -283,13 +291,20 @@ def turning_place(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
         course = course_on(body, piece, kinetic, place)
         alive = course.passed
         inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
-        falls = ahead * piece.push(place, body.load)
-        target = place - ahead * course.kinetic / jnp.where(falls < 0.0, falls, -1.0)
-        # Past the root by a hair, so that it is enclosed from both sides.
-        target = target + ahead * close
-        between = (target - inside) * (target - outside) < 0.0
-        use = alive & (falls < 0.0) & between
-        return inside, outside, jnp.where(use, target, 0.5 * (inside + outside)), count + 1
+        speed = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
+        taken = _MEAN * speed * jnp.sum(piece.drags(body, place[None], speed[None]))
+        begun = course.kinetic - piece.energy(place, body.load)
+
+        def left(there: jax.Array) -> jax.Array:
+            return begun + piece.energy(there, body.load) - taken * ahead * (there - place)
+
+        turns = alive & (left(outside) <= 0.0)
+        target = root_between(left, place, jnp.where(turns, outside, place), close)
+        there = turns & (jnp.abs(target - place) <= close)
+        target = target - 0.05 * ahead * close  # before it by a hair: rounding may end it there
+        part = jnp.where(alive, _NEARLY, 0.5)  # it moves on nearly to the end, or there by halves
+        target = jnp.where(turns, target, inside + part * (outside - inside))
+        return inside, jnp.where(there, inside, outside), target, count + 1
 
     middle = 0.5 * (piece.enter + piece.leave)
     found: jax.Array = jax.lax.while_loop(go_on, step, (piece.enter, piece.leave, middle, 0))[0]

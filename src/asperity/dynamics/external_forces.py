@@ -10,9 +10,10 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Real
+from ..numerics.roots import root_between
 
 _RUNGS = 2.0 ** np.arange(-60.0, 60.0)  # of the release: distances that are tried
-_HALVINGS = 60
+_CLOSE = 1e-16  # of a rung: a move that is lost in rounding
 
 
 class ExternalForce(eqx.Module):
@@ -146,14 +147,10 @@ class Load(NamedTuple):
         first = jnp.argmax(spent)
         inside = jnp.where(first > 0, rungs[jnp.maximum(first - 1, 0)], 0.0)
 
-        def halve(_: int, ends: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
-            low, high = ends
-            middle = 0.5 * (low + high)
-            beyond = still.climb(begin, middle) > energy
-            return jnp.where(beyond, low, middle), jnp.where(beyond, middle, high)
+        def left(distance: jax.Array) -> jax.Array:
+            return energy - still.climb(begin, distance)
 
-        low, high = jax.lax.fori_loop(0, _HALVINGS, halve, (inside, rungs[first]))
-        distance = 0.5 * (low + high)
+        distance = root_between(left, inside, rungs[first], _CLOSE * rungs[first])
         pull = still.force(begin + distance)
         missing = (kinetic - self.climb(start, distance)) / jnp.where(pull > 0.0, pull, 1.0)
         return jnp.where(jnp.any(spent), distance + missing, jnp.inf)

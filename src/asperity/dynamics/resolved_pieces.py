@@ -8,6 +8,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import chebyshev_sum, local
+from ..numerics.roots import root_between
 from .curve_table import CENTRAL, FORCE, Pieces
 from .external_forces import Along
 from .phase import work_along
@@ -18,7 +19,7 @@ _SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thi
 
 _EQUILIBRIA = 2  # to which a body may creep on one way: the first of them
 _LOOKS = np.linspace(0.0, 1.0, 9)  # on a piece for them
-_HALVINGS = 50
+_CLOSE = 1e-15  # of a look: a move that is lost in rounding
 _LIGHT = 0.5  # of the largest momentum: a drag that takes less over a way turns no body slowly
 _NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the way: cuts about its start and about them
 
@@ -109,12 +110,9 @@ def _equilibria(body: Body, pieces: Pieces, ahead: jax.Array) -> jax.Array:
     (found,) = jnp.nonzero(ends.ravel(), size=_EQUILIBRIA, fill_value=-1)
     piece, look = found // (_LOOKS.size - 1), found % (_LOOKS.size - 1)
 
-    def halve(_: int, both: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
-        near, far = both
-        middle = 0.5 * (near + far)
-        on = jax.vmap(push)(piece, middle) > 0.0
-        return jnp.where(on, middle, near), jnp.where(on, far, middle)
+    def equilibrium(piece: jax.Array, near: jax.Array, far: jax.Array) -> jax.Array:
+        close = _CLOSE * jnp.abs(far - near)
+        return root_between(lambda place: push(piece, place), near, far, close)
 
-    both = places[piece, look], places[piece, look + 1]
-    near, far = jax.lax.fori_loop(0, _HALVINGS, halve, both)
-    return jnp.where(found >= 0, 0.5 * (near + far), pieces.leave[-1])
+    rests = jax.vmap(equilibrium)(piece, places[piece, look], places[piece, look + 1])
+    return jnp.where(found >= 0, rests, pieces.leave[-1])

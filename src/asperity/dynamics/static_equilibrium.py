@@ -10,12 +10,12 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.compilation import kept
 from ..numerics.polynomials import chebyshev_sum, local
+from ..numerics.roots import root_between
 from .curve_table import FORCE, STORED, Table
 from .external_forces import Load
 
 _NEGLIGIBLE = 1e-6  # of the largest force: below it bodies are apart
 _PLACES = 32
-_STEPS = 48  # halvings and Newton steps within a part of a panel, at most
 _CLOSE = 1e-15  # of a panel: the step that follows one so short is lost in rounding
 
 
@@ -88,7 +88,7 @@ def _outermost(
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
     """The largest separation at which a function of force and separation begins to be positive.
 
-    By Newton's method, kept between two places that are looked at.
+    The root is sought between two places that are looked at.
     """
     ends, force = jax.lax.stop_gradient((ends, force))
     fractions = np.linspace(0.0, 1.0, _PLACES)  # the ends of a panel are places of its own
@@ -105,33 +105,9 @@ def _outermost(
     def value(at: jax.Array) -> jax.Array:
         return excess(chebyshev_sum(row, 2.0 * at - 1.0), low + width * at)
 
-    def go_on(now: _Between) -> jax.Array:
-        return jnp.logical_and(now.moved > _CLOSE, now.steps < _STEPS)
-
-    def step(now: _Between) -> _Between:
-        here, slope = jax.jvp(value, (now.at,), (jnp.ones_like(now.at),))
-        near = jnp.where(here > 0.0, now.at, now.near)
-        far = jnp.where(here > 0.0, now.far, now.at)
-        target = now.at - here / jnp.where(slope == 0.0, 1.0, slope)
-        inside = jnp.logical_and(near <= target, target <= far)
-        following = jnp.where(inside, target, 0.5 * (near + far))
-        return _Between(near, far, following, jnp.abs(following - now.at), now.steps + 1)
-
     at = jnp.asarray(fractions)
     near, far = at[place], at[jnp.minimum(place + 1, _PLACES - 1)]
-    begin = _Between(near, far, 0.5 * (near + far), far - near, jnp.asarray(0))
-    end = jax.lax.while_loop(go_on, step, begin)
-    return low + width * end.at, panel, jnp.any(holds)
-
-
-class _Between(NamedTuple):
-    """Two places of a panel in parts of its width, one where it holds; the best; its last move."""
-
-    near: jax.Array
-    far: jax.Array
-    at: jax.Array
-    moved: jax.Array
-    steps: jax.Array
+    return low + width * root_between(value, near, far, _CLOSE), panel, jnp.any(holds)
 
 
 def _slope(coefficients: jax.Array, x: jax.Array, ends: jax.Array, panel: jax.Array) -> jax.Array:
