@@ -187,6 +187,9 @@ def test_the_example_of_every_key_is_read(place, name, field):
         table[place[0]].pop("material")
     if place[0] == "publication":
         table["counterface"]["deformation"] = "rigid"
+    if place[0] == "suspension":
+        table["suspension"] = {"stiffness": "1 N/m", "rest_gap": "50 nm"}
+        table["impact"]["release_separation"] = "1 um"
     if place[0] in ("roughness", "publication") or name == "deformation":
         table["roughness"] = {
             "asperity_density": "1 1/um^2",
