@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -83,6 +83,12 @@ class Body(eqx.Module):
     def load(self) -> Load:
         """What presses it towards the surface."""
         return Load(self.weight, self.forces)
+
+    @property
+    def plain_load(self) -> Any:
+        """The same for arrays of NumPy: JAX would compile anew for each number of places."""
+        plain: Body = jax.tree_util.tree_map(np.asarray, self)
+        return plain.load
 
     @property
     def kinetic(self) -> jax.Array:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import regimes
-from .._jax import jax, jnp
+from .._jax import jax
 from ..config import Case
 from ..contact import Contact
 from ..dynamics import Body, Motion
@@ -281,16 +281,17 @@ def _histories(
     forces["contact"] = rows[:, FORCE]
     forces["weight"] = np.full(len(rows), -float(body.weight))
     forces["total"] = rows[:, FORCE] + forces["weight"]
-    for force in body.forces:
-        forces[force.name] = -np.asarray(force.force(jnp.asarray(series.separation)))
+    load = body.plain_load
+    for force in load.forces:
+        forces[force.name] = -np.asarray(force.force(series.separation))
         forces["total"] = forces["total"] + forces[force.name]
     for k, name in enumerate(body.mechanisms):
         forces[name] = -series.drag[:, k] * series.speed
         forces["total"] = forces["total"] + forces[name]
-    zero = jnp.asarray(_zero_height(motion.reference))
+    zero = _zero_height(motion.reference)
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
-        "potential": np.asarray(body.load.climb(zero, jnp.asarray(series.separation) - zero)),
+        "potential": np.asarray(load.climb(zero, series.separation - zero)),
         "stored": rows[:, STORED],
     }
     for name, lost in losses.items():
@@ -344,8 +345,8 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
         lost[name] = lost.get(name, 0.0) + float(value)
     impact_energy = float(motion.impacts.maximum_kinetic[0])
     energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
-    zero = jnp.asarray(_zero_height(motion.reference))
-    initial = float(motion.release - body.load.potential(zero))
+    zero = _zero_height(motion.reference)
+    initial = float(motion.release) - float(body.plain_load.climb(0.0, zero))
     return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
 
 
