@@ -9,6 +9,7 @@ from numpy.polynomial import Chebyshev
 
 from asperity._jax import jax, jnp
 from asperity.dynamics.curve_table import FORCE, STORED
+from asperity.dynamics.external_forces import Load
 from asperity.dynamics.static_equilibrium import _outermost, end_of_contact, find_reference
 
 ENDS = np.array([0.0, 1.0, 2.5, 4.0])
@@ -43,7 +44,7 @@ def outermost(function, level):
 
 
 def found(rows, level):
-    return _outermost(jnp.asarray(ENDS), jnp.asarray(rows), lambda force: force - level)
+    return _outermost(jnp.asarray(ENDS), jnp.asarray(rows), lambda force, _: force - level)
 
 
 @pytest.mark.parametrize("level", [0.0, 0.01, 0.1, 0.5, 0.99])
@@ -93,7 +94,7 @@ def test_the_reference_has_derivatives_in_both_modes(derivative):
 
     def place(weight, more):
         values = here.values.at[..., 0, FORCE].add(more)
-        found = find_reference(SimpleNamespace(ends=here.ends, values=values), weight, 0)
+        found = find_reference(SimpleNamespace(ends=here.ends, values=values), Load(weight), 0)
         return jnp.stack([found.equilibrium, found.stored])
 
     root = outermost(wave, 0.1)

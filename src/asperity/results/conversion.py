@@ -34,7 +34,7 @@ from ..regimes.validity import (
 from .measures import FirstContact, Measures, least_peak, measure
 from .result import Result
 
-_ROWS = 32
+_ROWS = 256
 """Rows of impacts that are measured at least: more than most motions have."""
 
 _measure = Program(measure, AT_ONCE)
