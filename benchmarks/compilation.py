@@ -20,16 +20,6 @@ from unittest import mock
 
 PROCESSES, REPEATS = 3, 3
 
-STUDY = """
-schema = 1
-base = "published-exact"
-keep = ["captured", "restitution", "energy_lost"]
-[axes]
-"roughness.rms_height" = {from = "9 nm", to = "12 nm", steps = 8}
-"capillary.humidity" = {from = 0.85, to = 0.9, steps = 8}
-"numerics.rings" = {values = [48]}
-"""
-
 QUESTIONS = {
     "glass-bead": ("as they come", "tabulated"),
     "published-exact": ("as they come", "tabulated"),
@@ -109,8 +99,10 @@ def _answer(asked: str, way: str) -> Callable[[], Any]:
     from asperity.sweeps.compute.batch import compute
     from asperity.sweeps.study.study import parse
 
+    from .sweeps import DEFORMING
+
     if asked.startswith("study"):
-        study = parse(STUDY)
+        study = parse(DEFORMING.replace("steps = 16", "steps = 8"))
         return lambda: compute(study, 0)
     if asked.startswith("solve"):
         return lambda: asperity.solve(asked.split()[1])

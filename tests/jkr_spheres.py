@@ -29,6 +29,16 @@ speed = "2 m/s"
 gravity = "0 m/s^2"
 """
 
+SPRUNG = (
+    SMOOTH.replace('gravity = "0 m/s^2"', 'release_separation = "300 nm"')
+    + """
+[suspension]
+stiffness = "1 N/m"
+rest_gap = "50 nm"
+"""
+)
+"""The same on a spring."""
+
 
 def smooth(model: str, speed: str = "2 m/s") -> asperity.Case:
     return load(SMOOTH.replace('"jkr"', f'"{model}"').replace('"2 m/s"', f'"{speed}"'))

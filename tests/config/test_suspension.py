@@ -9,29 +9,17 @@ import asperity
 import jkr_spheres
 from asperity.config.case_file import load
 from asperity.errors import InputError, Outcome
+from asperity.results.verdict import verdict
 from asperity.sweeps.compute.batch import compute
 from asperity.sweeps.study.study import parse
 
-SWITCH = """
-schema = 1
-[body]
-radius = "5 um"
-material = "silica"
-[counterface]
-material = "silicon"
-[adhesion]
-model = "jkr"
-work = "50 mJ/m^2"
-[suspension]
-stiffness = "20 N/m"
-damping = "20 nN s/m"
-rest_gap = "100 nm"
-[impact]
-release_separation = "300 nm"
-gravity = "9.81 m/s^2"
+SWITCH = (
+    jkr_spheres.SPRUNG.replace('speed = "2 m/s"', 'gravity = "9.81 m/s^2"')
+    + """damping = "1 nN s/m"
 [numerics]
 max_impacts = 5
 """
+)
 
 
 def refused(changes):
@@ -56,9 +44,9 @@ def refused(changes):
             "since the spring's force depends on it",
         ),
         (
-            {"impact.release_separation": "100 nm", "impact.gravity": "0 m/s^2"},
+            {"impact.release_separation": "50 nm", "impact.gravity": "0 m/s^2"},
             "impact.release_separation",
-            "must differ from 100 nm where there is no `speed`",
+            "must differ from 50 nm where there is no `speed`",
         ),
         (
             {
@@ -124,7 +112,7 @@ def test_a_switch_bounces_and_says_what_its_dashpot_took(switch):
     total = sum(switch.forces[name] for name in ("contact", "weight", "spring", "damping"))
     np.testing.assert_allclose(total, switch.forces["total"], rtol=1e-12, atol=1e-18)
     np.testing.assert_allclose(
-        switch.forces["spring"], -20.0 * (switch.separation - 100e-9), rtol=1e-12, atol=1e-18
+        switch.forces["spring"], -1.0 * (switch.separation - 50e-9), rtol=1e-12, atol=1e-18
     )
     whole = sum(switch.energies[name] for name in ("kinetic", "potential", "stored"))
     whole = whole + sum(np.asarray(switch.energies[f"lost_{name}"]) for name in lost)
@@ -142,7 +130,7 @@ def test_a_study_of_springs_has_the_numbers_of_its_cases(switch):
     study = parse(
         "schema = 1\n"
         'keep = ["captured", "restitution", "lost_damping", "lost_adhesion", "energy_lost"]\n'
-        '[axes]\n"suspension.stiffness" = {values = ["20 N/m", "21 N/m"]}\n'
+        '[axes]\n"suspension.stiffness" = {values = ["1 N/m", "1.1 N/m"]}\n'
         + SWITCH.replace("schema = 1\n", "").replace("[", "[base.")
     )
     columns, _ = compute(study, 0)
@@ -163,3 +151,13 @@ def test_a_spring_does_not_change_what_a_jkr_cycle_loses():
     assert measures["critical_velocity"] == pytest.approx(jkr_spheres.CRITICAL, rel=1e-8)
     lost = (jkr_spheres.CRITICAL / measures["impact_speed"]) ** 2
     assert measures["restitution"][0] == pytest.approx(np.sqrt(1.0 - lost), rel=1e-8)
+
+
+def test_a_body_that_never_touches_has_no_restitution_and_says_that_it_swings():
+    free = asperity.solve(
+        load(SWITCH).replace({"impact.release_separation": "90 nm"}), critical=False
+    )
+    assert free.measures["impact_speed"] is None
+    assert free.measures["restitution"] == [None] * 5
+    assert not free.measures["captured"]
+    assert verdict(free).startswith("never touches, and still swings on its spring")

@@ -11,18 +11,10 @@ from scipy.optimize import brentq
 import asperity
 from asperity.config.case_file import load
 from asperity.dynamics.jumps import Segment, first_jump, jumps
-from jkr_spheres import RADIUS, SMOOTH, UNIT, W, jkr
+from jkr_spheres import RADIUS, SMOOTH, SPRUNG, UNIT, W, jkr
 
 FORCE, LENGTH = W * RADIUS, UNIT / (W * RADIUS)
 FOLD = (pi / 8.0) ** (1.0 / 3.0)
-SPRUNG = (
-    SMOOTH.replace('gravity = "0 m/s^2"', 'release_separation = "100 nm"')
-    + """
-[suspension]
-stiffness = "1 N/m"
-rest_gap = "50 nm"
-"""
-)
 
 
 def pressed(stiffness, model="jkr"):

@@ -64,11 +64,11 @@ class Suspension(Table):
                 "[suspension] must not be given with a [publication] table, whose body is free",
                 key="suspension",
             )
-        creep = case.viscoelasticity
-        if creep is not None and creep.model != "none":
+        relaxing = case.viscoelasticity
+        if relaxing is not None and relaxing.model != "none":
             raise InputError(
                 "[suspension] must not be given with [viscoelasticity] model = "
-                f"'{creep.model}', whose motion in time knows no spring",
+                f"'{relaxing.model}', whose motion in time knows no spring",
                 key="suspension",
             )
         if case.capillary.model != "none" and case.capillary.formation_time:

@@ -5,7 +5,7 @@
 `external_forces`: what acts on the body besides its contact; `gas_film`, `wave_radiation`,
 `suspension`: one mechanism each.
 `phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`,
-`resolved_pieces`, `overdamped`: the same with drag.
+`damped_turning_point`, `resolved_pieces`, `overdamped`: the same with drag.
 `stepped_motion`: the loop over impacts of motions in time, of `delayed_bounce` (by `stepped_phase`,
 `time_stepping`, `time_collocation`) and on `viscoelastic` half-spaces.
 `stepped_record`: the records of such motions.

@@ -9,9 +9,11 @@ from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .curve_table import Pieces
-from .drag import POINTS, SHARES, Course, Stretch, course_on, turning_place, whole_of
+from .damped_turning_point import turning_place
+from .drag import POINTS, SHARES, DampedPiece, PieceMotion, move_on, whole_of
 from .external_forces import Load
-from .phase import TurningPoint, Work, time_along, work_along
+from .phase import TurningPoint, Work, work_along
+from .phase_time import time_along
 from .record import Body
 from .resolved_pieces import resolved
 
@@ -22,7 +24,7 @@ once it has stopped."""
 _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all the same
 
 
-class Gone(NamedTuple):
+class PhaseProgress(NamedTuple):
     """A body on its way through a phase."""
 
     kinetic: jax.Array
@@ -34,7 +36,7 @@ class Gone(NamedTuple):
 
 
 @kept
-class Passage(NamedTuple):
+class DampedPhase(NamedTuple):
     """A phase with drag.
 
     Attributes
@@ -45,7 +47,7 @@ class Passage(NamedTuple):
         Time that it takes [s].
     lost
         Energy taken by each drag [J].
-    kinetic, times, heats
+    kinetic, times, dissipated
         Kinetic energy [J], time since the start [s] and energy taken by each drag [J] where each
         piece is entered.
     at_rest
@@ -62,13 +64,13 @@ class Passage(NamedTuple):
     lost: jax.Array
     kinetic: jax.Array
     times: jax.Array
-    heats: jax.Array
+    dissipated: jax.Array
     at_rest: jax.Array
     followed: jax.Array
     stopped: jax.Array
 
 
-def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
+def integrate_phase(body: Body, pieces: Pieces, kinetic: jax.Array) -> DampedPhase:
     """Follow the pieces of a phase, entered with a kinetic energy [J], to where the body turns.
 
     Parameters
@@ -81,76 +83,76 @@ def pass_through(body: Body, pieces: Pieces, kinetic: jax.Array) -> Passage:
         Kinetic energy at the start [J].
     """
     work = work_along(pieces, kinetic, body.load)
-    gone, entered = _walk(body, work, lambda gone, *_: (gone.kinetic, gone.time, gone.dissipated))
-    piece = Stretch.of(work, gone.piece)
-    found = jnp.logical_not(gone.going)
-    stop = turning_place(body, piece, gone.kinetic)
+    now, entered = _over_pieces(body, work, lambda now, *_: (now.kinetic, now.time, now.dissipated))
+    piece = DampedPiece.of(work, now.piece)
+    found = jnp.logical_not(now.going)
+    stop = turning_place(body, piece, now.kinetic)
     stopped = found & _left_alone(body, piece, stop)
-    stop = jnp.where(stopped, _spent(body, piece, gone.kinetic, stop), stop)
-    course = course_on(body, piece, gone.kinetic, stop)
+    stop = jnp.where(stopped, _spent(body, piece, now.kinetic, stop), stop)
+    moved = move_on(body, piece, now.kinetic, stop)
     turn = TurningPoint(
-        piece=gone.piece,
+        piece=now.piece,
         place=jnp.where(found, stop, pieces.leave[-1]),
         found=found,
         maximum_kinetic=jnp.maximum(
-            gone.maximum_kinetic, jnp.where(found, course.maximum_kinetic, 0.0)
+            now.maximum_kinetic, jnp.where(found, moved.maximum_kinetic, 0.0)
         ),
-        kinetic=jnp.where(found, 0.0, gone.kinetic),
+        kinetic=jnp.where(found, 0.0, now.kinetic),
     )
-    duration = gone.time + jnp.where(found, course.duration, 0.0)
-    lost = gone.dissipated + jnp.where(found, course.lost, 0.0)
+    duration = now.time + jnp.where(found, moved.duration, 0.0)
+    lost = now.dissipated + jnp.where(found, moved.lost, 0.0)
     followed = jnp.logical_not(found) | stopped | _pushed_back(piece, stop, body.load)
-    return Passage(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
+    return DampedPhase(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
 
 Seen = TypeVar("Seen")
 
 
-def _walk(
-    body: Body, work: Work, see: Callable[[Gone, Stretch, Course], Seen]
-) -> tuple[Gone, Seen]:
+def _over_pieces(
+    body: Body, work: Work, see: Callable[[PhaseProgress, DampedPiece, PieceMotion], Seen]
+) -> tuple[PhaseProgress, Seen]:
     """From piece to piece until the body turns, and what is seen of each on the way.
 
     What is seen of empty pieces, and of those beyond the turn, is as if they took no time.
     """
     kinetic = work.kinetic[0]
     none = jnp.zeros(len(body.drags))
-    first = Gone(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
+    first = PhaseProgress(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
 
-    def over(gone: Gone, k: jax.Array) -> tuple[Gone, Seen]:
-        piece = Stretch.of(work, k)
+    def over(now: PhaseProgress, k: jax.Array) -> tuple[PhaseProgress, Seen]:
+        piece = DampedPiece.of(work, k)
 
-        def move() -> tuple[Gone, Seen]:
-            course = course_on(body, piece, gone.kinetic, piece.leave)
-            on = course.passed
-            after = Gone(
-                kinetic=jnp.where(on, course.kinetic, gone.kinetic),
-                time=gone.time + jnp.where(on, course.duration, 0.0),
-                dissipated=gone.dissipated + jnp.where(on, course.lost, 0.0),
+        def move() -> tuple[PhaseProgress, Seen]:
+            moved = move_on(body, piece, now.kinetic, piece.leave)
+            on = moved.passed
+            after = PhaseProgress(
+                kinetic=jnp.where(on, moved.kinetic, now.kinetic),
+                time=now.time + jnp.where(on, moved.duration, 0.0),
+                dissipated=now.dissipated + jnp.where(on, moved.lost, 0.0),
                 going=on,
                 piece=k,
                 maximum_kinetic=jnp.maximum(
-                    gone.maximum_kinetic, jnp.where(on, course.maximum_kinetic, 0.0)
+                    now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)
                 ),
             )
-            return after, see(gone, piece, course)
+            return after, see(now, piece, moved)
 
-        def stay() -> tuple[Gone, Seen]:
-            on = gone._replace(piece=jnp.where(gone.going, k, gone.piece))
-            return on, see(gone, piece, Course.none(body, gone.kinetic))
+        def stay() -> tuple[PhaseProgress, Seen]:
+            on = now._replace(piece=jnp.where(now.going, k, now.piece))
+            return on, see(now, piece, PieceMotion.none(body, now.kinetic))
 
-        return jax.lax.cond(gone.going & (piece.leave != piece.enter), move, stay)
+        return jax.lax.cond(now.going & (piece.leave != piece.enter), move, stay)
 
     return jax.lax.scan(over, first, jnp.arange(work.pieces.low.shape[0]))
 
 
-def _pushed_back(piece: Stretch, place: jax.Array, load: Load) -> jax.Array:
+def _pushed_back(piece: DampedPiece, place: jax.Array, load: Load) -> jax.Array:
     """Whether contact and load push a body back at a place of a piece."""
     push, press = piece.push(place, load), load.force(place)
     return piece.ahead * push <= _PUSHED * (jnp.abs(push + press) + jnp.abs(press))
 
 
-def _left_alone(body: Body, piece: Stretch, place: jax.Array) -> jax.Array:
+def _left_alone(body: Body, piece: DampedPiece, place: jax.Array) -> jax.Array:
     """Whether nothing moves a body that drag has stopped at a place of a piece."""
     if not body.damped_apart or body.forces:
         return jnp.asarray(False)
@@ -158,7 +160,7 @@ def _left_alone(body: Body, piece: Stretch, place: jax.Array) -> jax.Array:
     return (body.weight == 0.0) & (push <= STILL * body.kinetic)
 
 
-def _spent(body: Body, piece: Stretch, kinetic: jax.Array, place: jax.Array) -> jax.Array:
+def _spent(body: Body, piece: DampedPiece, kinetic: jax.Array, place: jax.Array) -> jax.Array:
     """Where on a piece, entered with a kinetic energy [J], drag has taken all momentum [m].
 
     By Newton's method from a place near by. Energies, which are squares of momenta, tell a place
@@ -198,15 +200,15 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
     every piece and at its end.
     """
 
-    def see(gone: Gone, piece: Stretch, course: Course) -> tuple[jax.Array, ...]:
+    def see(now: PhaseProgress, piece: DampedPiece, moved: PieceMotion) -> tuple[jax.Array, ...]:
         places = jnp.append(piece.enter + (piece.leave - piece.enter) * SHARES, piece.leave)
-        last = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
-        speeds = jnp.append(course.speed, last)
-        heats = gone.dissipated + jnp.column_stack([course.dissipated, course.lost]).T
-        times = gone.time + jnp.append(course.time, course.duration)
-        return places, times, speeds, heats, piece.drags(body, places, speeds).T
+        last = jnp.sqrt(2.0 * jnp.maximum(moved.kinetic, 0.0) / body.mass)
+        speeds = jnp.append(moved.speed, last)
+        dissipated = now.dissipated + jnp.column_stack([moved.dissipated, moved.lost]).T
+        times = now.time + jnp.append(moved.time, moved.duration)
+        return places, times, speeds, dissipated, piece.drags(body, places, speeds).T
 
-    return _walk(body, work_along(pieces, kinetic, body.load), see)[1]
+    return _over_pieces(body, work_along(pieces, kinetic, body.load), see)[1]
 
 
 def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
@@ -218,7 +220,7 @@ def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
     return pieces._replace(enter=until(pieces.enter), leave=until(pieces.leave))
 
 
-def pass_by(
+def kinetic_and_time_at(
     body: Body, pieces: Pieces, kinetic: jax.Array, unloading: jax.Array, place: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
     """Kinetic energy [J] with which a body passes a place [m] of a phase, and when [s].
@@ -230,5 +232,5 @@ def pass_by(
         work = work_along(passed, kinetic, body.load)
         return work.kinetic[-1], time_along(work, (passed.enter, passed.leave), body.mass)
     passed = cut(resolved(body, pieces, kinetic)[0], unloading, place)
-    gone, _ = _walk(body, work_along(passed, kinetic, body.load), lambda *_: ())
-    return jnp.where(gone.going, gone.kinetic, 0.0), gone.time
+    now, _ = _over_pieces(body, work_along(passed, kinetic, body.load), lambda *_: ())
+    return jnp.where(now.going, now.kinetic, 0.0), now.time

@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
-from ..numerics.roots import root_between
 from .curve_table import CENTRAL
 from .external_forces import Along, Load
 from .phase import Work
@@ -27,9 +25,6 @@ _CLOSE = 1e-13  # relative change of the speeds that is small enough
 _DIRECT = 20  # steps of direct iteration, before Newton's
 _STEPS = 40
 _TURNED = 1e-8  # of the energy of a piece: more than a turning place is off by
-_MEAN = 0.75  # of the speed, on the way to nothing: 2/3 by a constant force
-_NEARLY = 0.9  # of the way to where no speed is left
-_SEARCH = 80  # steps towards a turning point, at most
 
 _GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
 SHARES = np.sin(0.5 * np.pi * _GAUSS) ** 2
@@ -58,7 +53,7 @@ def whole_of(values: jax.Array) -> jax.Array:
     return jnp.dot(_WHOLE, _PACE * values)
 
 
-class Course(NamedTuple):
+class PieceMotion(NamedTuple):
     """One piece, or the part of it that is passed.
 
     Attributes
@@ -87,14 +82,14 @@ class Course(NamedTuple):
     maximum_kinetic: jax.Array
 
     @classmethod
-    def none(cls, body: Body, kinetic: jax.Array) -> Course:
+    def none(cls, body: Body, kinetic: jax.Array) -> PieceMotion:
         """On a piece without length, of a body with a kinetic energy [J]."""
         still, drags = jnp.zeros(POINTS), jnp.zeros(len(body.drags))
         taken = jnp.zeros((len(body.drags), POINTS))
         return cls(still, still, taken, jnp.zeros(()), drags, kinetic, jnp.asarray(True), kinetic)
 
 
-class Stretch(NamedTuple):
+class DampedPiece(NamedTuple):
     """One of :class:`Pieces`, with the integral of its force."""
 
     low: jax.Array
@@ -106,7 +101,7 @@ class Stretch(NamedTuple):
     central: jax.Array
 
     @classmethod
-    def of(cls, work: Work, k: jax.Array) -> Stretch:
+    def of(cls, work: Work, k: jax.Array) -> DampedPiece:
         """Piece ``k`` of those that work is done along."""
         p = work.pieces
         return cls(
@@ -119,7 +114,7 @@ class Stretch(NamedTuple):
         x = local(self.low, self.high, places)
         first = local(self.low, self.high, self.enter)
         gain = chebyshev_sum(self.integral, x) - chebyshev_sum(self.integral, first)
-        return gain - load.climb(self.enter, places - self.enter)
+        return gain - load.potential_gain(self.enter, places - self.enter)
 
     def push(self, place: jax.Array, load: Load) -> jax.Array:
         """Force of contact and load at a place [N], positive apart."""
@@ -141,7 +136,7 @@ class Stretch(NamedTuple):
         return jnp.sign(self.leave - self.enter)
 
 
-def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -> Course:
+def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array) -> PieceMotion:
     """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
     span = stop - piece.enter
     places = piece.enter + span * SHARES
@@ -162,7 +157,7 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
     left = last - jnp.sum(lost)
     pace = jnp.where(u > 0.0, length / (unit * jnp.where(u > 0.0, u, 1.0)), 0.0)
     empty = span == 0.0
-    return Course(
+    return PieceMotion(
         speed=unit * u,
         time=jnp.asarray(_UNTIL) @ pace,
         dissipated=dissipated,
@@ -176,7 +171,7 @@ def course_on(body: Body, piece: Stretch, kinetic: jax.Array, stop: jax.Array) -
 
 def _missed_time(
     body: Body,
-    piece: Stretch,
+    piece: DampedPiece,
     ends: tuple[jax.Array, jax.Array],
     energies: jax.Array,
     stop: jax.Array,
@@ -269,58 +264,3 @@ def _slopes(u: jax.Array, drag: jax.Array) -> jax.Array:
 @jax.custom_batching.sequential_vmap
 def _solved(matrix: jax.Array, right: jax.Array) -> jax.Array:
     return jnp.linalg.solve(matrix, right[:, None])[:, 0]
-
-
-@eqx.filter_custom_jvp
-def turning_place(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
-    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m].
-
-    From a place before it, where the body still moves, by the forces' energy, which is known
-    beyond, and the drag's, as it would be if the speed fell to nothing by a constant force, and
-    somewhat more. So the next place lies before the root too.
-    """
-    ahead = piece.ahead
-    close = 4e-15 * jnp.maximum(jnp.abs(piece.enter), jnp.abs(piece.leave))
-
-    def go_on(carry: Any) -> jax.Array:
-        inside, outside, _, count = carry
-        return (jnp.abs(outside - inside) > close) & (count < _SEARCH)
-
-    def step(carry: Any) -> Any:
-        inside, outside, place, count = carry
-        course = course_on(body, piece, kinetic, place)
-        alive = course.passed
-        inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
-        speed = jnp.sqrt(2.0 * jnp.maximum(course.kinetic, 0.0) / body.mass)
-        taken = _MEAN * speed * jnp.sum(piece.drags(body, place[None], speed[None]))
-        begun = course.kinetic - piece.energy(place, body.load)
-
-        def left(there: jax.Array) -> jax.Array:
-            return begun + piece.energy(there, body.load) - taken * ahead * (there - place)
-
-        turns = alive & (left(outside) <= 0.0)
-        target = root_between(left, place, jnp.where(turns, outside, place), close)
-        there = turns & (jnp.abs(target - place) <= close)
-        target = target - 0.05 * ahead * close  # before it by a hair: rounding may end it there
-        part = jnp.where(alive, _NEARLY, 0.5)  # it moves on nearly to the end, or there by halves
-        target = jnp.where(turns, target, inside + part * (outside - inside))
-        return inside, jnp.where(there, inside, outside), target, count + 1
-
-    middle = 0.5 * (piece.enter + piece.leave)
-    found: jax.Array = jax.lax.while_loop(go_on, step, (piece.enter, piece.leave, middle, 0))[0]
-    return found
-
-
-@turning_place.def_jvp
-def _turning_place_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
-    """By the implicit function theorem: the kinetic energy stays zero there."""
-    body, piece, _ = primals
-    place = turning_place(*primals)
-
-    def spent(body: Body, piece: Stretch, kinetic: jax.Array) -> jax.Array:
-        return course_on(body, piece, kinetic, place).kinetic
-
-    _, change = eqx.filter_jvp(spent, primals, tangents)
-    falls = piece.ahead * piece.push(place, body.load)
-    moved = -piece.ahead * change / jnp.where(falls < 0.0, falls, -1.0)
-    return place, jnp.where(falls < 0.0, moved, 0.0)

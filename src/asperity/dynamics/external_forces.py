@@ -12,8 +12,8 @@ from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.roots import root_between
 
-_RUNGS = 2.0 ** np.arange(-60.0, 60.0)  # of the release: distances that are tried
-_CLOSE = 1e-16  # of a rung: a move that is lost in rounding
+_DISTANCES = 2.0 ** np.arange(-60.0, 60.0)  # of the release: distances that are tried
+_CLOSE = 1e-16  # of a distance: a move that is lost in rounding
 
 
 class ExternalForce(eqx.Module):
@@ -34,7 +34,7 @@ class ExternalForce(eqx.Module):
         """Derivative of :meth:`force` with the separation [N/m]."""
 
     @abc.abstractmethod
-    def climb(self, start: jax.Array, distance: jax.Array) -> jax.Array:
+    def potential_gain(self, start: jax.Array, distance: jax.Array) -> jax.Array:
         """Potential energy [J] that a body gains from ``start`` over a ``distance`` outwards [m].
 
         The integral of :meth:`force`, in a form that does not cancel where the distance is small.
@@ -121,18 +121,18 @@ class Load(NamedTuple):
             total = total + one.slope(place)
         return total
 
-    def climb(self, start: jax.Array, distance: jax.Array) -> jax.Array:
+    def potential_gain(self, start: jax.Array, distance: jax.Array) -> jax.Array:
         """Potential energy [J] gained from ``start`` over a ``distance`` outwards [m]."""
         gained = self.weight * distance
         for one in self.forces:
-            gained = gained + one.climb(start, distance)
+            gained = gained + one.potential_gain(start, distance)
         return gained
 
     def potential(self, place: jax.Array) -> jax.Array:
         """Potential energy [J] at a separation [m], above that at a separation of 0."""
-        return self.climb(jnp.zeros(()), place)
+        return self.potential_gain(jnp.zeros(()), place)
 
-    def rise(self, start: jax.Array, kinetic: jax.Array) -> jax.Array:
+    def apex_height(self, start: jax.Array, kinetic: jax.Array) -> jax.Array:
         """How far above ``start`` [m] a body with a kinetic energy [J] gets; infinite for good.
 
         The first distance beyond which its energy does not suffice.
@@ -142,15 +142,17 @@ class Load(NamedTuple):
             height = kinetic / jnp.where(falls, self.weight, 1.0)
             return jnp.where(falls, height, jnp.inf * (kinetic > 0))
         still, begin, energy = jax.lax.stop_gradient((self, start, kinetic))
-        rungs = jnp.asarray(_RUNGS) * jnp.abs(begin)
-        spent = still.climb(begin, rungs) > energy
+        distances = jnp.asarray(_DISTANCES) * jnp.abs(begin)
+        spent = still.potential_gain(begin, distances) > energy
         first = jnp.argmax(spent)
-        inside = jnp.where(first > 0, rungs[jnp.maximum(first - 1, 0)], 0.0)
+        inside = jnp.where(first > 0, distances[jnp.maximum(first - 1, 0)], 0.0)
 
         def left(distance: jax.Array) -> jax.Array:
-            return energy - still.climb(begin, distance)
+            return energy - still.potential_gain(begin, distance)
 
-        distance = root_between(left, inside, rungs[first], _CLOSE * rungs[first])
+        distance = root_between(left, inside, distances[first], _CLOSE * distances[first])
         pull = still.force(begin + distance)
-        missing = (kinetic - self.climb(start, distance)) / jnp.where(pull > 0.0, pull, 1.0)
+        missing = (kinetic - self.potential_gain(start, distance)) / jnp.where(
+            pull > 0.0, pull, 1.0
+        )
         return jnp.where(jnp.any(spent), distance + missing, jnp.inf)

@@ -55,7 +55,7 @@ class Segment(NamedTuple):
 
     @property
     def noise(self) -> float:
-        """What rounding may make of its slope [N/m]: all, on narrow pieces next to a kink."""
+        """What rounding may make of its slope [N/m]: all, on pieces that are too narrow."""
         return _ROUNDING * self.size / (self.ends[1] - self.ends[0])
 
     @property
@@ -132,7 +132,7 @@ def jumps(
         missing = [name for name, one in (("in", pulled_in), ("out", let_go)) if one is None]
         if missing:
             largest = largest_slope(
-                [way for way, one in ((inward, pulled_in), (outward, let_go)) if one is None]
+                [branch for branch, one in ((inward, pulled_in), (outward, let_go)) if one is None]
             )
             note = (
                 f"no jump-{' and no jump-'.join(missing)}: the stiffness of {stiffness:.4g} N/m "
@@ -145,10 +145,10 @@ def jumps(
     return {"in": plain[0], "out": plain[1], "note": note}
 
 
-def largest_slope(ways: list[list[Segment]]) -> float:
-    """Largest derivative of the force with the separation on some ways [N/m]."""
+def largest_slope(branches: list[list[Segment]]) -> float:
+    """Largest derivative of the force with the separation on some branches [N/m]."""
     found = [0.0]
-    for segment in (segment for way in ways for segment in way):
+    for segment in (segment for branch in branches for segment in branch):
         ends = np.array([segment.low, segment.high])
         turns = segment.roots(chebyshev.chebder(segment.slope))
         slopes = segment.value(segment.slope, np.concatenate([ends, turns]))
@@ -156,20 +156,20 @@ def largest_slope(ways: list[list[Segment]]) -> float:
     return max(found)
 
 
-def first_jump(way: list[Segment], stiffness: float, unloading: bool) -> Jump | None:
-    """The first jump on a way, None where the spring holds the body all along it.
+def first_jump(branch: list[Segment], stiffness: float, unloading: bool) -> Jump | None:
+    """The first jump on a branch, None where the spring holds the body all along it.
 
     Parameters
     ----------
-    way
+    branch
         The force curve along it, ascending in separation.
     stiffness
         Stiffness of the spring [N/m].
     unloading
         Whether the body is drawn outwards; else it comes in from the last segment.
     """
-    ordered = way if unloading else way[::-1]
-    off = _CUT * max(one.pull for one in way)
+    ordered = branch if unloading else branch[::-1]
+    off = _CUT * max(one.pull for one in branch)
     before: float | None = None
     for number, segment in enumerate(ordered):
         near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
@@ -227,8 +227,8 @@ def _landing(
         between = (roots - inside) * (roots - looks[first]) <= 0.0
         landing = float(roots[between][-1 if unloading else 0] if np.any(between) else inside)
         after = float(segment.value(segment.stored, landing))
-        way = place - landing
-        energy = stored - after + force * way - 0.5 * stiffness * way**2
+        moved = place - landing
+        energy = stored - after + force * moved - 0.5 * stiffness * moved**2
         there = float(segment.value(segment.force, landing))
         return Jump(place, force, landing, there, energy)
     return None

@@ -30,8 +30,8 @@ from .phase import (
     mechanical_at_end,
     pull_work,
     row_at,
-    travel_time,
 )
+from .phase_time import travel_time
 from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
 from .resolved_pieces import resolved
 from .scanning_table import inner_pieces, solve_reversals
@@ -55,8 +55,8 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     low = jax.lax.stop_gradient(
         contact.lower_bound(body.release, body.kinetic, body.load.potential)
     )
-    rise = body.load.rise(body.release, body.kinetic)
-    top = body.release + jnp.where(jnp.isfinite(rise), rise, 0.0)
+    height = body.load.apex_height(body.release, body.kinetic)
+    top = body.release + jnp.where(jnp.isfinite(height), height, 0.0)
     high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
@@ -197,14 +197,13 @@ def _phase_of_impact(
         turn, dissipated = find_turning_point(ahead, wanted), jnp.zeros(0)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
-        way, part = resolved(
-            body, join(table, branch, inner, progress.place, unloading), progress.kinetic
-        )
-        passage = come_to_rest(body, way, progress.kinetic, rest, unloading)
-        turn = passage.turn._replace(piece=part[passage.turn.piece])
-        turn, dissipated = in_order(ahead, turn), passage.lost
-        fate = passage.at_rest, passage.followed, passage.stopped
-        time = progress.time + passage.duration
+        pieces = join(table, branch, inner, progress.place, unloading)
+        pieces, part = resolved(body, pieces, progress.kinetic)
+        done = come_to_rest(body, pieces, progress.kinetic, rest, unloading)
+        turn = done.turn._replace(piece=part[done.turn.piece])
+        turn, dissipated = in_order(ahead, turn), done.lost
+        fate = done.at_rest, done.followed, done.stopped
+        time = progress.time + done.duration
     row = row_at(ahead, turn)
     layout = quantities(contact)
     bonds = row[layout.bonds]

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from .._jax import jax, jnp
 from .curve_table import Pieces
-from .damped_phase import Passage, pass_through, slow_at
-from .drag import Stretch, course_on
+from .damped_phase import DampedPhase, integrate_phase, slow_at
+from .drag import DampedPiece, move_on
 from .phase import TurningPoint, Work, work_along
 from .record import Body
 
@@ -35,8 +35,8 @@ class Rest(NamedTuple):
 
 def come_to_rest(
     body: Body, pieces: Pieces, kinetic: jax.Array, rest: Rest, unloading: jax.Array
-) -> Passage:
-    """Like :func:`asperity.dynamics.damped_phase.pass_through`, for a body that may creep to rest.
+) -> DampedPhase:
+    """A phase of :func:`asperity.dynamics.damped_phase.integrate_phase` that may creep to rest.
 
     A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
     time. Such a phase ends a little before, where what is left of its kinetic energy goes to that
@@ -51,7 +51,7 @@ def come_to_rest(
     unloading
         Whether the body moves outwards.
     """
-    whole = pass_through(body, pieces, kinetic)
+    whole = integrate_phase(body, pieces, kinetic)
     if not body.damped_apart:
         return whole
     turn, work = whole.turn, work_along(pieces, kinetic, body.load)
@@ -60,19 +60,19 @@ def come_to_rest(
     else:
         goal, here, near = _above_rest(body, pieces, turn, rest, unloading)
     place = jnp.where(near, goal, pieces.leave[here])
-    course = course_on(body, Stretch.of(work, here), whole.kinetic[here], place)
+    moved = move_on(body, DampedPiece.of(work, here), whole.kinetic[here], place)
     if body.forces:
-        at_rest = near & _driven(body, work, turn, (here, place), course.kinetic)
+        at_rest = near & _driven(body, work, turn, (here, place), moved.kinetic)
     else:
         # Stiff bodies turn that close too, at full speed: those that are pushed back bounce.
         ends = rest.equilibrium, goal
-        still = slow_at(body, course.kinetic, turn.maximum_kinetic, ends)
+        still = slow_at(body, moved.kinetic, turn.maximum_kinetic, ends)
         at_rest = near & (still | jnp.logical_not(whole.followed))
         at_rest = at_rest & jnp.logical_not(whole.stopped)
     stop = TurningPoint(here, goal, jnp.asarray(True), turn.maximum_kinetic, jnp.zeros(()))
     taker = [drag.acts_apart for drag in body.drags].index(True)
-    lost = whole.heats[here] + course.lost
-    crept = (stop, whole.times[here] + course.duration, lost.at[taker].add(course.kinetic))
+    lost = whole.dissipated[here] + moved.lost
+    crept = (stop, whole.times[here] + moved.duration, lost.at[taker].add(moved.kinetic))
     turned = (turn, whole.duration, whole.lost)
     turn, duration, lost = jax.tree_util.tree_map(
         lambda a, b: jnp.where(at_rest, a, b), crept, turned
@@ -122,9 +122,9 @@ def _driven(
     """
 
     def given(piece: jax.Array, place: jax.Array) -> jax.Array:
-        return work.kinetic[piece] + Stretch.of(work, piece).energy(place, body.load)
+        return work.kinetic[piece] + DampedPiece.of(work, piece).energy(place, body.load)
 
     gained = given(turn.piece, turn.place) - given(*before)
-    there = jnp.abs(Stretch.of(work, turn.piece).push(turn.place, body.load))
+    there = jnp.abs(DampedPiece.of(work, turn.piece).push(turn.place, body.load))
     distance = jnp.abs(turn.place - before[1])
     return (gained > 0.0) & (gained >= kinetic) & (there * distance <= _NEAR * gained)

@@ -72,8 +72,8 @@ def quasi_static_curve(
         "jumps": None,
     }
     if stiffness is not None:
-        ways = _segments(inward, inward[0].low), _segments(outward, deepest)
-        found["jumps"] = jumps(*ways, stiffness)
+        branches = _segments(inward, inward[0].low), _segments(outward, deepest)
+        found["jumps"] = jumps(*branches, stiffness)
     return found, float(pulled.held)
 
 

@@ -1,4 +1,4 @@
-"""Pieces of a way with drag, cut where the speed changes over less than a piece."""
+"""Pieces of a phase with drag, cut where the speed changes over less than a piece."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .external_forces import Along
 from .phase import work_along
 from .record import Body
 
-_CUTS, _RATIO = 12, 4.0  # of the way by a film's gaps: how many, each so much wider
+_CUTS, _RATIO = 12, 4.0  # of a phase by a film's gaps: how many, each so much wider
 _SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thins without end
 
-_EQUILIBRIA = 2  # to which a body may creep on one way: the first of them
+_EQUILIBRIA = 2  # to which a body may creep in one phase: the first of them
 _LOOKS = np.linspace(0.0, 1.0, 9)  # on a piece for them
 _CLOSE = 1e-15  # of a look: a move that is lost in rounding
-_LIGHT = 0.5  # of the largest momentum: a drag that takes less over a way turns no body slowly
-_NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the way: cuts about its start and about them
+_LIGHT = 0.5  # of the largest momentum: a drag that takes less over a phase turns no body slowly
+_NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the distance: cuts about its start and about them
 
 
 def resolved(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[Pieces, jax.Array]:
@@ -96,7 +96,7 @@ def _to_rest(body: Body, pieces: Pieces, kinetic: jax.Array, ahead: jax.Array) -
 
 
 def _equilibria(body: Body, pieces: Pieces, ahead: jax.Array) -> jax.Array:
-    """The first places on a way where a push ahead becomes one back [m]; else its end."""
+    """The first places of a phase where a push ahead becomes one back [m]; else its end."""
     span, force = pieces.leave - pieces.enter, pieces.values[..., FORCE]
 
     def push(piece: jax.Array, place: jax.Array) -> jax.Array:

@@ -169,7 +169,7 @@ def _first_fall(table: Table, body: Body) -> tuple[jax.Array, jax.Array]:
     panel = table.panel_at(body.release)
     x = local(table.ends[panel], table.ends[panel + 1], body.release)
     gained = work - chebyshev_sum(table.works.integral[0, panel, :, 0], x)
-    kinetic = body.kinetic + gained - body.load.climb(body.release, places - body.release)
+    kinetic = body.kinetic + gained - body.load.potential_gain(body.release, places - body.release)
     below = places < body.release
     deepest = jnp.max(jnp.where(below & (kinetic < 0.0), places, table.ends[0]))
     passed = below & (places > deepest)

@@ -38,7 +38,7 @@ class Spring(ExternalForce):
         slope: jax.Array = self.stiffness
         return slope
 
-    def climb(self, start: jax.Array, distance: jax.Array) -> jax.Array:
+    def potential_gain(self, start: jax.Array, distance: jax.Array) -> jax.Array:
         gained: jax.Array = self.stiffness * distance * (start - self.rest_gap + 0.5 * distance)
         return gained
 

@@ -118,7 +118,7 @@ def _draw_all(
         return _draw_one(body, table, phase, end, unloading, places)
 
     if body.damped:  # phases of few pieces do not wait for those of many
-        return jax.lax.map(lambda way: one(*way), (phases, ended))
+        return jax.lax.map(lambda both: one(*both), (phases, ended))
     return jax.vmap(one)(phases, ended)
 
 

@@ -34,7 +34,7 @@ class _Piece(NamedTuple):
     def energy(self, place: jax.Array) -> jax.Array:
         """Kinetic energy [J], any shape."""
         work = chebyshev_sum(self.integral, local(self.low, self.high, place))
-        return self.offset + work - self.load.climb(self.origin, place - self.origin)
+        return self.offset + work - self.load.potential_gain(self.origin, place - self.origin)
 
     def slope(self, place: jax.Array) -> jax.Array:
         """Force of contact less the load [N]."""

@@ -291,7 +291,7 @@ def _histories(
     zero = _zero_height(motion.reference)
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,
-        "potential": np.asarray(load.climb(zero, series.separation - zero)),
+        "potential": np.asarray(load.potential_gain(zero, series.separation - zero)),
         "stored": rows[:, STORED],
     }
     for name, lost in losses.items():
@@ -346,7 +346,7 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
     impact_energy = float(motion.impacts.maximum_kinetic[0])
     energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
     zero = _zero_height(motion.reference)
-    initial = float(motion.release) - float(body.plain_load.climb(0.0, zero))
+    initial = float(motion.release) - float(body.plain_load.potential_gain(0.0, zero))
     return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..dynamics import Body, Impacts, Motion, Table
 from ..dynamics.curve_table import join
-from ..dynamics.damped_phase import pass_by
+from ..dynamics.damped_phase import kinetic_and_time_at
 from ..dynamics.record import ENDS, Phase
 from ..dynamics.static_equilibrium import end_of_contact
 from ..dynamics.unloading import Unloading, unloading
@@ -34,8 +34,8 @@ class Measures(NamedTuple):
     Attributes
     ----------
     impact_speed
-        Speed of approach where forces begin, at the end of contact [m/s]; NaN where a drag
-        stops the body before. Of a body released within that, the speed at its static
+        Speed of approach where forces begin, at the end of contact [m/s]; NaN where a drag or a
+        spring stops the body before. Of a body released within that, the speed at its static
         equilibrium, the largest.
     maximum_speed
         Largest speed on the first way in [m/s]: with attraction, above that of approach.
@@ -165,7 +165,7 @@ def measure(
     gone = jnp.logical_and(escaped, last)
     away = gone | (last & (end.outcome == ENDS.index(Outcome.STOPPED)))  # of no further maximum
 
-    top = body.release + body.load.rise(body.release, body.kinetic)
+    top = body.release + body.load.apex_height(body.release, body.kinetic)
     rebounds = rows.made & (
         rows.apex > rows.closest_approach
     )  # a body that creeps to rest has none
@@ -180,20 +180,22 @@ def measure(
     total = jnp.sum(rows.lost, axis=1)
     rests = end.outcome == ENDS.index(Outcome.REST)
     captures = _captures(motion, body, contact_end, outside, away)
-    held = ~jnp.isnan(contact_end) if body.forces else jnp.asarray(True)
-    captures = (captures | (rests & rows.made & ~rebounds)) & held
+    touched = ~jnp.isnan(contact_end) if body.forces else jnp.asarray(True)
+    captures = (captures | (rests & rows.made & ~rebounds)) & touched
     capture_time = rows.closest_approach_time[jnp.argmax(captures)]
     energies = _energies(motion, body, contact_end, outside, passing)
+    speed = _speed(jnp.where(outside, energies[0][0], rows.maximum_kinetic[0]), body.mass)
+    ratio = _restitution(motion, body, contact_end, outside, gone, captures, energies)
     safe = jnp.where(jnp.isfinite(period), period, 1.0)
     blank = jnp.where(jnp.isfinite(period), 1.0, jnp.nan)
     return Measures(
-        impact_speed=_speed(jnp.where(outside, energies[0][0], rows.maximum_kinetic[0]), body.mass),
+        impact_speed=jnp.where(touched, speed, jnp.nan),
         maximum_speed=_speed(rows.maximum_kinetic[0], body.mass),
         captured=captures[0],
         capture_time=jnp.where(jnp.any(captures), capture_time, jnp.nan),
         time_to_rest=jnp.where(rests, end.time, jnp.nan),
         rebound_height=height,
-        restitution=_restitution(motion, body, contact_end, outside, gone, captures, energies),
+        restitution=jnp.where(touched, ratio, jnp.nan),
         log_decrement=jnp.where(fits, decrement, jnp.nan),
         rebound_period=period,
         power_loss=(total - _shift(total, 0.0)) / safe * blank,
@@ -205,7 +207,7 @@ def measure(
         work_of_separation=pulled.work,
         preload=jnp.where(pulled.depends, rows.force[0], jnp.nan),
         contact_end=jnp.where(outside, contact_end, jnp.nan),
-        touched=~jnp.isnan(contact_end),
+        touched=touched,
         held_at_pull_off=pulled.held,
         outset=first.outset,
     )
@@ -224,9 +226,9 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
         ends = jnp.stack([body.release, rows.apex[0], rows.closest_approach[0]])
         most = jnp.max(jnp.abs(body.load.force(ends)))
         end = jnp.where(largest > _TOUCH * most, end, jnp.nan)
-    ways = jax.tree_util.tree_map(lambda *two: jnp.stack(two), fall, rise)
+    phases = jax.tree_util.tree_map(lambda *two: jnp.stack(two), fall, rise)
     made = jnp.repeat(rows.made[:1], 2)
-    _, (inwards, outwards) = _passing(body, table, ways, np.array([False, True]), made, end)
+    _, (inwards, outwards) = _passing(body, table, phases, np.array([False, True]), made, end)
     time = rows.closest_approach_time[0] - fall.begun - inwards + outwards
     return FirstContact(
         end=end,
@@ -249,33 +251,33 @@ def least_peak(body: Body, pull_off: Real, peak: Real) -> jax.Array:
 
 def passing_at(body: Body, table: Table, rows: Impacts, place: jax.Array) -> Passing:
     """Kinetic energies [J] with which each impact passes a place [m] outside contact."""
-    ways = jax.tree_util.tree_map(lambda *two: jnp.concatenate(two), rows.fall, rows.rise)
+    phases = jax.tree_util.tree_map(lambda *two: jnp.concatenate(two), rows.fall, rows.rise)
     count = rows.made.shape[0]
     unloading = np.repeat([False, True], count)
-    kinetic, _ = _passing(body, table, ways, unloading, jnp.tile(rows.made, 2), place)
+    kinetic, _ = _passing(body, table, phases, unloading, jnp.tile(rows.made, 2), place)
     return kinetic[:count], kinetic[count:]
 
 
 def _passing(
     body: Body,
     table: Table,
-    ways: Phase,
+    phases: Phase,
     unloading: np.ndarray,
     made: jax.Array,
     place: jax.Array,
 ) -> tuple[jax.Array, jax.Array]:
     """Kinetic energy [J] and time [s] with which phases that were made pass a place [m]."""
 
-    def one(way: tuple[Phase, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
-        phase, unloads, real = way
+    def one(asked: tuple[Phase, jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+        phase, unloads, real = asked
         pieces = join(table, phase.branch, phase.inner, phase.start, unloads)
         return jax.lax.cond(
             real,
-            lambda: pass_by(body, pieces, phase.kinetic, unloads, place),
+            lambda: kinetic_and_time_at(body, pieces, phase.kinetic, unloads, place),
             lambda: (jnp.zeros(()), jnp.zeros(())),
         )
 
-    return jax.lax.map(one, (ways, jnp.asarray(unloading), made))
+    return jax.lax.map(one, (phases, jnp.asarray(unloading), made))
 
 
 def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:

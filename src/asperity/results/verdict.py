@@ -20,7 +20,6 @@ _TAKERS = {
     "viscous": "the viscoelastic bulk takes",
     "waves": "elastic waves take",
 }
-_TOUCH = 1e-9  # of the spring's force: less is no contact
 _LITTLE = 1e-9
 """Share of the energy at the release below which nothing was lost that is worth a word."""
 
@@ -99,10 +98,7 @@ def _untouched(result: ResultData) -> bool:
 
 def _swings(result: ResultData) -> bool:
     """Whether a body on a spring never comes to the surface."""
-    if result.case.suspension is None:
-        return False
-    contact, spring = (np.abs(result.forces[name]).max() for name in ("contact", "spring"))
-    return bool(contact <= _TOUCH * spring)
+    return result.case.suspension is not None and result.measures["impact_speed"] is None
 
 
 def _swinging(result: ResultData) -> str:

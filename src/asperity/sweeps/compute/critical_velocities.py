@@ -83,5 +83,5 @@ def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstIm
     contact_end = made.measures["contact_end"]
     known = (made.made > 0) & (made.outcome != failed) & np.isfinite(contact_end)
     speed = np.where(known, made.measures["impact_speed"], np.nan)
-    excess = made.history["leaving"][:, 0] - body.plain_load.climb(0.0, contact_end)
+    excess = made.history["leaving"][:, 0] - body.plain_load.potential_gain(0.0, contact_end)
     return FirstImpacts.of(speed, made.measures["captured"].astype(bool), excess, mass)
