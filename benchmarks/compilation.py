@@ -75,16 +75,16 @@ def _seconds(asked: str, way: str) -> tuple[float, float]:
 @contextmanager
 def _computed(way: str) -> Iterator[None]:
     """The ways that no argument chooses, put in place of what the program does."""
-    from asperity import integration
     from asperity.dynamics import prepare
-    from asperity.sweeps.compute import batch_steps
+    from asperity.integration import steps
 
-    none: Any = lambda *args: None  # noqa: E731
+    curves: Any = lambda self, batch: self.curves.ahead(batch, self.tabulated)  # noqa: E731
     alone: Any = lambda contact, body, many: prepare(contact, body)  # noqa: E731
+    place: Any
     place, name, other = {
-        "one by one": (integration, "_compile_impacts", none),
-        "as they come": (batch_steps, "prepare", alone),
-    }.get(way, (integration, "_compile_impacts", integration._compile_impacts))
+        "one by one": (steps.Steps, "compile_ahead", curves),
+        "as they come": (steps, "prepare", alone),
+    }.get(way, (steps, "prepare", prepare))
     with mock.patch.object(place, name, other):
         yield
 

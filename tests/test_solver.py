@@ -130,12 +130,11 @@ def test_progress_rises_to_one(case):
 
 def test_a_motion_that_fails_raises_with_what_was_computed_or_returns_it(case, monkeypatch):
     """The failure is put in: the flight itself has no case that fails."""
-    integrate = integration._integrate_in_chunks
 
     def failing(*args):
-        return integrate(*args)._replace(outcome=Outcome.FAILED)
+        return integration.integrate(*args)._replace(outcome=Outcome.FAILED)
 
-    monkeypatch.setattr(integration, "_integrate_in_chunks", failing)
+    monkeypatch.setattr(solver, "integrate", failing)
     kept = solver.solve(case, throw=False)
     assert kept.outcome is Outcome.FAILED
     with pytest.raises(SimulationError) as raised:

@@ -12,7 +12,7 @@ from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
-from .integration import integrate_prepared, prepared, silently
+from .integration import launch, prepared
 from .results.conversion import Solution, contact_end, measured
 from .results.measures import least_peak
 from .results.summary import amount
@@ -84,8 +84,8 @@ class Launcher:
         body = dataclasses.replace(
             problem.body, release=_launched_from(solution, problem, many=many)
         )
-        self._problem, self._many, self._stop = problem._replace(body=body), many, stop
-        self._contacts = [solution.contact, *(solution.contact.refined(n) for n in finer)]
+        self._problem = problem._replace(body=body, contact=solution.contact)
+        self._many, self._stop, self._refinements = many, stop, (1, *finer)
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
 
     def __call__(self, speed: float) -> Rebound:
@@ -97,16 +97,9 @@ class Launcher:
     def _launched(self, speed: float) -> Rebound:
         body = dataclasses.replace(self._problem.body, speed=speed)
         problem = self._problem._replace(body=body)
-        for contact in self._contacts:
-            curves = prepared(contact, body, many=self._many)
-            allowed = max(_ERROR, contact.error_floor)
-            if float(curves[0].error) <= allowed and float(curves[0].residual) <= _ERROR:
-                break
-        else:
-            return _UNKNOWN
         try:
-            solution = integrate_prepared(
-                problem, contact, curves, self._limits, silently, self._stop
+            solution = launch(
+                problem, self._limits, _ERROR, self._refinements, self._stop, many=self._many
             )
         except SimulationError:
             return _UNKNOWN

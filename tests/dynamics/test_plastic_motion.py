@@ -9,7 +9,7 @@ from asperity._jax import jax, jnp
 from asperity.config import builtin, load
 from asperity.config.resolve import resolve
 from asperity.errors import InputError, SimulationError
-from asperity.integration import _REFINEMENTS
+from asperity.integration.batch_motion import REFINEMENTS
 from asperity.model import build
 from asperity.results.read_record import read as read_record
 
@@ -157,4 +157,4 @@ def test_curves_that_more_panels_do_not_mend_are_given_up_at_once():
     )
     with pytest.raises(SimulationError, match=r"relative error of .*e-09, not"):
         asperity.solve(case, progress=lambda _, text: base.append(text))
-    assert base.count("force curves") < len(_REFINEMENTS)
+    assert base.count("force curves") < len(REFINEMENTS)

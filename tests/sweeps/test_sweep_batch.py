@@ -9,9 +9,9 @@ import pytest
 
 import asperity
 from asperity.errors import InputError
+from asperity.integration.clock import Stopped
 from asperity.solver import solve
 from asperity.sweeps.compute.batch import compute, evaluate
-from asperity.sweeps.compute.batch_steps import Stopped
 from asperity.sweeps.compute.building import built
 from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import parse

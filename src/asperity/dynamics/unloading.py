@@ -13,7 +13,7 @@ from .curve_table import CONTACTING, FORCE, STORED, Pieces, Quantities, Table, j
 from .record import Phase
 
 _SHARES = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 25)))
-_ROUNDING = 1e-15  # of the largest force, some units in the last place: less tension is none
+_ROUNDING = 1e-13  # of the largest force: sums of Chebyshev terms round by more than less tension
 _NEWTON = 8  # steps from the nearest of these shares of a piece
 
 
@@ -24,7 +24,7 @@ class Unloading(NamedTuple):
     Attributes
     ----------
     pull_off
-        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-15 of the
+        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-13 of the
         largest force.
     separation
         Rigid separation at which it occurs [m]; NaN where nothing pulls.

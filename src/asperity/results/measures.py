@@ -7,7 +7,7 @@ are NaN.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -132,6 +132,13 @@ class FirstContact(NamedTuple):
     force: jax.Array
     unloading: Unloading
     outset: jax.Array
+
+    @classmethod
+    def unknown(cls, count: int) -> FirstContact:
+        """Those of so many motions before their first impact."""
+        none: Any = np.full(count, np.nan)
+        pulled = Unloading(none, none, none, none, np.zeros(count, bool))  # type: ignore[arg-type]
+        return cls(none, none, none, pulled, none)
 
 
 Passing = tuple[jax.Array, jax.Array]

@@ -14,11 +14,11 @@ from asperity.config import Case
 from asperity.config.resolve import resolve
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError, Outcome, SimulationError
+from asperity.integration.clock import Clock
 from asperity.model import build
 from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.result import Result
 from asperity.solver import solve
-from asperity.sweeps.compute.batch_steps import Clock
 from asperity.sweeps.compute.building import Group, Values, built
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
@@ -200,10 +200,10 @@ def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) ->
                 out[column.name][at, : known.shape[1]] = known
             elif column.name in found:
                 out[column.name][at] = found[column.name][moved]
-    for place, reason in solution.reasons.items():
-        _fail(out, int(rows[place]), reason)
+    for place, failure in solution.failures.items():
+        _fail(out, int(rows[place]), str(failure))
     for place, problem in enumerate(group.problems):
-        if place not in solution.reasons:
+        if place not in solution.failures:
             at_depth = AtDepth(*solution.at_depth[place].tolist())
             try:
                 check_surface(problem, at_depth)

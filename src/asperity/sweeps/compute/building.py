@@ -12,11 +12,12 @@ import numpy as np
 from asperity._jax import jax, jnp
 from asperity.config import Case
 from asperity.config.resolve import resolve
-from asperity.contact import Contact, ElasticContact, RigidContact
+from asperity.contact import ElasticContact, RigidContact
 from asperity.contact.resolution import Resolution, lengths_in_rms, resolution_of
-from asperity.dynamics import Body
+from asperity.dynamics import Limits
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError
+from asperity.integration.batch_records import Batch
 from asperity.model import build
 from asperity.numerics.compilation import Program
 from asperity.sweeps.compute.rows import Rows, Split
@@ -38,24 +39,6 @@ _KINDS = (
 
 _ROUNDING = 1e-12  # relative, between one case built alone and among others
 _UNRESOLVED = Resolution(1, 8, 1)
-
-
-class Batch(NamedTuple):
-    """What is integrated side by side: each array has the cases along its first axis.
-
-    Attributes
-    ----------
-    contact, body
-        The contacts and bodies.
-    rest, time_limit, impacts
-        Ends of the motions: [-], [s], [-].
-    """
-
-    contact: Contact
-    body: Body
-    rest: np.ndarray
-    time_limit: np.ndarray
-    impacts: np.ndarray
 
 
 class Group(NamedTuple):
@@ -230,10 +213,7 @@ def _case(study: Study, values: Values, row: int) -> Case:
 
 
 def _batch_of(problem: Problem) -> Batch:
-    ends = problem.inputs.tolerance
-    rest, time_limit = (np.asarray(x, float) for x in (ends.rest, ends.time_limit))
-    impacts = np.asarray(ends.max_impacts)
-    return Batch(problem.contact, problem.body, rest, time_limit, impacts)
+    return Batch(problem.contact, problem.body, Limits.of(problem.inputs.tolerance))
 
 
 def _is_array(leaf: Any) -> bool:

@@ -7,15 +7,16 @@ import dataclasses
 import numpy as np
 
 from asperity._jax import jax, jnp
-from asperity.dynamics import Body
+from asperity.dynamics import Body, Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
 from asperity.dynamics.problem import CLEARANCE
 from asperity.dynamics.record import ENDS
 from asperity.errors import Outcome
-from asperity.sweeps.compute import batch_steps
-from asperity.sweeps.compute.batch_steps import Clock
-from asperity.sweeps.compute.building import Batch, Group
-from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch, taken
+from asperity.integration.batch_records import Batch, taken
+from asperity.integration.clock import Clock
+from asperity.integration.steps import FEW_CASES, Steps
+from asperity.sweeps.compute.building import Group
+from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch
 
 _TOGETHER = 256  # cases whose impacts are launched in one go
 _ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
@@ -44,15 +45,14 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     cases: Batch = taken(group.batch, some)
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
     release = _launched_from(cases, solution.measures["outset"][some])
-    few = group.rows.size <= batch_steps.FEW_CASES
-    width = batch_steps.width(group.batch, group.rows.size) if few else None
+    count = group.rows.size
+    width = Steps.of_batch(group.batch, count).width if count <= FEW_CASES else None
 
     def launch(index: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
         batch = taken(cases, index)
         body = dataclasses.replace(batch.body, release=release[index], speed=speeds)
-        batch = batch._replace(
-            body=body, time_limit=np.full(index.size, np.inf), impacts=np.ones(index.size, int)
-        )
+        rest, none = batch.limits.rest, np.full(index.size, np.inf)
+        batch = batch._replace(body=body, limits=Limits(rest, none, np.ones(index.size, int)))  # type: ignore[arg-type]
         allowed = np.full(index.size, max(_ERROR, batch.contact.error_floor))
         launched = Group(np.arange(index.size), batch, allowed)
         # A small study launches in calls of its cases' own width: those are compiled already.

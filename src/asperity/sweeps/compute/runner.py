@@ -212,8 +212,8 @@ def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Ite
     """
     from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
+    from asperity.integration.clock import Stopped
     from asperity.sweeps.compute.batch import compute
-    from asperity.sweeps.compute.batch_steps import Stopped
 
     remaining = iter(tasks)
     cores = _cores()

@@ -28,7 +28,6 @@ def warnings_in(problem: Problem, solution: BatchSolution, place: int) -> list[s
     """
     at_depth = AtDepth(*solution.at_depth[place].tolist())
     rows: Any = {name: array[place] for name, array in solution.history.items()}
-    rows.pop("passing_in", None), rows.pop("passing_out", None)
     none: Any = None
     release: Any = solution.release[place]
     motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)

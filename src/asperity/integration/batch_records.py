@@ -1,0 +1,141 @@
+"""Cases side by side: what is integrated, what a motion goes on from, what is kept of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._jax import jax
+from ..contact import Contact
+from ..dynamics import Body, Impacts, Limits, Progress, Table
+from ..dynamics.release import AtRelease
+from ..dynamics.static_equilibrium import Reference
+from ..numerics.compilation import kept
+from ..results.measures import FirstContact, Passing
+
+
+class Batch(NamedTuple):
+    """Cases of one structure: each array has the cases along its first axis.
+
+    Attributes
+    ----------
+    contact, body
+        The contacts and bodies.
+    limits
+        Ends of the motions.
+    """
+
+    contact: Contact
+    body: Body
+    limits: Limits
+
+    @classmethod
+    def of_one(cls, contact: Contact, body: Body, limits: Limits) -> Batch:
+        """One case as a batch."""
+        one: Batch = jax.tree_util.tree_map(_raised, cls(contact, body, limits))
+        return one
+
+
+@kept
+class Begun(NamedTuple):
+    """What a motion goes on from.
+
+    Attributes
+    ----------
+    table, reference, origin
+        Curves, static equilibrium, and mechanical energy at the release [J].
+    progress
+        The motion at its last apex.
+    """
+
+    table: Table
+    reference: Reference
+    origin: jax.Array
+    progress: Progress
+
+
+@kept
+class Checks(NamedTuple):
+    """What must hold before a motion is believed.
+
+    Attributes
+    ----------
+    error, residual
+        Relative errors of the interpolation and of the contact's equilibrium.
+    at_release
+        The forces at the release.
+    """
+
+    error: jax.Array
+    residual: jax.Array
+    at_release: AtRelease
+
+
+@kept
+class FirstImpact(NamedTuple):
+    """What is kept of the first impact where phases are not.
+
+    Attributes
+    ----------
+    contact
+        The first contact.
+    at_depth
+        :class:`asperity.regimes.validity.AtDepth` of its closest approach.
+    """
+
+    contact: FirstContact
+    at_depth: jax.Array
+
+    @classmethod
+    def unknown(cls, count: int) -> FirstImpact:
+        """That of so many cases before it takes place."""
+        return cls(FirstContact.unknown(count), np.full((count, 3), np.nan))  # type: ignore[arg-type]
+
+
+@kept
+class ImpactRows(NamedTuple):
+    """Impacts of a compiled call.
+
+    Attributes
+    ----------
+    impacts
+        A row an impact. Their phases are None in a batch of several cases.
+    passing
+        Energies with which each passes the end of contact; None where phases tell them, or
+        nothing drags outside contact.
+    """
+
+    impacts: Impacts
+    passing: Passing | None = None
+
+
+def _raised(leaf: Any) -> Any:
+    is_array = isinstance(leaf, np.ndarray | np.generic | jax.Array)
+    return np.asarray(leaf)[None] if is_array else leaf
+
+
+def unbatched(tree: Any) -> Any:
+    """What a batch of one has of its one case."""
+    return jax.tree_util.tree_map(lambda leaf: np.reshape(leaf, np.shape(leaf)[1:]), tree)
+
+
+def slices(places: np.ndarray, width: int) -> Iterator[np.ndarray]:
+    """The places, so many at a time; the last are filled up with -1."""
+    for begin in range(0, places.size, width):
+        some = places[begin : begin + width]
+        yield np.concatenate([some, np.full(width - some.size, -1, int)])
+
+
+def taken(tree: Any, places: np.ndarray) -> Any:
+    """Cases by their places in a tree of arrays; where there is none, the last of the places."""
+    index = np.where(places >= 0, places, places.max())
+    return jax.tree_util.tree_map(
+        lambda leaf: np.asarray(leaf)[index] if is_array(leaf) else leaf, tree
+    )
+
+
+def is_array(leaf: Any) -> bool:
+    """Whether a leaf of a tree is an array, which has the cases along its first axis."""
+    return isinstance(leaf, np.ndarray | jax.Array)

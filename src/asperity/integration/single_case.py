@@ -1,0 +1,246 @@
+"""The motion of one case: a batch of one, or stepped in time where its contact asks for that."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+
+import numpy as np
+
+from ..contact import Contact, ElasticContact, RigidContact
+from ..contact.delayed_formation import DelayedContact
+from ..contact.resolution import in_steps
+from ..contact.viscoelastic import Relaxation, RelaxedContact
+from ..dynamics import Body, Limits, Motion, Table
+from ..dynamics.problem import CLEARANCE, Problem
+from ..dynamics.record import ENDS
+from ..dynamics.static_equilibrium import Reference
+from ..dynamics.stepped_motion import integrate_stepped
+from ..dynamics.stepped_phase import Ended
+from ..errors import InputError, Outcome, SimulationError, Tolerance
+from ..results.conversion import Solution
+from .batch_motion import REFINEMENTS, BatchMotion
+from .batch_records import Batch, unbatched
+from .clock import Clock, Report, Stopped, silently
+from .steps import Steps
+
+_STOPPED = "stopped before the first impact"
+
+
+def cut_in_steps(problem: Problem) -> Problem:
+    """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
+    relaxation = problem.relaxation
+    if relaxation is not None:
+        relaxation = dataclasses.replace(relaxation, contact=_in_steps(relaxation.contact))
+    return problem._replace(contact=_in_steps(problem.contact), relaxation=relaxation)
+
+
+def _in_steps(contact: Contact) -> Contact:
+    if isinstance(contact, RelaxedContact):
+        return RelaxedContact(_in_steps(contact.base))
+    if not isinstance(contact, RigidContact | ElasticContact):
+        return contact
+    resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
+    return dataclasses.replace(contact, resolved=resolved)
+
+
+def integrate(
+    problem: Problem,
+    report: Report = silently,
+    stop: threading.Event | None = None,
+    *,
+    many: bool = False,
+) -> Solution:
+    """The motion of what was built from a case.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    report
+        Called with a fraction done and a line of text, now and then.
+    stop
+        Set from another thread, it ends the motion early.
+    many
+        Whether the scanning curves are tabulated first: that compiles longer, and pays where
+        many cases follow.
+
+    Raises
+    ------
+    InputError
+        If the release lies inside contact.
+    SimulationError
+        If the curves miss the tolerance, or the motion is stopped before its first impact.
+    """
+    tolerance = problem.inputs.tolerance
+    motion = _of_one(
+        problem, Limits.of(tolerance), tolerance.relative, Clock(stop, report), many=many,
+        checked=problem.inputs.release is not None, launched=problem.inputs.chosen_release,
+    )  # fmt: skip
+    try:
+        return _solution(problem, motion)
+    except InputError as error:
+        place = _at_rest(problem, many)
+        raise InputError(f"{error}{place}", key=error.key) from None
+
+
+def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, Motion]:
+    """The contact with its curves, and the motion as far as the first impact.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    report
+        As ``progress`` of :func:`solve`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`solve`.
+    """
+    # It has all the time that it needs.
+    problem = problem._replace(inputs=problem.inputs.one_impact(), delayed=None, relaxation=None)
+    solution = integrate(problem, report)
+    return solution.contact, solution.motion
+
+
+def launch(
+    problem: Problem,
+    limits: Limits,
+    tolerance: float,
+    refinements: tuple[int, ...],
+    stop: threading.Event | None,
+    *,
+    many: bool,
+) -> Solution:
+    """The motion of a body wherever it is released.
+
+    Parameters
+    ----------
+    problem, many, stop
+        As for :func:`integrate`.
+    limits
+        Ends of its motion.
+    tolerance
+        Relative error allowed to the force curves [-].
+    refinements
+        Times the panels that are tried.
+
+    Raises
+    ------
+    SimulationError
+        As :func:`integrate`.
+    """
+    motion = _of_one(
+        problem, limits, tolerance, Clock(stop), many=many, refinements=refinements, checked=False
+    )
+    return _solution(problem, motion)
+
+
+def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Reference]:
+    """Force curves over all that a body can reach, and the static equilibrium.
+
+    Parameters
+    ----------
+    contact, body
+        What moves on what.
+    many
+        As for :func:`integrate`.
+    """
+    steps = Steps.of_one(contact, body, many=many)
+    here = Batch.of_one(contact, body, Limits.of(Tolerance()))
+    begun, _checks = unbatched(steps.curves(here, many))
+    return begun.table, begun.reference
+
+
+def _of_one(
+    problem: Problem,
+    limits: Limits,
+    tolerance: float,
+    clock: Clock,
+    *,
+    many: bool,
+    refinements: tuple[int, ...] = REFINEMENTS,
+    checked: bool,
+    launched: bool = False,
+) -> BatchMotion:
+    contact, body = problem.contact, problem.body
+    return BatchMotion(
+        Batch.of_one(contact, body, limits), np.array([tolerance]),
+        Steps.of_one(contact, body, many=many), clock,
+        refinements=refinements, checked=checked, launched=launched,
+    )  # fmt: skip
+
+
+def _solution(problem: Problem, motion: BatchMotion) -> Solution:
+    """The motion of the one case of a batch, which is not integrated yet."""
+    if problem.delayed is not None or problem.relaxation is not None:
+        return _integrate_in_time(problem, motion)
+    outcome = None
+    try:
+        motion.integrate()
+    except Stopped:
+        outcome = Outcome.INTERRUPTED
+    _raise_failure(motion)
+    count, made = motion.steps.together, int(motion.made[0])
+    ends, rows = motion.ends(), motion.history(-(-made // count) * count)
+    if ends is None or rows is None:
+        raise SimulationError(_STOPPED)
+    begun, impacts = unbatched(ends[0]), unbatched(rows.impacts)
+    moved = Motion(impacts, begun.progress, begun.table, begun.reference, begun.origin)
+    outcome = outcome or ENDS[int(begun.progress.outcome)]
+    return Solution(moved, _contact(problem, motion), outcome, body=_body(problem, motion))
+
+
+def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:
+    """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
+    clock = motion.clock
+    try:
+        here = next(motion.curves(), None)
+    except Stopped:
+        raise SimulationError(_STOPPED) from None
+    _raise_failure(motion)
+    assert here is not None
+    begun, limits = unbatched(here.begun), unbatched(motion.batch.limits)
+    contact, body = _contact(problem, motion), _body(problem, motion)
+    mechanism: Relaxation | DelayedContact | None = problem.relaxation or problem.delayed
+    if isinstance(mechanism, DelayedContact) and isinstance(contact, ElasticContact):
+        mechanism = Relaxation.none(mechanism)
+    assert mechanism is not None
+    clock.report(0.1, "motion")
+
+    def made(count: int) -> None:
+        clock.report(0.1 + 0.75 * min(count / int(limits.impacts), 1.0), f"impact {count}")
+
+    curves = begun.table, begun.reference
+    try:
+        moved, trajectory, outcome = integrate_stepped(
+            contact, mechanism, body, curves, limits, made, clock.stop
+        )
+    except Ended as error:
+        raise SimulationError(_STOPPED) from error
+    return Solution(moved, contact, outcome, trajectory, body)
+
+
+def _raise_failure(motion: BatchMotion) -> None:
+    for failure in motion.failures.values():
+        raise failure
+
+
+def _contact(problem: Problem, motion: BatchMotion) -> Contact:
+    """The contact with the panels that its curves have."""
+    return problem.contact.refined(int(motion.factors[0]))
+
+
+def _body(problem: Problem, motion: BatchMotion) -> Body:
+    """The body with the release that was found, where the case gives a speed alone."""
+    return dataclasses.replace(problem.body, release=motion.batch.body.release[0])
+
+
+def _at_rest(problem: Problem, many: bool) -> str:
+    """Where the body would rest, seen from outside contact; empty where nothing holds it."""
+    release = float(problem.contact.interaction_range) + CLEARANCE
+    clear = dataclasses.replace(problem.body, release=release, drags=())
+    place = float(prepared(problem.contact, clear, many=many)[1].equilibrium)
+    return f"; at rest the separation is {place * 1e9:.4g} nm" if np.isfinite(place) else ""

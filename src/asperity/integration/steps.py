@@ -1,0 +1,189 @@
+"""The compiled steps of cases of one structure: their curves, their next impacts, their measures.
+
+One case is a batch of one: its axis is taken off within the step, so that it runs the code of one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from equinox.internal import unvmap_any
+
+from .._jax import jax, jnp
+from ..contact import Contact, ElasticContact, RigidContact
+from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts, prepare, start
+from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
+from ..dynamics.release import at_release
+from ..numerics.compilation import AT_ONCE, QUICKLY, Program
+from ..results.measures import FirstContact, Measures, first_contact, measure, passing_at
+from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows
+
+FEW_CASES = 64
+"""Cases up to which a group counts as small."""
+
+_NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
+_IMPACTS = 16  # of a compiled call of a batch
+_CHUNK, _QUICK = 20, 100  # of one case: short enough for Ctrl-C, where all is quick
+
+Options = dict[str, bool | int]
+"""Options of XLA."""
+
+_FAST: Options = {"xla_cpu_multi_thread_eigen": False}
+"""XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
+
+_SOON: Options = {**QUICKLY, **_FAST}
+"""For a few rigid or smooth bodies: they take less time than it takes to compile for them."""
+
+
+def _curves(batch: Batch, tabulated: bool) -> tuple[Begun, Checks]:
+    """The curves of each case, and its release."""
+
+    def one(batch: Batch) -> tuple[Begun, Checks]:
+        contact, body = batch.contact, batch.body
+        table, reference = prepare(contact, body, tabulated)
+        progress, origin = start(contact, body, table)
+        checks = Checks(table.error, table.residual, at_release(table, body))
+        return Begun(table, reference, origin, progress), checks
+
+    return _over(batch)(one)(batch)
+
+
+def _impacts(
+    batch: Batch, begun: Begun, first: FirstImpact | None, count: int
+) -> tuple[Progress, FirstImpact | None, ImpactRows]:
+    """The next impacts of each case, so many at most; with their phases where no first is kept."""
+
+    def one(
+        values: tuple[Batch, Begun, FirstImpact | None],
+    ) -> tuple[Progress, FirstImpact | None, ImpactRows]:
+        (contact, body, limits), begun, first = values
+        table, progress = begun.table, begun.progress
+        after, impacts = integrate_impacts(
+            contact, body, table, begun.reference, begun.origin, progress, limits, count
+        )
+        if first is None:
+            return after, None, ImpactRows(impacts)
+        now = progress.made == 0
+        found = jax.lax.cond(
+            unvmap_any(now), lambda: _first_impact(table, impacts, body), lambda: first
+        )
+        first = jax.tree_util.tree_map(lambda a, b: jnp.where(now, a, b), found, first)
+        passing = None
+        if body.damped_apart:
+            passing = passing_at(body, table, impacts, first.contact.end)
+        slim = impacts._replace(fall=None, rise=None)  # type: ignore[arg-type]
+        return after, first, ImpactRows(slim, passing)
+
+    return _over(batch)(one)((batch, begun, first))
+
+
+def _first_impact(table: Table, impacts: Impacts, body: Body) -> FirstImpact:
+    deepest = outer_row(table, 0, impacts.closest_approach[0])
+    at_depth = [deepest[CONTACTING], deepest[FORCE] - deepest[ATTRACTION], deepest[CENTRAL]]
+    return FirstImpact(first_contact(table, impacts, body), jnp.stack(at_depth))
+
+
+def _measure(batch: Batch, ends: Begun, first: FirstContact, rows: ImpactRows) -> Measures:
+    """Measures of motions that have ended; their tables are not needed."""
+
+    def one(body: Body, ends: Begun, first: FirstContact, rows: ImpactRows) -> Measures:
+        motion = Motion(rows.impacts, ends.progress, ends.table, ends.reference, ends.origin)
+        return measure(motion, body, rows.passing, first)
+
+    return jax.vmap(one)(batch.body, ends, first, rows)
+
+
+def _over(batch: Batch) -> Callable[[Any], Any]:
+    """Side by side, or one after the other where each is a large computation of its own."""
+    if batch.limits.rest.shape[0] == 1:
+        return _alone
+    if isinstance(batch.contact, ElasticContact):
+        return lambda one: lambda values: jax.lax.map(one, values)
+    return jax.vmap
+
+
+def _alone(one: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """The step of a batch of one."""
+
+    def step(values: Any) -> Any:
+        answer = one(jax.tree_util.tree_map(lambda leaf: leaf[0], values))
+        return jax.tree_util.tree_map(lambda leaf: jnp.asarray(leaf)[None], answer)
+
+    return step
+
+
+class Steps(NamedTuple):
+    """The compiled steps of a batch, and how they are called.
+
+    Attributes
+    ----------
+    curves, impacts, measure
+        The curves, the next impacts, the measures.
+    width
+        Cases of a compiled call.
+    together
+        Impacts of a compiled call.
+    tabulated
+        Whether the scanning curves are tabulated first.
+    """
+
+    curves: Program[..., Any]
+    impacts: Program[..., Any]
+    measure: Program[..., Any]
+    width: int
+    together: int = _IMPACTS
+    tabulated: bool = True
+
+    @classmethod
+    def of_batch(cls, batch: Batch, cases: int, width: int | None = None) -> Steps:
+        """Those of a batch, for so many cases in all; without a width, what suits them."""
+        wide = width or _width(batch, cases)
+        return cls(*(_OF_FEW if wide == _NARROW else _OF_MANY), wide)
+
+    @classmethod
+    def of_one(cls, contact: Contact, body: Body, *, many: bool) -> Steps:
+        """Those of one case; ``many`` as for :func:`asperity.integration.integrate`."""
+        few = isinstance(contact, ElasticContact) and not many
+        return cls(*(_AT_ONCE if few else _OF_ONE), 1, _at_once(contact, body), many)
+
+    def compile_ahead(self, batch: Batch) -> None:
+        """Compile for a batch of the width of a call in a thread, where that is not done."""
+        begun, _checks = self.curves.ahead(batch, self.tabulated)
+        self.impacts.ahead(batch, begun, self.before, self.together)
+
+    @property
+    def before(self) -> FirstImpact | None:
+        """What is known of first impacts before any: None for one case, which keeps its phases."""
+        return FirstImpact.unknown(self.width) if self.width > 1 else None
+
+
+def _width(batch: Batch, cases: int) -> int:
+    if isinstance(batch.contact, ElasticContact):
+        return 8
+    if cases <= FEW_CASES:
+        return _NARROW
+    return 256 if jax.default_backend() == "cpu" else 4096
+
+
+def _at_once(contact: Contact, body: Body) -> int:
+    """Impacts of one case in one compiled call."""
+    if isinstance(contact, RigidContact) and not body.damped:
+        return _QUICK if getattr(contact.interface, "closed", False) else _CHUNK
+    return _CHUNK
+
+
+_Programs = tuple[Program[..., Any], Program[..., Any], Program[..., Any]]
+
+
+def _compiled(curves: Options, impacts: Options, measure: Options) -> _Programs:
+    """The curves, the impacts and the measures, each with XLA's options."""
+    return Program(_curves, curves), Program(_impacts, impacts), Program(_measure, measure)
+
+
+_OF_MANY, _OF_FEW = _compiled(_FAST, _FAST, _FAST), _compiled(_SOON, _SOON, _SOON)
+_OF_ONE = _compiled(QUICKLY, AT_ONCE, AT_ONCE)  # impacts 0.8 s sooner at first, 1 to 9 ms later
+_AT_ONCE: _Programs = (
+    Program(_curves, AT_ONCE),
+    *_OF_ONE[1:],
+)  # 10 ms slower and compiled 2 s sooner
