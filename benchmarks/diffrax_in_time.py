@@ -117,7 +117,7 @@ def first_impact(leg: Any, frame: Frame, memory: Any) -> tuple[float, float, flo
                 y = y.at[0].set(mark)
                 forming = forming or (sign < 0 and mark <= float(y[2]) + goal + frame.close)
         turns.append(float(y[0]))
-        memory = contact.base.remember(contact.with_threshold(memory, y[2]), y[0])
+        memory = contact.base.update_memory(contact.with_threshold(memory, y[2]), y[0])
         broken = float(y[0]) - float(frame.breaking[contact.meniscus_index])
         y = y.at[1].set(0.0).at[2].set(max(float(y[2]), broken))
         forming = forming and (sign > 0 or float(y[2]) > float(y[0]) - goal + frame.close)

@@ -30,9 +30,10 @@ from .dynamics.wave_radiation import WaveRadiation
 from .errors import InputError
 from .inputs import Asperities, Inputs
 from .interface.interface import Interface
-from .interface.layers import Layers, Surfaces
+from .interface.layers import Layers
 from .interface.measured_summits import loss_error, measured_surface
 from .interface.plastic_interface import PlasticInterface
+from .interface.rough_planes import RoughPlanes
 from .laws import (
     Bradley,
     ByContact,
@@ -165,7 +166,7 @@ def _delayed(inputs: Inputs, contact: Contact) -> DelayedContact | None:
     return DelayedContact(contact, inputs.formation_time)
 
 
-def _interface(inputs: Inputs, rough: Asperities) -> Surfaces:
+def _interface(inputs: Inputs, rough: Asperities) -> RoughPlanes:
     """Asperities between two planes, and liquid on the surface if it is not on them."""
     asperities = _asperities(inputs, rough)
     if inputs.structure.liquid != "kelvin-filling":
@@ -179,7 +180,7 @@ def _interface(inputs: Inputs, rough: Asperities) -> Surfaces:
     return Layers((asperities, liquid_layer))
 
 
-def _asperities(inputs: Inputs, rough: Asperities) -> Surfaces:
+def _asperities(inputs: Inputs, rough: Asperities) -> RoughPlanes:
     """The asperities: of one radius and Gaussian heights, or those that were measured."""
     summits = rough.summits
     if summits is None or inputs.structure.heights != "summits":

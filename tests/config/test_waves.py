@@ -93,7 +93,7 @@ def test_motion_is_that_of_an_integration_in_time_with_gas_and_waves(problem, re
     place, speed = float(problem.body.release), -0.5
     for name in ("closest_approach", "apex"):
         place, taken = _leg(problem, place, speed, memory)
-        memory, time = problem.contact.remember(memory, place), time + taken
+        memory, time = problem.contact.update_memory(memory, place), time + taken
         speed = 1e-9 if name == "closest_approach" else -1e-9
         assert result.events[f"{name}_separation"][0] == pytest.approx(place, rel=1e-6)
         assert result.events[f"{name}_time"][0] == pytest.approx(time, rel=1e-6)

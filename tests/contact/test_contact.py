@@ -40,7 +40,7 @@ def states(contact, separations, memory):
 
 @eqx.filter_jit
 def remember(contact, separation):
-    return contact.remember(contact.initial_memory(), separation)
+    return contact.update_memory(contact.initial_memory(), separation)
 
 
 @eqx.filter_jit
@@ -186,10 +186,10 @@ def test_a_smooth_body_feels_the_law_itself():
     contact = SmoothContact(law)
     d = jnp.asarray(0.5 * float(law.breaking_gap))
     assert float(state(contact, d).force) == 0.0
-    touched = contact.remember(contact.initial_memory(), jnp.asarray(-1e-9))
+    touched = contact.update_memory(contact.initial_memory(), jnp.asarray(-1e-9))
     held = contact.state(d, touched)
     assert float(held.force) == pytest.approx(float(law.bonded_force(d)), rel=1e-13)
-    gone = contact.remember(touched, jnp.asarray(2.0 * float(law.breaking_gap)))
+    gone = contact.update_memory(touched, jnp.asarray(2.0 * float(law.breaking_gap)))
     assert float(gone[0]) == 0.0
 
 

@@ -47,7 +47,7 @@ def residual(here, place, thresholds, size, displacement):
 @pytest.mark.parametrize("depth", [4.5, 0.5, -10.0])
 def test_rings_settle_from_nothing_and_from_a_guess_nearby(modulus, depth, bonded):
     here, place, size = contact(modulus), jnp.asarray(depth * SIGMA), jnp.asarray(9e-7)
-    thresholds, flat = here.extreme((bonded,)).thresholds, jnp.zeros(RINGS + 1)
+    thresholds, flat = here.branches()[int(bonded)].thresholds, jnp.zeros(RINGS + 1)
     rest = found(here, place, thresholds, size, flat, RINGS)
     assert float(rest.error) < 1e-10
     left = residual(here, place, thresholds, 9e-7, rest.displacement)
@@ -125,9 +125,7 @@ def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():
     forces = []
     for rings in (48, 96):
         here = build(resolve(case.replace({"numerics.rings": rings}))).contact
-        states = jax.jit(jax.vmap(lambda d, here=here: here.state(d, here.extreme((True,)))))(
-            places
-        )
+        states = jax.jit(jax.vmap(lambda d, here=here: here.state(d, here.branches()[-1])))(places)
         assert np.all(states.size < 1e-5)
         forces.append(np.asarray(states.force))
     np.testing.assert_allclose(forces[0], forces[1], atol=1e-6 * np.max(np.abs(forces[1])))

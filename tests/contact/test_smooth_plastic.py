@@ -188,7 +188,7 @@ def test_force_is_the_slope_of_what_is_stored_and_kept(name):
     np.testing.assert_allclose(
         -loading, force(pressed, contact.initial_memory()), atol=1e-9 * scale
     )
-    memory = contact.remember(contact.initial_memory(), -30.0 * begin)
+    memory = contact.update_memory(contact.initial_memory(), -30.0 * begin)
     left = contact.contact.residual(30.0 * begin)
     unloading = jnp.linspace(-29.9 * begin, -left + 0.9e-9, 21)
     way = slope(contact, unloading, memory)
@@ -198,7 +198,7 @@ def test_force_is_the_slope_of_what_is_stored_and_kept(name):
 @pytest.mark.parametrize("name", CONTACTS)
 def test_parts_add_up_and_nothing_is_felt_out_of_reach(name):
     contact = CONTACTS[name]
-    memory = contact.remember(contact.initial_memory(), -20.0 * contact.contact.yield_overlap)
+    memory = contact.update_memory(contact.initial_memory(), -20.0 * contact.contact.yield_overlap)
     for d, before in ((-3.0, contact.initial_memory()), (-15.0, memory)):
         state = contact.state(d * contact.contact.yield_overlap, before)
         assert state.parts.shape == (len(contact.components),)
@@ -212,7 +212,7 @@ def test_parts_add_up_and_nothing_is_felt_out_of_reach(name):
 def test_branches_are_the_first_approach_and_then_every_combination_of_bonds():
     contact = SmoothPlasticContact(ADHESIVE, meniscus())
     assert len(contact.branches()) == 1
-    pressed = contact.remember(contact.initial_memory(), jnp.asarray(-1e-7))
+    pressed = contact.update_memory(contact.initial_memory(), jnp.asarray(-1e-7))
     worn = contact.after(contact.left_by(pressed, jnp.asarray(-1e-7)))
     assert len(worn.branches()) == 4
     assert int(worn.branch_of(worn.initial_memory(), jnp.asarray(False))) == 0
@@ -220,7 +220,7 @@ def test_branches_are_the_first_approach_and_then_every_combination_of_bonds():
         assert int(worn.branch_of(memory, jnp.asarray(True))) == 1 + k
         assert float(memory[0]) == -1e-7
     assert int(worn.branch_of(pressed, jnp.asarray(True))) == 4
-    apart = worn.remember(pressed, jnp.asarray(1e-6))
+    apart = worn.update_memory(pressed, jnp.asarray(1e-6))
     assert int(worn.branch_of(apart, jnp.asarray(False))) == worn.rest_branch == 1
 
 

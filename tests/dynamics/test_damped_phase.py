@@ -82,7 +82,7 @@ def test_turns_and_times_are_those_of_an_integration_in_time(problem, in_air):
         for sign, rows in ((-1, (made.closest_approach, made.closest_approach_time)),
                            (1, (made.apex, made.apex_time))):  # fmt: skip
             place, taken, _ = _in_time(problem, place, sign, memory, problem.body.drags[0])
-            memory, time = problem.contact.remember(memory, place), time + taken
+            memory, time = problem.contact.update_memory(memory, place), time + taken
             assert float(rows[0][k]) == pytest.approx(place, rel=1e-8)
             assert float(rows[1][k]) == pytest.approx(time, rel=1e-7)
 
@@ -121,7 +121,7 @@ def test_restitution_counts_what_passes_the_end_of_contact(problem, integrated):
     speeds = []
     speeds.append(_in_time(problem, start, -1, memory, film, until=place)[2])
     deepest = float(motion.impacts.closest_approach[0])
-    memory = problem.contact.remember(memory, deepest)
+    memory = problem.contact.update_memory(memory, deepest)
     speeds.append(_in_time(problem, deepest, 1, memory, film, until=place)[2])
     found = float(measures.restitution[0])
     assert found == pytest.approx(speeds[1] / speeds[0], rel=1e-6)

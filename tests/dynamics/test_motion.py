@@ -212,7 +212,7 @@ def test_energy_integral_agrees_with_integration_in_time(name):
     rows = integrate(contact, body)[0].impacts
     release = float(body.release)
     down, deepest = turning_in_time(contact, body, contact.initial_memory(), release, 0.0, -1)
-    memory = contact.remember(contact.initial_memory(), jnp.asarray(deepest))
+    memory = contact.update_memory(contact.initial_memory(), jnp.asarray(deepest))
     up, apex = turning_in_time(contact, body, memory, deepest, 0.0, 1)
     assert float(rows.closest_approach[0]) == pytest.approx(deepest, rel=1e-7)
     assert float(rows.closest_approach_time[0]) == pytest.approx(down, rel=1e-7)

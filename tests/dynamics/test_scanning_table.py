@@ -87,9 +87,7 @@ def works(contact, table, place, unloading):
     ours = table.reversals.pieces(place, unloading)
     flat = jnp.zeros(contact.rings + 1)
     held = Held(jnp.asarray(True), ~unloading, ours.values[0, 0, SIZE], flat)
-    curve = contact.scanning_curve_from(
-        place, held, jnp.asarray(True), (table.ends[0], table.ends[-1])
-    )
+    curve = contact.reversals.curve(place, held, jnp.asarray(True), (table.ends[0], table.ends[-1]))
     low, high = jnp.minimum(curve.enter, curve.leave), jnp.maximum(curve.enter, curve.leave)
     values = fit(all_rows(curve.states))
     left = (ours.leave[-1] - curve.leave[-1]) * jnp.where(unloading, 1.0, -1.0)

@@ -70,7 +70,7 @@ def _read(contact, deep, places):
     """Curves down to 20 times where yield begins, before and after an impact of that depth."""
     low, high = -1.2 * deep, jnp.asarray(2e-8)
     table = tabulate(contact, low, high)
-    memory = contact.remember(contact.initial_memory(), -deep)
+    memory = contact.update_memory(contact.initial_memory(), -deep)
     again = tabulate_again(contact, table, memory, -deep)
     forces = [jax.vmap(lambda d, t=t: outer_row(t, 0, d)[FORCE])(places) for t in (table, again)]
     widths = [jnp.diff(t.ends) / jnp.abs(t.ends[1:]) for t in (table, again)]

@@ -6,13 +6,13 @@ deformation. `elastic`: the same on a half-space (`equilibrium` solves one separ
 `continuation` follows a path of them, `ring_error` estimates the mesh error).
 `viscoelastic`, `delayed_formation`: contacts whose force depends on time.
 `published_conjunction`: the publication's own. `resolution`: panel lengths of the force curves.
-`scanning_curve`: separations along a scanning curve.
+`scanning_curve`: separations along a scanning curve. `ring_reversals`: few that stand for all.
 
 A contact is immutable; its memory is passed in and out.
 """
 
 from .contact import Contact, State
-from .elastic import ElasticContact, RingMemory
+from .elastic import ElasticContact
 from .published_conjunction import PublishedContact
 from .rigid import RigidContact
 from .smooth import SmoothContact
@@ -23,7 +23,6 @@ __all__ = [
     "ElasticContact",
     "PublishedContact",
     "RigidContact",
-    "RingMemory",
     "SmoothContact",
     "SmoothPlasticContact",
     "State",

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable
-from itertools import product
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import numpy as np
 
 from .._jax import jax, jnp
 
@@ -94,6 +92,43 @@ class Held(NamedTuple):
     field: jax.Array
 
 
+class ReversalSampling(NamedTuple):
+    """How scanning curves from all reversals on the major branches are found from a few.
+
+    Attributes
+    ----------
+    number
+        Scanning curves in each direction that stand for all (static).
+    scale
+        Length [m] over which forces fall off, by which ranges of reversals are cut.
+    alike
+        Whether few curves stand for those from all reversals between two separations [m].
+    curve
+        The scanning curve from a reversal at a separation [m], where the contact came as a
+        :class:`Held` says, if it is wanted, within bounds [m]. Size and field of the held need not
+        be those of the branch.
+    on_branch
+        Whether a memory is of a reversal on a major branch.
+    """
+
+    number: int
+    scale: jax.Array
+    alike: Callable[[jax.Array, jax.Array], jax.Array]
+    curve: Callable[[jax.Array, Held, jax.Array, tuple[Any, Any]], ScanningCurve]
+    on_branch: Callable[[Memory], jax.Array]
+
+
+def elastic_part(components: tuple[str, ...], parts: jax.Array) -> jax.Array:
+    """The elastic force among the parts of a force [N]; 0 where none is."""
+    return parts[components.index("elastic")] if "elastic" in components else jnp.zeros(())
+
+
+def two_branches(laws: int, extreme: Callable[[float], Memory]) -> tuple[Memory, ...]:
+    """Major branches of hysteretic laws with no bond, by a threshold of inf, and with all."""
+    ends = (jnp.inf, -jnp.inf) if laws else (jnp.inf,)
+    return tuple(extreme(threshold) for threshold in ends)
+
+
 class Contact(eqx.Module):
     """Two bodies pressed together along one axis, with the memory of their bonds.
 
@@ -112,20 +147,9 @@ class Contact(eqx.Module):
         """Names of the forces in :attr:`State.parts`."""
 
     @property
-    def discrete(self) -> bool:
-        """Whether a bond is one yes or no, as on a smooth body."""
-        return False
-
-    @property
     def reference(self) -> jax.Array | None:
         """Separation [m] from which rebounds count; None for the static equilibrium."""
         return None
-
-    def elastic_part(self, parts: jax.Array) -> jax.Array:
-        """The elastic force among the parts [N]."""
-        if "elastic" not in self.components:
-            return jnp.zeros_like(parts[0])
-        return parts[self.components.index("elastic")]
 
     @property
     def error_floor(self) -> float:
@@ -140,19 +164,10 @@ class Contact(eqx.Module):
     def initial_memory(self) -> Memory:
         """Memory of bodies that never touched."""
 
-    @abc.abstractmethod
-    def extreme(self, bonded: tuple[bool, ...]) -> Memory:
-        """Memory on a major branch: for each law, all bonds kept or none made."""
-
     @property
     def yields(self) -> bool:
         """Whether its first impact leaves it changed for good. Known without values."""
         return False
-
-    @property
-    def rest_branch(self) -> int:
-        """Index of the branch on which it comes to rest: of approach, once it has yielded."""
-        return int(self.yields)
 
     def left_by(self, memory: Memory, separation: jax.Array) -> Any:
         """What a first impact leaves, that turned at a separation [m]; arrays for :meth:`after`."""
@@ -162,6 +177,7 @@ class Contact(eqx.Module):
         """The contact as its first impact left it."""
         return self
 
+    @abc.abstractmethod
     def branches(self) -> tuple[Memory, ...]:
         """Memories of the major branches.
 
@@ -169,40 +185,30 @@ class Contact(eqx.Module):
         all. A contact that yields has that of its first approach alone, and the others once it
         has had its first impact (:meth:`after`).
         """
-        laws = len(self.mechanisms)
-        if self.discrete:
-            combinations = product((False, True), repeat=laws)
-            return tuple(self.extreme(tuple(reversed(bits))) for bits in combinations)
-        ends = ((False,) * laws, (True,) * laws) if laws else ((),)
-        return tuple(self.extreme(bonded) for bonded in ends)
 
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
         """Index of the major branch that a body with ``memory`` reaches."""
-        laws = len(self.mechanisms)
-        if self.discrete:
-            weights = 2 ** np.arange(laws)
-            return jnp.sum(jnp.where(self.bonded(memory), weights, 0))
-        return jnp.where(unloading, min(laws, 1), 0)
+        return jnp.where(unloading, min(len(self.mechanisms), 1), 0)
 
     @abc.abstractmethod
     def state(self, separation: jax.Array, memory: Memory) -> State:
         """The contact at a rigid separation, reached monotonically from ``memory``."""
 
-    def branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
-        """The contact on the major branch of ``memory``, at ascending places [m].
-
-        Shape (panels, places), on panels with the given ``ends``.
-        """
-        return jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places)
-
     def curves(self, ends: jax.Array, places: jax.Array) -> State:
-        """The contact on all :meth:`branches` along a new first axis, else as :meth:`branch`."""
+        """The contact on all :meth:`branches`, at ascending places [m].
+
+        Shape (branches, panels, places), on panels with the given ``ends``.
+        """
         memories = self.branches()
         stacked = jax.tree_util.tree_map(lambda *leaves: jnp.stack(leaves), *memories)
         if jax.tree_util.tree_leaves(stacked):
-            return jax.lax.map(lambda memory: self.branch(ends, places, memory), stacked)
-        states = self.branch(ends, places, memories[0])
+            return jax.lax.map(lambda memory: self._branch(ends, places, memory), stacked)
+        states = self._branch(ends, places, memories[0])
         return jax.tree_util.tree_map(lambda leaf: leaf[None], states)
+
+    def _branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
+        """The contact on one of them, shape (panels, places)."""
+        return jax.vmap(jax.vmap(lambda d: self.state(d, memory)))(places)
 
     def scanning_curve(
         self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
@@ -214,60 +220,18 @@ class Contact(eqx.Module):
         return None
 
     @property
-    def reversals(self) -> int:
-        """Scanning curves in each direction that stand for all; 0 where none is worth keeping."""
-        return 0
+    def reversals(self) -> ReversalSampling | None:
+        """How few scanning curves stand for all; None where each is solved as it comes."""
+        return None
 
-    @property
-    def scale(self) -> jax.Array:
-        """Length [m] over which forces fall off, by which ranges of reversals are cut."""
-        raise TypeError(
-            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
-        )
+    @abc.abstractmethod
+    def update_memory(
+        self, memory: Memory, separation: jax.Array, held: Held | None = None
+    ) -> Memory:
+        """Memory after a monotone motion from ``memory`` to ``separation``.
 
-    @property
-    def lagging(self) -> int:
-        """How many numbers :attr:`State.field` holds."""
-        return 0
-
-    @property
-    def passed(self) -> tuple[int, int]:
-        """Pieces of a :class:`ScanningCurve`, and places on each."""
-        raise TypeError(
-            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
-        )
-
-    def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        """Whether few ways stand for those from all reversals between two separations [m]."""
-        return jnp.zeros(jnp.shape(low), bool)
-
-    def scanning_curve_from(
-        self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
-    ) -> ScanningCurve:
-        """The way from a reversal on a major branch, that came there as ``held`` says.
-
-        Size and field of ``held`` need not be those of the branch. Nothing is solved where it is
-        not ``wanted``. Only of contacts whose :attr:`reversals` are more than 0.
+        ``held`` tells how the motion ended there, where that is known already.
         """
-        raise TypeError(
-            f"{type(self).__name__} has no scanning curves to tabulate: its `reversals` is 0"
-        )
-
-    def on_branch(self, memory: Memory) -> jax.Array:
-        """Whether the last reversal was on a major branch, for :meth:`scanning_curve_from`."""
-        return jnp.asarray(False)
-
-    @abc.abstractmethod
-    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        """Memory after a monotone motion from ``memory`` to ``separation``."""
-
-    def update_memory(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
-        """The same, where the state at ``separation`` is known already."""
-        return self.remember(memory, separation)
-
-    @abc.abstractmethod
-    def bonded(self, memory: Memory) -> jax.Array:
-        """For a discrete contact: which laws are bonded, shape (laws,)."""
 
     @abc.abstractmethod
     def losses(self) -> tuple[jax.Array, jax.Array]:

@@ -7,12 +7,14 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from .._jax import jax, jnp
-from ..interface.interface import Memory as Thresholds
+from ..interface.rough_planes import Memory as Thresholds
+from ..numerics.compilation import kept
 from .equilibrium import (
     RingEquilibrium,
     Rough,
     asked_size,
     beyond,
+    equilibrium_displacement,
     profile_of,
     rates,
     solve_equilibrium,
@@ -38,20 +40,26 @@ class Deforming(Rough, Protocol):
         """Pieces of a scanning curve, and separations on each."""
 
 
-class Bound(Protocol):
-    """Rings that hold bonds on a mesh of their own."""
+@kept
+class RingMemory(NamedTuple):
+    """Thresholds on the rings of a mesh of a given size.
 
-    @property
-    def thresholds(self) -> Thresholds:
-        """One array a hysteretic law [m]."""
+    Attributes
+    ----------
+    thresholds
+        One array a hysteretic law, shape (rings + 1,); the last belongs to the mesh's end.
+    size
+        Length [m] of the mesh; 0 where all thresholds are infinite and the mesh is free.
+    displacement
+        Displacement [m] of the rings at the last reversal, shape (rings + 1,).
+    outer
+        Whether that was on a major branch.
+    """
 
-    @property
-    def size(self) -> jax.Array:
-        """Length of the mesh [m]."""
-
-    @property
-    def displacement(self) -> jax.Array:
-        """Displacement of the rings at the reversal [m]."""
+    thresholds: Thresholds
+    size: jax.Array
+    displacement: jax.Array
+    outer: jax.Array
 
 
 class ContinuationPath(NamedTuple):
@@ -87,14 +95,14 @@ class ContinuationPath(NamedTuple):
 
 def first_size(contact: Deforming, separation: jax.Array) -> jax.Array:
     """Size of the mesh before anything is solved: light contact, and Hertz's radius."""
-    sigma, radius = contact.interface.heights.rms, contact.shape.radius
+    sigma, radius = contact.interface.scale.rms, contact.shape.radius
     light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
     return jnp.sqrt(light + radius * jnp.maximum(-separation, 0.0))
 
 
 def _marks(
     contact: Deforming,
-    memory: Bound,
+    memory: RingMemory,
     start: jax.Array,
     unloading: jax.Array,
     rates: jax.Array,
@@ -153,7 +161,7 @@ def descend(
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
     count = corners.shape[0]
-    sigma = contact.interface.heights.rms
+    sigma = contact.interface.scale.rms
     flat = jnp.zeros(contact.rings + 1)
     above = ContinuationPath.straight(corners[0] + sigma, flat, flat, -sigma)
 
@@ -184,7 +192,7 @@ def descend(
 
 def retrace(
     contact: Deforming,
-    memory: Bound,
+    memory: RingMemory,
     start: jax.Array,
     size: jax.Array,
     unloading: jax.Array,
@@ -193,7 +201,7 @@ def retrace(
     """Pieces of the scanning curve, separations on them and the rings there, from the start on."""
     pieces, nodes = contact.passed
     steps = piece_points(nodes)
-    sigma = contact.interface.heights.rms
+    sigma = contact.interface.scale.rms
     held = memory.thresholds, size
     pace = rates(contact, start, *held, memory.displacement, contact.rings)
     marks = _marks(contact, memory, start, unloading, pace)
@@ -209,3 +217,18 @@ def retrace(
     _, found = jax.lax.scan(step, path, places.ravel())
     rests = jax.tree_util.tree_map(lambda leaf: leaf.reshape(pieces, nodes, *leaf.shape[1:]), found)
     return enter, leave, places, rests
+
+
+def with_derivatives(
+    contact: Deforming,
+    separation: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    rest: RingEquilibrium,
+) -> RingEquilibrium:
+    """Rings in equilibrium, with the derivatives of where they lie."""
+    held = jax.lax.stop_gradient((size, rest.displacement))
+    displacement = equilibrium_displacement(
+        contact, separation, thresholds, *held, rings=contact.rings
+    )
+    return rest._replace(displacement=displacement)

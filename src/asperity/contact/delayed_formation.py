@@ -12,7 +12,8 @@ import equinox as eqx
 from .._jax import jax, jnp
 from ..errors import InputError
 from ..interface.interface import Interface
-from ..interface.layers import Layer, Layers, Surfaces
+from ..interface.layers import Layers
+from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
 from .contact import Contact, Memory, State
 from .elastic import ElasticContact
@@ -155,6 +156,11 @@ class DelayedContact(eqx.Module):
         self.time = jnp.asarray(time, dtype=jnp.float64)
 
     @property
+    def discrete(self) -> bool:
+        """Whether a bond is one yes or no, as on a smooth body."""
+        return isinstance(self.base, SmoothContact)
+
+    @property
     def law(self) -> Law:
         """The law of the menisci."""
         return self.laws[self.meniscus_index]
@@ -169,7 +175,7 @@ class DelayedContact(eqx.Module):
 
     def with_threshold(self, memory: Memory, threshold: jax.Array) -> Memory:
         """The memory of all bonds."""
-        if self.base.discrete:
+        if self.discrete:
             return memory
         k = self.meniscus_index
         return (*memory[:k], threshold, *memory[k + 1 :])
@@ -206,13 +212,13 @@ def _base_of_rough(contact: Any) -> RigidContact | ElasticContact:
     return answer
 
 
-def _base_of_surfaces(surfaces: Surfaces) -> Surfaces:
+def _base_of_surfaces(surfaces: RoughPlanes) -> RoughPlanes:
     if isinstance(surfaces, Layers):
         return Layers([_base_of_part(part) for part in surfaces.parts])
     return _base_of_part(surfaces)
 
 
-def _base_of_part(part: Layer) -> Layer:
+def _base_of_part(part: RoughPlanes) -> RoughPlanes:
     if isinstance(part, Interface):
         return _base_of_interface(part)
     if part.yields:

@@ -4,46 +4,31 @@ from __future__ import annotations
 
 import dataclasses
 from math import pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh, rings_of_mesh
-from ..interface.interface import Memory as Thresholds
-from ..interface.layers import Surfaces
+from ..interface.rough_planes import Memory as Thresholds
+from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
-from ..numerics.compilation import kept
-from .contact import Contact, Held, Potential, ScanningCurve, State
-from .continuation import descend, first_size, fitted, retrace
-from .equilibrium import RingEquilibrium, equilibrium_displacement, profile_of, solve_equilibrium
+from .contact import (
+    Contact,
+    Held,
+    Potential,
+    ReversalSampling,
+    ScanningCurve,
+    State,
+    elastic_part,
+    two_branches,
+)
+from .continuation import RingMemory, descend, first_size, fitted, retrace, with_derivatives
+from .equilibrium import RingEquilibrium, profile_of
 from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
-
-_ALIKE = 3.0  # rms heights between reversals whose ways are interpolated, at most
-
-
-@kept
-class RingMemory(NamedTuple):
-    """Thresholds on the rings of a mesh of a given size.
-
-    Attributes
-    ----------
-    thresholds
-        One array a hysteretic law, shape (rings + 1,); the last belongs to the mesh's end.
-    size
-        Length [m] of the mesh; 0 where all thresholds are infinite and the mesh is free.
-    displacement
-        Displacement [m] of the rings at the last reversal, shape (rings + 1,).
-    outer
-        Whether that was on a major branch.
-    """
-
-    thresholds: Thresholds
-    size: jax.Array
-    displacement: jax.Array
-    outer: jax.Array
+from .ring_reversals import ring_reversals, swept
 
 
 class ElasticContact(Contact):
@@ -71,7 +56,7 @@ class ElasticContact(Contact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
-    interface: Surfaces
+    interface: RoughPlanes
     shape: Sphere
     rings: int = eqx.field(static=True)
     resolved: Resolution = eqx.field(static=True)
@@ -79,7 +64,7 @@ class ElasticContact(Contact):
 
     def __init__(
         self,
-        interface: Surfaces,
+        interface: RoughPlanes,
         shape: Sphere,
         modulus: Real,
         rings: int = 80,
@@ -114,13 +99,16 @@ class ElasticContact(Contact):
         return dataclasses.replace(self, resolved=finer)
 
     def initial_memory(self) -> RingMemory:
-        return self.extreme((False,) * len(self.mechanisms))
+        return self.branches()[0]
 
-    def extreme(self, bonded: tuple[bool, ...]) -> RingMemory:
-        rows = tuple(
-            jnp.full(self.rings + 1, -jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded
-        )
-        return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1), jnp.asarray(False))
+    def branches(self) -> tuple[RingMemory, ...]:
+        laws = len(self.mechanisms)
+
+        def extreme(threshold: float) -> RingMemory:
+            rows = (jnp.full(self.rings + 1, threshold),) * laws
+            return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1), jnp.asarray(False))
+
+        return two_branches(laws, extreme)
 
     def state(self, separation: jax.Array, memory: RingMemory) -> State:
         size, rest = self._alone(separation, memory)
@@ -151,22 +139,11 @@ class ElasticContact(Contact):
             contacting=whole(inside.contacting, outside.contacting),
             error=rest.error,
             size=size,
-            elastic=self.elastic_part(parts),
+            elastic=elastic_part(self.components, parts),
             field=rest.displacement,
         )
 
-    def _rest(
-        self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: RingEquilibrium
-    ) -> RingEquilibrium:
-        """Rings that settled, with the derivatives of where they lie."""
-        held = jax.lax.stop_gradient((size, rest.displacement))
-        return rest._replace(
-            displacement=equilibrium_displacement(
-                self, separation, thresholds, *held, rings=self.rings
-            )
-        )
-
-    def branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
+    def _branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
         """From outside in, each solution the first guess of the next.
 
         The ends of the panels come first: there the size of the mesh is found, which is linear
@@ -178,7 +155,7 @@ class ElasticContact(Contact):
         sizes, rests = descend(*frozen)
 
         def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
-            rest = self._rest(place, memory.thresholds, size, rest)
+            rest = with_derivatives(self, place, memory.thresholds, size, rest)
             return self._measured(place, memory.thresholds, size, rest)
 
         states = jax.vmap(one)(down, sizes, rests)
@@ -186,7 +163,7 @@ class ElasticContact(Contact):
             lambda leaf: leaf[::-1].reshape(near, places.shape[1], *leaf.shape[1:]), states
         )
         thresholds = tuple(b[-1] for b in memory.thresholds)
-        outer = self.rigid.branch(ends, places[near:], thresholds)
+        outer = self.rigid._branch(ends, places[near:], thresholds)
         still = jnp.zeros((self.rigid.far, places.shape[1], *inner.field.shape[2:]))
         outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
@@ -203,7 +180,7 @@ class ElasticContact(Contact):
         size = jax.lax.stop_gradient(memory.size)
 
         def one(place: jax.Array, rest: RingEquilibrium) -> State:
-            rest = self._rest(place, memory.thresholds, size, rest)
+            rest = with_derivatives(self, place, memory.thresholds, size, rest)
             return self._measured(place, memory.thresholds, size, rest)
 
         @jax.jit  # traced once, for its shapes and for itself
@@ -223,55 +200,13 @@ class ElasticContact(Contact):
         return jax.lax.cond(bound, back, nowhere)
 
     @property
-    def reversals(self) -> int:
-        return self.resolved.reversals if self.mechanisms else 0
-
-    @property
-    def lagging(self) -> int:
-        return self.rings + 1
+    def reversals(self) -> ReversalSampling | None:
+        return ring_reversals(self) if self.mechanisms else None
 
     @property
     def passed(self) -> tuple[int, int]:
+        """Pieces of a :class:`ScanningCurve`, and places on each."""
         return len(self.mechanisms) * self.resolved.pieces, self.resolved.nodes
-
-    @property
-    def scale(self) -> jax.Array:
-        return jnp.asarray(self.interface.heights.rms)
-
-    def alike(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        """Where forces fall off along a way by about as much from all of them, and it is short."""
-        widths = [law.breaking_gap - law.forming_gap for law in self.interface.hysteretic]
-        rms = self.interface.heights.rms
-        apart = high - low
-        short = apart * jnp.max(jnp.stack(widths)) < rms**2
-        return short & (apart < _ALIKE * rms) & (high <= self.interaction_range * (1.0 + 1e-12))
-
-    def scanning_curve_from(
-        self, start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
-    ) -> ScanningCurve:
-        size = jax.lax.stop_gradient(held.size)
-        old, flat = self._swept(held), jnp.zeros(self.rings + 1)
-        frozen = jax.lax.stop_gradient((self, start, old, size, held.field))
-        rest = jax.lax.cond(
-            wanted,
-            lambda: solve_equilibrium(*frozen, self.rings),
-            lambda: RingEquilibrium(flat, flat[:-1], jnp.zeros(())),
-        )
-        rest = self._rest(start, old, size, rest)
-        before = RingMemory(old, size, rest.displacement, held.outer)
-        memory = self.update_memory(before, start, held._replace(field=rest.displacement))
-        memory = memory._replace(size=jnp.where(wanted, size, 0.0))
-        curve = self.scanning_curve(memory, start, ~held.unloading, within)
-        assert curve is not None
-        return curve
-
-    def on_branch(self, memory: RingMemory) -> jax.Array:
-        return memory.outer
-
-    def _swept(self, held: Held) -> Thresholds:
-        """Thresholds on the branch on which a body comes."""
-        whole = jnp.where(held.unloading, -jnp.inf, jnp.full(self.rings + 1, jnp.inf))
-        return (whole,) * len(self.mechanisms)
 
     def _alone(
         self, separation: jax.Array, memory: RingMemory
@@ -283,25 +218,22 @@ class ElasticContact(Contact):
         size, rest = fitted(
             frozen, place, old.thresholds, first, old.displacement, jnp.logical_not(bound)
         )
-        return size, self._rest(separation, memory.thresholds, size, rest)
+        return size, with_derivatives(self, separation, memory.thresholds, size, rest)
 
-    def remember(self, memory: RingMemory, separation: jax.Array) -> RingMemory:
-        size, rest = self._alone(separation, memory)
-        h = separation + profile_of(self, size, self.rings) + rest.displacement
-        thresholds = self.interface.remember(memory.thresholds, h)
-        return RingMemory(thresholds, size, rest.displacement, jnp.asarray(False))
-
-    def update_memory(self, memory: RingMemory, separation: jax.Array, held: Held) -> RingMemory:
-        """From the displacement that the curves give there."""
-        size = jax.lax.stop_gradient(held.size)
-        h = separation + profile_of(self, size, self.rings) + held.field
-        # On a major branch no ring holds to what it remembered on its former mesh.
-        pairs = zip(self._swept(held), memory.thresholds, strict=True)
-        old = tuple(jnp.where(held.outer, swept, b) for swept, b in pairs)
-        return RingMemory(self.interface.remember(old, h), size, held.field, held.outer)
-
-    def bonded(self, memory: RingMemory) -> jax.Array:
-        return jnp.zeros(len(self.mechanisms), bool)
+    def update_memory(
+        self, memory: RingMemory, separation: jax.Array, held: Held | None = None
+    ) -> RingMemory:
+        """From the displacement that the curves give there, or solved anew."""
+        if held is None:
+            size, rest = self._alone(separation, memory)
+            old, displacement, outer = memory.thresholds, rest.displacement, jnp.asarray(False)
+        else:
+            size, displacement = jax.lax.stop_gradient(held.size), held.field
+            # On a major branch no ring holds to what it remembered on its former mesh.
+            pairs = zip(swept(self, held), memory.thresholds, strict=True)
+            old, outer = tuple(jnp.where(held.outer, new, b) for new, b in pairs), held.outer
+        h = separation + profile_of(self, size, self.rings) + displacement
+        return RingMemory(self.interface.remember(old, h), size, displacement, outer)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()

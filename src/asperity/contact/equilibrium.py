@@ -15,8 +15,8 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
-from ..interface.interface import Memory as Thresholds
-from ..interface.layers import Surfaces
+from ..interface.rough_planes import Memory as Thresholds
+from ..interface.rough_planes import RoughPlanes
 from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
 from .profile import Sphere
 
@@ -32,7 +32,7 @@ _STEPS = 120
 class Rough(Protocol):
     """What rings are pressed by."""
 
-    interface: Surfaces
+    interface: RoughPlanes
     shape: Sphere
     modulus: Any
 
@@ -115,7 +115,7 @@ def solve_equilibrium(
     """
     safe = separation + profile_of(contact, size, rings)
     area = np.append(ring_mesh(rings).area, 0.0)
-    rms = contact.interface.heights.rms
+    rms = contact.interface.scale.rms
     one = jnp.ones(())
     guess = _Step(
         safe + displacement, jnp.zeros_like(safe), one, one, jnp.zeros(()), jnp.asarray(0)

@@ -87,8 +87,8 @@ class PublishedContact(Contact):
     def initial_memory(self) -> jax.Array:
         return jnp.zeros(())
 
-    def extreme(self, bonded: tuple[bool, ...]) -> jax.Array:
-        return jnp.asarray(1.0 if any(bonded) else 0.0)
+    def branches(self) -> tuple[jax.Array, ...]:
+        return jnp.zeros(()), jnp.ones(())
 
     def state(self, separation: jax.Array, memory: jax.Array) -> State:
         """The contact at a rigid separation; ``memory`` is 1 where the bodies part, 0 else."""
@@ -156,14 +156,10 @@ class PublishedContact(Contact):
         values = self._pressures(places)
         return values @ weights, values @ (weights * (places - start))
 
-    def remember(self, memory: jax.Array, separation: jax.Array) -> jax.Array:
-        return memory
-
-    def update_memory(self, memory: jax.Array, separation: jax.Array, held: Held) -> jax.Array:
-        return jnp.where(held.unloading, 0.0, 1.0)
-
-    def bonded(self, memory: jax.Array) -> jax.Array:
-        return jnp.zeros(len(self.mechanisms), bool)
+    def update_memory(
+        self, memory: jax.Array, separation: jax.Array, held: Held | None = None
+    ) -> jax.Array:
+        return memory if held is None else jnp.where(held.unloading, 0.0, 1.0)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """A joule of work undone costs nothing, a joule done is lost."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..interface.height_quadrature import EVEN
-from ..interface.layers import Surfaces
+from ..interface.rough_planes import RoughPlanes
 from ..laws import KelvinFilling
 from ..laws.law import Law
 from ..numerics.compilation import AT_ONCE, Program
@@ -46,7 +46,7 @@ class Resolution(NamedTuple):
     reversals: int = 10
 
 
-def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
+def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.
 
     By the interaction range of forces and bonds over the rms height; where these are traced,
@@ -59,7 +59,9 @@ def resolution(interface: Surfaces, *, deforms: bool) -> Resolution:
     return resolution_of(interface, lengths, deforms=deforms)
 
 
-def resolution_of(interface: Surfaces, lengths: tuple[float, ...], *, deforms: bool) -> Resolution:
+def resolution_of(
+    interface: RoughPlanes, lengths: tuple[float, ...], *, deforms: bool
+) -> Resolution:
     """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
     panel_lengths = interface.panel_lengths
     share, kinked, interaction_range, bends = lengths
@@ -117,20 +119,18 @@ def _shared(interaction_range: float, panels: int) -> int:
     return max(EVEN, ceil((step * hypot(interaction_range, LINEAR) + _HEIGHTS) / _PIECE))
 
 
-def lengths_in_rms(interface: Surfaces) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+def lengths_in_rms(interface: RoughPlanes) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
     """How far a bond stretches, and how far forces have kinks and reach, over the rms height.
 
     And how far a bond stretches over the length on which its force changes.
     """
     widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
     widest = jnp.max(jnp.stack([jnp.zeros(()), *widths]))
-    rms = interface.heights.rms
+    rms = interface.scale.rms
     bends = [width / law.length for width, law in zip(widths, interface.hysteretic, strict=True)]
     most = jnp.max(jnp.stack([jnp.zeros(()), *bends]))
-    kinked = (interface.heights.top + interface.last_kink) / rms
-    interaction_range = (
-        interface.heights.top + jnp.maximum(interface.interaction_range, 0.0)
-    ) / rms
+    kinked = (interface.scale.top + interface.last_kink) / rms
+    interaction_range = (interface.scale.top + jnp.maximum(interface.interaction_range, 0.0)) / rms
     return widest / rms, kinked, interaction_range, most
 
 

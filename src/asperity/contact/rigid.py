@@ -11,18 +11,22 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface.height_quadrature import Near
-from ..interface.interface import Means
-from ..interface.interface import Memory as Thresholds
-from ..interface.layers import Layers, Surfaces
-from ..interface.plastic_interface import PlasticInterface
-from .contact import Contact, Potential, ScanningCurve, State
+from ..interface.rough_planes import Means, RoughPlanes
+from ..interface.rough_planes import Memory as Thresholds
+from .contact import (
+    Contact,
+    Held,
+    Potential,
+    ScanningCurve,
+    State,
+    elastic_part,
+    two_branches,
+)
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .scanning_curve import first_out_of_reach, piece_points, pieces_to
 
 Left = tuple[Thresholds, jax.Array, Any]
-
-Yielding = PlasticInterface | Layers
 
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
@@ -50,14 +54,14 @@ class RigidContact(Contact):
     which for Gaussian heights raises the order of each height integral by one.
     """
 
-    interface: Surfaces
+    interface: RoughPlanes
     shape: Sphere
     resolved: Resolution = eqx.field(static=True)
     left: Left | None
 
     def __init__(
         self,
-        interface: Surfaces,
+        interface: RoughPlanes,
         shape: Sphere,
         resolved: Resolution | None = None,
         left: Left | None = None,
@@ -96,24 +100,20 @@ class RigidContact(Contact):
     def initial_memory(self) -> Thresholds:
         return self.interface.initial_memory()
 
-    def extreme(self, bonded: tuple[bool, ...]) -> Thresholds:
-        return tuple(jnp.asarray(-jnp.inf if is_bonded else jnp.inf) for is_bonded in bonded)
-
     @property
     def yields(self) -> bool:
         return self.interface.yields
 
     def left_by(self, memory: Thresholds, separation: jax.Array) -> Left:
-        assert isinstance(self.interface, Yielding)
         return memory, separation, self.interface.flattened(memory, 1)
 
     def after(self, left: Left) -> RigidContact:
-        assert isinstance(self.interface, Yielding)
         return dataclasses.replace(self, left=left, interface=self.interface.as_flattened(left[2]))
 
     def branches(self) -> tuple[Thresholds, ...]:
+        laws = len(self.mechanisms)
         if not self.yields:
-            return super().branches()
+            return two_branches(laws, lambda threshold: (jnp.asarray(threshold),) * laws)
         if self.left is None:
             return (self.initial_memory(),)
         ways = (False, True) if self.interface.hysteretic else (False,)
@@ -128,12 +128,12 @@ class RigidContact(Contact):
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
         return self._state(separation, self.interface.measure(separation, memory, integrated=1))
 
-    def branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
+    def _branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
         """Places of one panel share their quadrature; far out only where all forces have ended."""
         count = places.shape[0] - (0 if self.interface.only_bonded else self.far)
         states = [self._states(Near(True, self.resolved.shared), places[:count], memory)]
         if count < places.shape[0]:
-            states.append(super().branch(ends, places[count:], memory))
+            states.append(super()._branch(ends, places[count:], memory))
         return jax.tree_util.tree_map(lambda *rows: jnp.concatenate(rows), *states)
 
     def _states(self, near: Near, places: jax.Array, memory: Thresholds) -> State:
@@ -145,7 +145,7 @@ class RigidContact(Contact):
 
     def _means(self, near: Near, places: jax.Array, memory: Thresholds) -> Means:
         """At rows of places near one another, on a branch or on the way to it."""
-        if isinstance(self.interface, Yielding) and self.yields and self.left is None:
+        if self.yields and self.left is None:
             return self.interface.first_approach(places, 1)
         return self.interface.measure(places, memory, 1, near)
 
@@ -160,15 +160,14 @@ class RigidContact(Contact):
             contacting=self._measure * means.contacting,
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
-            elastic=self.elastic_part(parts),
+            elastic=elastic_part(self.components, parts),
             field=jnp.zeros(0),
         )
 
-    def remember(self, memory: Thresholds, separation: jax.Array) -> Thresholds:
+    def update_memory(
+        self, memory: Thresholds, separation: jax.Array, held: Held | None = None
+    ) -> Thresholds:
         return self.interface.remember(memory, separation)
-
-    def bonded(self, memory: Thresholds) -> jax.Array:
-        return jnp.zeros(len(self.mechanisms), bool)
 
     def scanning_curve(
         self, memory: Thresholds, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
@@ -188,7 +187,6 @@ class RigidContact(Contact):
         if self.left is None:
             steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
             return start + (end - start) * steps
-        assert isinstance(self.interface, Yielding)
         low, high = jnp.minimum(start, end), jnp.maximum(start, end)
         panels = self.left[1] + self.interface.unloading_panels
         return jnp.append(jnp.clip(panels, low, high), end)
@@ -199,7 +197,7 @@ class RigidContact(Contact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, _LADDER * self.interface.heights.rms)
+        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
         stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
         energy = stored + potential(ladder)
         level = energy[0] + kinetic
@@ -214,12 +212,11 @@ class RigidContact(Contact):
 
         And above where bonds of those that were hardly pressed form or break.
         """
-        assert isinstance(self.interface, Yielding)
         bends = [jnp.asarray(law.breaking_gap, float) for law in self.interface.hysteretic]
         starts = turn + jnp.stack([jnp.zeros(()), *bends])
         # Not at the turn itself, where rounding would make a body turn that has just turned, and
         # where a panel so narrow would have no derivatives but those of rounding.
-        below = turn - 1e-9 * self.interface.heights.rms
+        below = turn - 1e-9 * self.interface.scale.rms
         panels = self.interface.unloading_panels
         marks = jnp.concatenate([(starts[:, None] + panels).ravel(), starts[1:], below[None]])
         marks = jnp.where(jnp.abs(marks - turn) <= turn - below, below, marks)
@@ -227,7 +224,7 @@ class RigidContact(Contact):
 
     @property
     def interaction_range(self) -> jax.Array:
-        return self.interface.heights.top + self.interface.interaction_range
+        return self.interface.scale.top + self.interface.interaction_range
 
 
 _LADDER = np.concatenate([np.arange(9.0, -3.0, -0.5), -3.0 * 2.0 ** np.arange(0.0, 50.0)])
@@ -238,7 +235,7 @@ def rough_panels(contact: RigidContact, low: jax.Array, high: jax.Array, count: 
 
     Even over a few rms around 0 and in proportion to |d| far from it.
     """
-    scale = LINEAR * contact.interface.heights.rms
+    scale = LINEAR * contact.interface.scale.rms
     top = jnp.clip(contact.interaction_range, low, high)
     ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(top / scale), count + 1)
     near = (scale * jnp.sinh(ends)).at[0].set(low).at[-1].set(top)

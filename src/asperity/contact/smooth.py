@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from functools import reduce
+from itertools import product
 
 import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Law, terms
-from .contact import Contact, Potential, State
+from .contact import Contact, Held, Potential, State, elastic_part
 from .scanning_curve import first_out_of_reach, panels_around
 
 Flags = jax.Array
@@ -47,21 +48,22 @@ class SmoothContact(Contact):
         names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
 
-    @property
-    def discrete(self) -> bool:
-        return True
-
     def refined(self, factor: int) -> SmoothContact:
         return dataclasses.replace(self, refinement=factor)
 
     def initial_memory(self) -> Flags:
         return jnp.zeros(len(self.mechanisms))
 
-    def extreme(self, bonded: tuple[bool, ...]) -> Flags:
-        return jnp.asarray(bonded, dtype=float)
+    def branches(self) -> tuple[Flags, ...]:
+        combinations = product((0.0, 1.0), repeat=len(self.mechanisms))
+        return tuple(jnp.asarray(bits[::-1], dtype=float) for bits in combinations)
+
+    def branch_of(self, memory: Flags, unloading: jax.Array) -> jax.Array:
+        weights = 2 ** np.arange(len(self.mechanisms))
+        return jnp.sum(jnp.where(memory > 0.5, weights, 0))
 
     def state(self, separation: jax.Array, memory: Flags) -> State:
-        flags = self.remember(memory, separation)
+        flags = self.update_memory(memory, separation)
         each = {name: jnp.zeros_like(separation) for name in self.components}
         stored, index = jnp.zeros_like(separation), 0
         for law in terms(self.law):
@@ -83,20 +85,19 @@ class SmoothContact(Contact):
             contacting=jnp.where(separation < 0.0, 1.0, 0.0),
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
-            elastic=self.elastic_part(parts),
+            elastic=elastic_part(self.components, parts),
             field=jnp.zeros(0),
         )
 
-    def remember(self, memory: Flags, separation: jax.Array) -> Flags:
+    def update_memory(
+        self, memory: Flags, separation: jax.Array, held: Held | None = None
+    ) -> Flags:
         rows = []
         for k, law in enumerate(self._hysteretic):
             formed = separation <= law.forming_gap
-            held = jnp.logical_and(memory[k] > 0.5, separation < law.breaking_gap)
-            rows.append(jnp.where(jnp.logical_or(formed, held), 1.0, 0.0))
+            kept = jnp.logical_and(memory[k] > 0.5, separation < law.breaking_gap)
+            rows.append(jnp.where(jnp.logical_or(formed, kept), 1.0, 0.0))
         return jnp.stack(rows) if rows else jnp.zeros((0,))
-
-    def bonded(self, memory: Flags) -> jax.Array:
-        return memory > 0.5
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         rows = [(law.formation_loss, law.rupture_loss) for law in self._hysteretic]

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..laws.jkr import Jkr
 from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .contact import Contact, Potential, State
+from .contact import Contact, Held, Potential, State, elastic_part
 from .scanning_curve import first_out_of_reach, panels_around
 
 PLASTIC = "plastic"
@@ -96,10 +96,6 @@ class SmoothPlasticContact(Contact):
         return ("elastic", *sorted(names.union(self._adhesion)))
 
     @property
-    def discrete(self) -> bool:
-        return True
-
-    @property
     def yields(self) -> bool:
         return True
 
@@ -108,11 +104,6 @@ class SmoothPlasticContact(Contact):
 
     def initial_memory(self) -> Pressed:
         return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)
-
-    def extreme(self, bonded: tuple[bool, ...]) -> Pressed:
-        """Memory with all of some bonds, the body being as the first impact left it."""
-        lowest = self.initial_memory()[0] if self.left is None else self.left[0][0]
-        return lowest, jnp.asarray(bonded[1:], dtype=float)
 
     def left_by(self, memory: Pressed, separation: jax.Array) -> tuple[Pressed, jax.Array]:
         return memory, separation
@@ -124,8 +115,9 @@ class SmoothPlasticContact(Contact):
         """That of a body that never touched; after that, all combinations of bonds."""
         if self.left is None:
             return (self.initial_memory(),)
-        combinations = product((False, True), repeat=len(self.mechanisms) - 1)
-        return tuple(self.extreme((True, *reversed(bits))) for bits in combinations)
+        lowest = self.left[0][0]
+        combinations = product((0.0, 1.0), repeat=len(self.mechanisms) - 1)
+        return tuple((lowest, jnp.asarray(bits[::-1], dtype=float)) for bits in combinations)
 
     def branch_of(self, memory: Pressed, unloading: jax.Array) -> jax.Array:
         lowest, flags = memory
@@ -134,7 +126,7 @@ class SmoothPlasticContact(Contact):
         return jnp.where(jnp.isinf(lowest), 0, 1 + bonds)
 
     def state(self, separation: jax.Array, memory: Pressed) -> State:
-        lowest, flags = self.remember(memory, separation)
+        lowest, flags = self.update_memory(memory, separation)
         deepest = jnp.maximum(-lowest, 0.0)
         gap = separation + self.contact.residual(deepest)
         held = list(flags > 0.5)
@@ -172,11 +164,13 @@ class SmoothPlasticContact(Contact):
             contacting=jnp.where(gap < 0.0, 1.0, 0.0),
             error=jnp.full_like(separation, 1e-16),
             size=jnp.zeros_like(separation),
-            elastic=self.elastic_part(parts),
+            elastic=elastic_part(self.components, parts),
             field=jnp.zeros(0),
         )
 
-    def remember(self, memory: Pressed, separation: jax.Array) -> Pressed:
+    def update_memory(
+        self, memory: Pressed, separation: jax.Array, held: Held | None = None
+    ) -> Pressed:
         lowest = jnp.minimum(memory[0], separation)
         deepest = jnp.maximum(-lowest, 0.0)
         gap = separation + self.contact.residual(deepest)
@@ -186,10 +180,6 @@ class SmoothPlasticContact(Contact):
             kept = jnp.logical_and(flag > 0.5, gap < law.breaking_gap)
             rows.append(jnp.where(jnp.logical_or(near <= law.forming_gap, kept), 1.0, 0.0))
         return lowest, jnp.stack(rows) if rows else jnp.zeros((0,))
-
-    def bonded(self, memory: Pressed) -> jax.Array:
-        """Work that is kept counts as bonded once the body has been pressed."""
-        return jnp.append(jnp.isfinite(memory[0]), memory[1] > 0.5)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         rows = [(law.formation_loss, law.rupture_loss) for law in self._bonds(jnp.zeros(()))]

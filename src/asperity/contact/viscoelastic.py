@@ -81,16 +81,8 @@ class RelaxedContact(Contact):
         return self.base.components
 
     @property
-    def discrete(self) -> bool:
-        return self.base.discrete
-
-    @property
     def reference(self) -> jax.Array | None:
         return self.base.reference
-
-    @property
-    def lagging(self) -> int:
-        return self.base.lagging
 
     @property
     def error_floor(self) -> float:
@@ -106,9 +98,6 @@ class RelaxedContact(Contact):
     def initial_memory(self) -> Memory:
         return self.base.initial_memory()
 
-    def extreme(self, bonded: tuple[bool, ...]) -> Memory:
-        return self.base.extreme(bonded[:-1])
-
     def branches(self) -> tuple[Memory, ...]:
         return self.base.branches()
 
@@ -118,8 +107,8 @@ class RelaxedContact(Contact):
     def state(self, separation: jax.Array, memory: Memory) -> State:
         return _with_viscous(self.base.state(separation, memory))
 
-    def branch(self, ends: jax.Array, places: jax.Array, memory: Memory) -> State:
-        return _with_viscous(self.base.branch(ends, places, memory))
+    def curves(self, ends: jax.Array, places: jax.Array) -> State:
+        return _with_viscous(self.base.curves(ends, places))
 
     def scanning_curve(
         self, memory: Memory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
@@ -127,14 +116,10 @@ class RelaxedContact(Contact):
         curve = self.base.scanning_curve(memory, start, unloading, within)
         return None if curve is None else curve._replace(states=_with_viscous(curve.states))
 
-    def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        return self.base.remember(memory, separation)
-
-    def update_memory(self, memory: Memory, separation: jax.Array, held: Held) -> Memory:
+    def update_memory(
+        self, memory: Memory, separation: jax.Array, held: Held | None = None
+    ) -> Memory:
         return self.base.update_memory(memory, separation, held)
-
-    def bonded(self, memory: Memory) -> jax.Array:
-        return self.base.bonded(memory)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         formed, broken = self.base.losses()

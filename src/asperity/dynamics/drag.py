@@ -8,12 +8,13 @@ piece, by Newton's method, one piece after the other.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
+from ..numerics.roots import fixed_point
 from .curve_table import CENTRAL
 from .external_forces import Along, Load
 from .phase import Work
@@ -204,21 +205,17 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     they begin there where it is closer, since they do not find a body that the drag stops.
     """
 
-    def goes_on(carry: Any) -> jax.Array:
-        u, change, count = carry
-        return (change > _CLOSE * jnp.max(jnp.abs(u))) & (count > 0)
+    def compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
+        most = jnp.max(jnp.abs(after))
+        return after, jnp.max(jnp.abs(after - u)) / jnp.where(most > 0.0, most, 1.0)
 
-    def iterate(carry: Any) -> Any:
-        u, _, count = carry
-        after = jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0))
-        return after, jnp.max(jnp.abs(after - u)), count - 1
+    def direct(u: jax.Array) -> tuple[jax.Array, jax.Array]:
+        return compared(jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0)), u)
 
-    def newton(carry: Any) -> Any:
-        u, _, count = carry
+    def newton(u: jax.Array) -> tuple[jax.Array, jax.Array]:
         move = _solved(_slopes(u, drag), _missed(u, share, drag))
         # Never past a tenth of itself: a speed that has no solution falls to nothing.
-        after = jnp.maximum(u - move, 0.1 * u)
-        return after, jnp.max(jnp.abs(after - u)), count - 1
+        return compared(jnp.maximum(u - move, 0.1 * u), u)
 
     def off(u: jax.Array) -> jax.Array:
         return jnp.max(jnp.abs(_missed(u, share, drag)))
@@ -228,12 +225,11 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     coasts = jnp.all(coasting > 0.0) & (off(coasting) < off(free))
     start = jnp.where(coasts, coasting, free)
     turns = jnp.where(off(start) <= _CLOSE * POINTS, 0, _DIRECT)
-    u, _, _ = jax.lax.while_loop(goes_on, iterate, (start, jnp.asarray(jnp.inf), turns))
+    u, _ = fixed_point(direct, start, _CLOSE, turns)
     unsolved = off(u) > _CLOSE * POINTS
     u = jnp.where(unsolved, start + 1e-6, u)
-    change = jnp.where(unsolved, jnp.inf, 0.0)
-    u, change, _ = jax.lax.while_loop(goes_on, newton, (u, change, _STEPS))
-    close = (change <= 1e-9 * jnp.max(u)) & (off(u) < 1e-9)
+    u, change = fixed_point(newton, u, _CLOSE, _STEPS, jnp.where(unsolved, jnp.inf, 0.0))
+    close = (change <= 1e-9) & (off(u) < 1e-9)
     return u, close
 
 

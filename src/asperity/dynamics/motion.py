@@ -65,7 +65,7 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     else:
         table = tabulate(contact, low, high)
     if contact.reference is None:
-        reference = find_reference(table, body.load, contact.rest_branch)
+        reference = find_reference(table, body.load, int(contact.yields))
     else:
         reference = Reference(contact.reference, jnp.zeros(()), jnp.asarray(True))
     if many and not contact.yields:

@@ -103,33 +103,31 @@ def solve_reversals(contact: Contact, body: Body, table: Table, reference: Refer
     It turns between its deepest point and the static equilibrium on the way in, and between that
     and its highest point, or where forces end, on the way out. What is not pressed does not return.
     """
-    curves = contact.reversals
-    if not curves:
+    sampling = contact.reversals
+    if sampling is None:
         return table
     frozen, body, rest = jax.lax.stop_gradient((table, body, reference.equilibrium))
     within = frozen.ends[0], frozen.ends[-1]
     deepest, energy = _first_fall(frozen, body)
     interaction_range = jax.lax.stop_gradient(contact.interaction_range)
     ends = _ends(
-        rest, jnp.minimum(within[1], interaction_range), jax.lax.stop_gradient(contact.scale)
+        rest, jnp.minimum(within[1], interaction_range), jax.lax.stop_gradient(sampling.scale)
     )
     low, high = jnp.append(deepest, ends[:-1]), jnp.append(rest, ends[1:])
     returns = jnp.asarray(bool(body.forces)) | (body.weight > 0.0)
-    wanted = jax.lax.stop_gradient(contact.alike(low, high)) & returns & (low < high)
-    nodes, parted = chebyshev.chebpts1(curves), np.arange(RANGES) > 0
+    wanted = jax.lax.stop_gradient(sampling.alike(low, high)) & returns & (low < high)
+    nodes, parted = chebyshev.chebpts1(sampling.number), np.arange(RANGES) > 0
     places = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * nodes
     rows = jnp.stack([_rows(frozen, k, places[n]) for n, k in enumerate(parted.astype(int))])
     held = Held(
-        outer=jnp.ones((RANGES, curves), bool),
-        unloading=jnp.broadcast_to(parted[:, None], (RANGES, curves)),
+        outer=jnp.ones((RANGES, sampling.number), bool),
+        unloading=jnp.broadcast_to(parted[:, None], (RANGES, sampling.number)),
         size=rows[..., SIZE] @ _to_degree(_BEND, nodes).T,
         field=rows[..., quantities(contact).field],
     )
-    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, curves))
+    jobs = places, held, jnp.broadcast_to(wanted[:, None], (RANGES, sampling.number))
     jobs = jax.tree_util.tree_map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), jobs)
-    solved = jax.lax.map(
-        lambda job: contact.scanning_curve_from(job[0], job[1], job[2], within), jobs
-    )
+    solved = jax.lax.map(lambda job: sampling.curve(job[0], job[1], job[2], within), jobs)
     rows = jax.vmap(all_rows)(solved.states)
     contacting = jnp.where(rows[..., CONTACTING] > _NONE, rows[..., CONTACTING], _NONE)
     rows = rows / _scales(contacting, rows.shape[-1])
@@ -201,9 +199,10 @@ def inner_pieces(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
     """The pieces between a reversal at ``start`` and the major branch, some for each law."""
-    if not table.reversals:
+    sampling = contact.reversals
+    if not table.reversals or sampling is None:
         return _solved(contact, table, memory, start, unloading)
-    known = contact.on_branch(memory) & table.reversals.cover(start, unloading)
+    known = sampling.on_branch(memory) & table.reversals.cover(start, unloading)
     return jax.lax.cond(
         known,
         lambda: table.reversals.pieces(start, unloading),

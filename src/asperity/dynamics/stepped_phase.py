@@ -29,7 +29,7 @@ _SPENT = 1e-9  # of the energy with which a body came close to rest: with less i
 
 def _remembered(contact: DelayedContact, here: Here) -> Any:
     held = contact.with_threshold(here.memory, here.threshold)
-    return contact.base.remember(held, here.separation)
+    return contact.base.update_memory(held, here.separation)
 
 
 _remember = Program(_remembered)
@@ -213,7 +213,7 @@ def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
         here = here._replace(separation=np.asarray(taken.mark))
         if sign < 0 and here.separation <= here.threshold + goal + frame.close:
             here = here._replace(forming=np.asarray(True))
-    if frame.contact.base.discrete and taken.event in (MARK, BOND):
+    if frame.contact.discrete and taken.event in (MARK, BOND):
         here, gone = _snapped(course, here, taken.event, sign)
         lost = lost + gone
     return Place(here, place.time + taken.span, taken.next_span, lost)

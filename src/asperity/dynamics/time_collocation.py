@@ -18,6 +18,7 @@ from ..contact.contact import Memory
 from ..contact.delayed_formation import DelayedContact
 from ..laws.law import Real
 from ..numerics.compilation import kept
+from ..numerics.roots import fixed_point
 from .curve_table import rows_of
 from .external_forces import Along
 from .record import Body
@@ -123,8 +124,8 @@ def step(contact: DelayedContact, body: Body, here: Here, span: Real) -> Step:
         nodes = separation, speed, threshold
         return tuple(jnp.append(a, b) for a, b in zip(start, nodes, strict=True))
 
-    def iterate(carry: Any) -> Any:
-        before, _, _, count = carry
+    def newton(carry: tuple[jax.Array, Any]) -> tuple[tuple[jax.Array, _Look], jax.Array]:
+        before = carry[0]
         separation, speed, threshold = path(before[1:])
         look = _look(contact, body, here.memory, separation, speed, threshold)
         slope = (
@@ -136,16 +137,12 @@ def step(contact: DelayedContact, body: Body, here: Here, span: Real) -> Step:
         change = jnp.linalg.solve(jnp.eye(STAGES) - slope, missed[:, None])[:, 0]
         after = jnp.append(look.acceleration[0], before[1:] - change)
         scale = jnp.max(jnp.abs(after)) + jnp.abs(here.speed) / span
-        return after, look, jnp.max(jnp.abs(change)) / scale, count + 1
-
-    def goes_on(carry: Any) -> jax.Array:
-        return (carry[2] > _CLOSE) & (carry[3] < _STEPS)
+        return (after, look), jnp.max(jnp.abs(change)) / scale
 
     start = jnp.full(STAGES + 1, here.acceleration)
-    shapes = jax.eval_shape(iterate, (start, None, 0.0, 0))[1]
+    shapes = jax.eval_shape(newton, (start, None))[0][1]
     blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
-    carry = (start, blank, jnp.asarray(jnp.inf), 0)
-    acceleration, look, change, _ = jax.lax.while_loop(goes_on, iterate, carry)
+    (acceleration, look), change = fixed_point(newton, (start, blank), _CLOSE, _STEPS)
     places = path(acceleration[1:])
     course = _Course(places[0], places[1], acceleration, places[2])
     return _finished(contact, here, span, course, look, change <= 10.0 * _CLOSE)

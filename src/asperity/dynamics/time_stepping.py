@@ -86,7 +86,7 @@ class Frame(NamedTuple):
     def next_mark(self, here: Here, sign: int) -> float:
         """The next separation [m] at which the force changes its law."""
         place, delayed = float(here.separation), self.contact.meniscus_index
-        rough = not self.contact.base.discrete
+        rough = not self.contact.discrete
         gaps = self.forming if sign < 0 else self.breaking
         held = [float(b) for b in here.memory] if rough else [np.nan] * len(gaps)
         held[delayed] = float(here.threshold)
@@ -176,7 +176,7 @@ def _functions(
     if here.forming and sign > 0:
         events[SWITCH] = lambda d, v, b: d - goal - b
     bonds = here.memory
-    if frame.contact.base.discrete and here.forming and not bonds[frame.contact.meniscus_index]:
+    if frame.contact.discrete and here.forming and not bonds[frame.contact.meniscus_index]:
         events[BOND] = lambda d, v, b: -b
     return events
 

@@ -9,12 +9,12 @@ from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
+from ..numerics.roots import root_between
 from .curve_table import ENERGY_SAMPLES
 from .external_forces import Load
 from .phase import Ahead, TurningPoint, kinetic_along
 
 _SHARES = np.linspace(0.0, 1.0, ENERGY_SAMPLES)[1:]
-_POLISH = 60  # halvings and Newton steps of a turning point, at most
 _CLOSE = 4e-14  # relative: the step that follows one so short is lost in rounding
 _INWARDS = 0.1  # of a bracket
 _CLIMBS = 3  # Newton steps to the largest energy, from a place that is near
@@ -188,33 +188,14 @@ def _fastest(ahead: Ahead, places: jax.Array, energies: jax.Array) -> jax.Array:
 
 
 def _polish(piece: _Piece, bracket: _Bracket) -> jax.Array:
-    """Root of the kinetic energy in a bracket: Newton's method kept inside it."""
+    """Root of the kinetic energy in a bracket."""
     frozen, bracket = jax.lax.stop_gradient((piece, bracket))
     inner, outer, left, missing = bracket
-    close = _CLOSE * jnp.maximum(jnp.abs(inner), jnp.abs(outer))
-
-    def go_on(carry):  # type: ignore[no-untyped-def]
-        _, _, _, moved, count = carry
-        return jnp.logical_and(moved > close, count < _POLISH)
-
-    def step(carry):  # type: ignore[no-untyped-def]
-        inside, outside, place, _, count = carry
-        energy, slope = frozen.energy(place), frozen.slope(place)
-        alive = energy >= 0.0
-        inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
-        target = place - energy / jnp.where(slope == 0.0, 1.0, slope)
-        moved = jnp.minimum(jnp.abs(target - place), jnp.abs(outside - inside))
-        between = (target - inside) * (target - outside) <= 0.0
-        middle = 0.5 * (inside + outside)
-        following = jnp.where(jnp.logical_or(between, moved <= close), target, middle)
-        low, high = jnp.minimum(inside, outside), jnp.maximum(inside, outside)
-        return inside, outside, jnp.clip(following, low, high), moved, count + 1
-
     # From where a line between the ends is 0; not at the inner one, where the body may have begun.
     change = left - missing
     share = jnp.clip(left / jnp.where(change > 0.0, change, 1.0), _INWARDS, 1.0)
-    start = (inner, outer, inner + share * (outer - inner), jnp.asarray(jnp.inf), 0)
-    place = jax.lax.while_loop(go_on, step, start)[2]
+    close = _CLOSE * jnp.maximum(jnp.abs(inner), jnp.abs(outer))
+    place = root_between(frozen.energy, inner, outer, close, inner + share * (outer - inner))
     slope = jax.lax.stop_gradient(piece.slope(place))
     correction = piece.energy(place) / jnp.where(slope == 0.0, 1.0, slope)
     # The value is polished already; the last Newton step carries the derivative.

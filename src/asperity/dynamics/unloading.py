@@ -13,7 +13,8 @@ from .curve_table import CONTACTING, FORCE, STORED, Pieces, Quantities, Table, j
 from .record import Phase
 
 _SHARES = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 25)))
-_ROUNDING = 1e-13  # of the largest force: sums of Chebyshev terms round by more than less tension
+_ROUNDING = 1e-15  # of the largest force, some units in the last place: less tension is none
+_SUMMED = 1e-14  # of the terms of a piece's polynomial: their sum is not known closer
 _NEWTON = 8  # steps from the nearest of these shares of a piece
 
 
@@ -24,8 +25,8 @@ class Unloading(NamedTuple):
     Attributes
     ----------
     pull_off
-        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-13 of the
-        largest force.
+        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-15 of the
+        largest force, or than the polynomials tell from none.
     separation
         Rigid separation at which it occurs [m]; NaN where nothing pulls.
     work
@@ -65,7 +66,7 @@ def unloading(table: Table, rise: Phase) -> Unloading:
     curve = _Curve.of(pieces)
     lowest = curve.extremum(curve.force, curve.slope, curve.bend)
     tension = -curve.least(curve.force, lowest)
-    pulls = tension > _ROUNDING * curve.largest
+    pulls = tension > jnp.maximum(_ROUNDING * curve.largest, curve.rounding(lowest))
     beyond = -chebyshev_sum(table.values[rise.branch, -1, :, STORED], jnp.ones(()))
     begins = curve.extremum(curve.left, -curve.force, -curve.slope)
     work = beyond - curve.least(curve.left, begins)
@@ -118,6 +119,11 @@ class _Curve(NamedTuple):
         """Largest size of the force where pieces begin [N]."""
         at_enter = chebyshev_sum(self.force, self._local(self.pieces.enter))
         return jnp.max(jnp.where(self.used, jnp.abs(at_enter), 0.0))
+
+    def rounding(self, places: jax.Array) -> jax.Array:
+        """How closely the force is known on the piece where it is least [N]."""
+        piece = jnp.argmin(self._values(self.force, places))
+        return _SUMMED * jnp.sum(jnp.abs(self.force[:, piece]))
 
     def _local(self, place: jax.Array) -> jax.Array:
         return local(self.pieces.low, self.pieces.high, place)

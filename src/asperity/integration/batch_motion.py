@@ -112,13 +112,15 @@ class BatchMotion:
                 contact = contact.refined(factor) if factor > 1 else contact
                 here = taken(self.batch._replace(contact=contact), some)
                 begun, checks = self._curves(here, moving=moving)
-                fine = self._are_fine(some, here, checks, last=factor == self._refinements[-1])
-                moved = fine & self._move_out(some, here, checks)
+                last = factor == self._refinements[-1]
+                some = np.where(self._are_fine(some, here, checks, last=last), some, -1)
+                moved = self._move_out(some, here, checks)
                 again.append(some[moved])
-                fine &= ~moved & self._are_outside(some, here, checks)
-                self.factors[some[fine]] = factor
-                if np.any(fine):
-                    yield Slice(np.where(fine, some, -1), here, begun, self.steps.before)
+                some = np.where(moved, -1, some)
+                some = np.where(self._are_outside(some, here, checks), some, -1)
+                self.factors[some[some >= 0]] = factor
+                if np.any(some >= 0):
+                    yield Slice(some, here, begun, self.steps.before)
             places = np.concatenate(again)
 
     def _curves(self, here: Batch, *, moving: bool) -> tuple[Begun, Checks]:

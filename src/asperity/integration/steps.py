@@ -169,7 +169,7 @@ def _width(batch: Batch, cases: int) -> int:
 def _at_once(contact: Contact, body: Body) -> int:
     """Impacts of one case in one compiled call."""
     if isinstance(contact, RigidContact) and not body.damped:
-        return _QUICK if getattr(contact.interface, "closed", False) else _CHUNK
+        return _QUICK if contact.interface.closed else _CHUNK
     return _CHUNK
 
 

@@ -1,5 +1,6 @@
 """Mean pressure and energy between two rough planes, with the memory of every bond.
 
+`rough_planes`: what a contact asks of all that follow.
 `interface`: one law over one distribution of heights; its memory is a play operator.
 `height_quadrature`: means over heights of laws without a closed form.
 `radius_classes`, `class_bonds`, `major_branches`, `measured_summits`: summits of several radii.

@@ -2,43 +2,15 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from typing import NamedTuple
-
-import equinox as eqx
-
 from .._jax import jax, jnp
 from ..laws.law import Law, Powers, Real, TruncatedPower, quantity, terms
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Asked, Near, means, means_near
-
-Memory = tuple[jax.Array, ...]
-"""One threshold height b [m] per hysteretic law: the asperities higher than b are bonded."""
+from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 
-class Means(NamedTuple):
-    """Means over the heights, per area (``integrated`` 1: per 2 pi R).
-
-    Attributes
-    ----------
-    parts
-        Pressure by mechanism [Pa], in the order of :attr:`Interface.components`.
-    energy
-        Stored energy [J/m^2].
-    bonds
-        Bonds by law [1/m^2]; where tip radii differ, in bonds of the law's own radius.
-    contacting
-        Asperities with a negative gap [1/m^2].
-    """
-
-    parts: jax.Array
-    energy: jax.Array
-    bonds: jax.Array
-    contacting: jax.Array
-
-
-class Interface(eqx.Module):
+class Interface(RoughPlanes):
     """Many asperities of random height between two planes.
 
     Parameters
@@ -56,10 +28,6 @@ class Interface(eqx.Module):
     height z is h - z. Asperities differ in height alone, so the bonded ones are always
     those above a threshold b, which follows b <- clamp(b, h - g_break, h - g_form): a play
     operator, exact for any sequence of reversals (Visintin 1994; ``docs/theory``).
-
-    ``integrated`` 0 gives means over the plane (pressure [Pa], energy per area [J/m^2]);
-    ``integrated`` 1 integrates them once more over the separation from h to infinity, which
-    times 2 pi R is the force and energy of a rigid paraboloid of radius R whose apex is at h.
     """
 
     law: Law
@@ -67,107 +35,33 @@ class Interface(eqx.Module):
     density: Real = quantity()
 
     @property
-    def hysteretic(self) -> tuple[Law, ...]:
-        """The laws that remember, in the order of the memory."""
-        return tuple(law for law in terms(self.law) if law.hysteretic)
+    def laws(self) -> tuple[Law, ...]:
+        return terms(self.law)
 
     @property
-    def mechanisms(self) -> tuple[str, ...]:
-        """Names under which the losses of :meth:`losses` are booked."""
-        return tuple(law.mechanism for law in self.hysteretic)
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Mechanisms of the forces, elastic first."""
-        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
-        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+    def scale(self) -> Scale:
+        return Scale.of(self.heights)
 
     @property
     def panel_lengths(self) -> PanelLengths:
-        """How finely its curves are cut. Without values."""
         return self.heights.panel_lengths
 
     @property
     def error_floor(self) -> float:
-        """Relative error of curves below which nothing is gained. Without values."""
         return self.heights.error_floor
 
-    @property
-    def interaction_range(self) -> jax.Array:
-        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return reduce(jnp.maximum, [law.interaction_range for law in terms(self.law)])
-
-    @property
-    def last_kink(self) -> jax.Array:
-        """Gap [m] beyond which all laws are smooth."""
-        return reduce(jnp.maximum, [law.last_kink for law in terms(self.law)])
-
-    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory of surfaces that have never touched, one threshold per ``place``."""
-        return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.hysteretic)
-
-    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
-        return tuple(jnp.full(jnp.shape(place), -jnp.inf) for _ in self.hysteretic)
-
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        """The memory after the separation moved monotonically to ``separation`` [m]."""
         return tuple(separation - gap for gap in self.bond_gaps(separation, memory))
 
     @property
     def closed(self) -> bool:
-        """Whether all its means are closed forms, of truncated powers. Without values."""
-        return all(type(law).powers is not Law.powers for law in terms(self.law))
-
-    @property
-    def yields(self) -> bool:
-        """Whether what was pressed once stays changed. Without values."""
-        return False
-
-    def has_yielded(self, memory: Memory) -> jax.Array:
-        """Whether anything was pressed so that it stays changed."""
-        return jnp.asarray(False)
-
-    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on a major branch: no bond is left of what it was, or all hold."""
-        return tuple(jnp.where(unloading, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
-
-    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the major branch."""
-        return [
-            b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
-            for law, b in zip(self.hysteretic, memory, strict=True)
-        ]
-
-    def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
-        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
-        return self.energy(separation, self.initial_memory(), integrated)
-
-    @property
-    def only_bonded(self) -> bool:
-        """Whether every law without truncated powers ends with its bonds. Without values."""
-        edge = jnp.zeros(())
-        return all(law.only_bonded or law.powers(edge) is not None for law in terms(self.law))
+        return all(type(law).powers is not Law.powers for law in self.laws)
 
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
-        """All means over the heights at a separation reached monotonically from ``memory``.
-
-        Parameters
-        ----------
-        separation
-            Separation of the mean planes [m], any shape.
-        memory
-            Thresholds at the last reversal, each of that shape or a scalar.
-        integrated
-            0 for a plane, 1 for a rigid paraboloid (times 2 pi R).
-        near
-            How they lie to one another if they are rows of places, those of a row near one another,
-            which all have one memory.
-        """
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
-        laws = dict(enumerate(terms(self.law)))
+        laws = dict(enumerate(self.laws))
         requests: list[tuple[str, TruncatedPower, float]] = [
             ("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0)
         ]
@@ -217,7 +111,6 @@ class Interface(eqx.Module):
         ]
 
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
         return self._total(separation, memory, integrated, "force")
 
     def _total(
@@ -228,7 +121,7 @@ class Interface(eqx.Module):
         total = jnp.zeros_like(separation)
         flat: Powers = ()
         sizes: tuple[float, ...] = ()
-        for k, law in enumerate(terms(self.law)):
+        for k, law in enumerate(self.laws):
             powers = law.powers(edges[k])
             if powers is None:
                 asked = Asked((name,), integrated)
@@ -242,21 +135,13 @@ class Interface(eqx.Module):
         return self.density * total
 
     def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
         return self._total(separation, memory, integrated, "energy")
-
-    def losses(self) -> tuple[jax.Array, jax.Array]:
-        """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""
-        return (
-            _stack([jnp.asarray(law.formation_loss) for law in self.hysteretic]),
-            _stack([jnp.asarray(law.rupture_loss) for law in self.hysteretic]),
-        )
 
     def _pairs(self, memory: Memory) -> list[tuple[int, tuple[Law, jax.Array | None]]]:
         thresholds = iter(memory)
         return [
             (k, (law, next(thresholds) if law.hysteretic else None))
-            for k, law in enumerate(terms(self.law))
+            for k, law in enumerate(self.laws)
         ]
 
     @staticmethod
@@ -290,7 +175,3 @@ class Interface(eqx.Module):
             return ("force",)
         zero = jnp.zeros(())
         return tuple(law.components(zero, zero > 1.0))
-
-
-def _stack(rows: list[jax.Array]) -> jax.Array:
-    return jnp.stack(rows) if rows else jnp.zeros((0,))

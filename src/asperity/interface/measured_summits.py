@@ -12,8 +12,9 @@ from ..inputs import CLASSES
 from ..laws.law import Law, Real, Sum, terms
 from ..surfaces.heights import Sampled, Spread, spread_of
 from .interface import Interface
-from .layers import Layers, Surfaces
+from .layers import Layers
 from .radius_classes import RadiusClasses, members
+from .rough_planes import RoughPlanes
 
 _SOME = 4096  # quantiles of radii
 
@@ -27,7 +28,7 @@ def measured_surface(
     radius: float,
     classes: int | Sequence[np.ndarray] = CLASSES,
     spread: Spread | None = None,
-) -> Surfaces:
+) -> RoughPlanes:
     """A surface of measured summits, each with its own height and tip radius.
 
     Parameters

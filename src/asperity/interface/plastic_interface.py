@@ -6,7 +6,6 @@ import dataclasses
 from functools import reduce
 from typing import NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
@@ -16,9 +15,9 @@ from ..laws.plastic import PlasticContact
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
-from .interface import Means, Memory
 from .plastic_means import Asperities, means_at
 from .residual_profile import HIGHEST, Flattened, contact_means, flatten, in_reach, power_means
+from .rough_planes import Means, Memory, RoughPlanes, Scale
 from .virgin_loading import NODES, Loaded, first_loading
 
 PLASTIC = "plastic"
@@ -38,7 +37,7 @@ class _Ask(NamedTuple):
     counts: bool
 
 
-class PlasticInterface(eqx.Module):
+class PlasticInterface(RoughPlanes):
     """Asperities of random height that yield, with other laws beside their contact.
 
     Parameters
@@ -84,7 +83,7 @@ class PlasticInterface(eqx.Module):
     pressed: Flattened | None = None
 
     def __check_init__(self) -> None:
-        for law in terms(self.law):
+        for law in self.laws:
             if "elastic" in law.counts:
                 raise InputError(
                     f"{type(law).__name__} and {type(self.contact).__name__} both contain the "
@@ -92,42 +91,38 @@ class PlasticInterface(eqx.Module):
                 )
 
     @property
-    def hysteretic(self) -> tuple[Law, ...]:
-        """The laws beside contact that remember, in the order of their thresholds."""
-        return tuple(law for law in terms(self.law) if law.hysteretic)
+    def laws(self) -> tuple[Law, ...]:
+        """The laws beside contact."""
+        return terms(self.law)
 
     @property
-    def mechanisms(self) -> tuple[str, ...]:
-        """Names under which the losses of :meth:`losses` are booked."""
-        return (PLASTIC, *(law.mechanism for law in self.hysteretic))
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Mechanisms of the forces, elastic first: the contact's, whether it yields or not."""
-        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
-        return ("elastic", *sorted(names))
+    def scale(self) -> Scale:
+        return Scale.of(self.heights)
 
     @property
     def panel_lengths(self) -> PanelLengths:
-        """How finely its curves are cut. Without values."""
         return self.heights.panel_lengths
 
     @property
     def error_floor(self) -> float:
-        """Relative error of curves below which nothing is gained. Without values."""
         return self.heights.error_floor
 
     @property
+    def mechanisms(self) -> tuple[str, ...]:
+        return (PLASTIC, *super().mechanisms)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """The contact's too, whether it yields or not."""
+        return ("elastic", *super().components)
+
+    @property
     def interaction_range(self) -> jax.Array:
-        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
-        return reduce(
-            jnp.maximum, [law.interaction_range for law in terms(self.law)], jnp.zeros(())
-        )
+        return reduce(jnp.maximum, [law.interaction_range for law in self.laws], jnp.zeros(()))
 
     @property
     def last_kink(self) -> jax.Array:
-        """Gap [m] beyond which all laws are smooth."""
-        return jnp.max(jnp.stack([jnp.zeros(()), *(law.last_kink for law in terms(self.law))]))
+        return jnp.max(jnp.stack([jnp.zeros(()), *(law.last_kink for law in self.laws)]))
 
     @property
     def only_bonded(self) -> bool:
@@ -136,12 +131,10 @@ class PlasticInterface(eqx.Module):
 
     @property
     def yields(self) -> bool:
-        """Whether what was pressed once stays changed. Without values."""
         return True
 
     @property
     def unloading_panels(self) -> jax.Array:
-        """Separations above the closest approach [m] between which contacts spring back."""
         if self.pressed is not None:
             return self.pressed.unloading_panels
         last = 2.0 * jnp.asarray(self.heights.rms)
@@ -149,7 +142,6 @@ class PlasticInterface(eqx.Module):
         return first * (last / first) ** (np.arange(_LADDER) / (_LADDER - 1))
 
     def has_yielded(self, memory: Memory) -> jax.Array:
-        """Whether anything was pressed so that it stays changed."""
         return jnp.any(memory[0] < jnp.inf)
 
     def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
@@ -159,14 +151,9 @@ class PlasticInterface(eqx.Module):
         return (deepest, *(jnp.full_like(b, end) for b in thresholds))
 
     def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the major branch."""
-        return [
-            b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
-            for law, b in zip(self.hysteretic, memory[1:], strict=True)
-        ]
+        return super().merging(memory[1:], unloading)
 
     def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
-        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
         if not self._in_powers:
             means = self.measure(separation, self.initial_memory(), integrated)
         else:
@@ -174,17 +161,7 @@ class PlasticInterface(eqx.Module):
         work = means.energy + means.bonds[0]
         return work - _MISSED * jnp.abs(work)
 
-    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory of surfaces that have never touched, one row a mechanism."""
-        return tuple(jnp.full(jnp.shape(place), jnp.inf) for _ in self.mechanisms)
-
-    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory of whole asperities whose bonds hold as far as they can."""
-        apart = jnp.full(jnp.shape(place), jnp.inf)
-        return (apart, *(-apart for _ in self.hysteretic))
-
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        """The memory after the separation moved monotonically to ``separation`` [m]."""
         deepest, *thresholds = memory
         pairs = zip(self.hysteretic, thresholds, strict=True)
         bonds = (separation - _bond_gap(law, b, separation) for law, b in pairs)
@@ -193,7 +170,6 @@ class PlasticInterface(eqx.Module):
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
-        """All means over the heights, as `Interface.measure` has them."""
         if self.pressed is not None:
             return self._measure_pressed(self.pressed, separation, memory)
         shape = jnp.shape(separation)
@@ -204,9 +180,8 @@ class PlasticInterface(eqx.Module):
         return Means(*(jnp.moveaxis(x, 0, -1).reshape(*x.shape[1:], *shape) for x in each))
 
     def first_approach(self, separation: jax.Array, integrated: int = 0) -> Means:
-        """The means of :meth:`measure` for surfaces that were never closer."""
         if not self._in_powers:
-            return self.measure(separation, self.initial_memory(), integrated)
+            return super().first_approach(separation, integrated)
         return self._approached(separation, integrated, NODES)
 
     def _approached(self, separation: jax.Array, integrated: int, nodes: int) -> Means:
@@ -219,7 +194,7 @@ class PlasticInterface(eqx.Module):
         loaded = jax.vmap(one)(jnp.ravel(separation))
         loaded = jax.tree_util.tree_map(lambda x: x.reshape(*shape, *x.shape[1:]), loaded)
         edges = [jnp.asarray(law.forming_gap if law.hysteretic else -jnp.inf)
-                 for law in terms(self.law)]  # fmt: skip
+                 for law in self.laws]  # fmt: skip
         asked = self._asked(edges)
         whole = self.heights.mean_powers(tuple(ask.term for ask in asked), integrated, separation)
         sums: dict[str, jax.Array] = {"elastic": loaded.force, "energy": loaded.recoverable}
@@ -248,32 +223,21 @@ class PlasticInterface(eqx.Module):
         )
 
     def as_flattened(self, pressed: Flattened | None) -> PlasticInterface:
-        """The interface from then on."""
         return dataclasses.replace(self, pressed=pressed)
 
     @property
     def _in_powers(self) -> bool:
         """Whether the laws beside contact are sums of powers that are tabulated."""
-        found = [law.powers(jnp.zeros(())) for law in terms(self.law)]
+        found = [law.powers(jnp.zeros(())) for law in self.laws]
         whole = np.arange(HIGHEST + 1.0)
         return all(
             powers is not None and all(term.exponent in whole for part in powers for term in part)
             for powers in found
         )
 
-    def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
-        return jnp.sum(self.measure(separation, memory, integrated).parts, axis=0)
-
-    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Energy per area that comes back [J/m^2], 0 for free surfaces far apart."""
-        return self.measure(separation, memory, integrated).energy
-
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        """Energy [J] lost when one bond forms, and when it breaks, per mechanism."""
-        formed = [jnp.ones(()), *(jnp.asarray(law.formation_loss) for law in self.hysteretic)]
-        broken = [jnp.zeros(()), *(jnp.asarray(law.rupture_loss) for law in self.hysteretic)]
-        return jnp.stack(formed), jnp.stack(broken)
+        formed, broken = super().losses()
+        return jnp.append(1.0, formed), jnp.append(0.0, broken)
 
     def _measure_pressed(self, pressed: Flattened, separation: jax.Array, memory: Memory) -> Means:
         """The means after a closest approach."""
@@ -287,12 +251,12 @@ class PlasticInterface(eqx.Module):
     @property
     def _sizes(self) -> tuple[float, ...]:
         """Powers of the tip radius that the laws beside contact have, 0 among them."""
-        return tuple(sorted({0.0, *(law.radius_power for law in terms(self.law))}))
+        return tuple(sorted({0.0, *(law.radius_power for law in self.laws)}))
 
     def _asked(self, edges: list[jax.Array]) -> list[_Ask]:
         """The truncated powers whose means are those of the laws, bonded up to ``edges``."""
         asked = [_Ask("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
-        for k, (law, edge) in enumerate(zip(terms(self.law), edges, strict=True)):
+        for k, (law, edge) in enumerate(zip(self.laws, edges, strict=True)):
             size, powers = law.radius_power, law.powers(edge)
             assert powers is not None
             for name, part in zip((law.mechanism, "energy"), powers, strict=True):
@@ -303,7 +267,7 @@ class PlasticInterface(eqx.Module):
 
     def _kept(self, dissipated: jax.Array, gained: jax.Array) -> jax.Array:
         """What one asperity per area keeps, by what its contact and the flatter tips give."""
-        for law in terms(self.law):
+        for law in self.laws:
             if not law.hysteretic:
                 gain = gained[..., self._sizes.index(law.radius_power), 0]
                 dissipated = dissipated - gain * law.energy(jnp.zeros(()))
@@ -311,7 +275,7 @@ class PlasticInterface(eqx.Module):
 
     def _means(self, sums: dict[str, jax.Array], kept: jax.Array, separation: jax.Array) -> Means:
         """The means put together, from those of one asperity per area."""
-        names = [f"bonds {k}" for k, law in enumerate(terms(self.law)) if law.hysteretic]
+        names = [f"bonds {k}" for k, law in enumerate(self.laws) if law.hysteretic]
         zero = jnp.zeros_like(separation)
         return Means(
             parts=self.density * jnp.stack([sums.get(name, zero) for name in self.components]),
@@ -332,7 +296,7 @@ class PlasticInterface(eqx.Module):
         thresholds, apart = iter(memory[1:]), jnp.asarray(-jnp.inf)
         return [
             _bond_gap(law, next(thresholds), separation) if law.hysteretic else apart
-            for law in terms(self.law)
+            for law in self.laws
         ]
 
 

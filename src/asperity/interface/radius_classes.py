@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -15,18 +15,12 @@ from ..laws.law import Law, terms
 from ..surfaces.heights.panel_length import PanelLengths
 from .class_bonds import ClassBonds
 from .height_quadrature import Asked, Near
-from .interface import Interface, Means, Memory
+from .interface import Interface
 from .major_branches import BranchTable, branch_tables
+from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 
-class Scale(NamedTuple):
-    """How rough several interfaces are together: largest rms height and highest height [m]."""
-
-    rms: jax.Array
-    top: jax.Array
-
-
-class RadiusClasses(eqx.Module):
+class RadiusClasses(RoughPlanes):
     """Asperities of several tip radii: an interface for each class of radius, side by side.
 
     For laws whose gaps depend on the radius, so that bonds of different radii need a memory
@@ -64,6 +58,11 @@ class RadiusClasses(eqx.Module):
         return self.stacked.law
 
     @property
+    def laws(self) -> tuple[Law, ...]:
+        """The same, one by one."""
+        return self.stacked.laws
+
+    @property
     def parts(self) -> tuple[Interface, ...]:
         """The classes one by one."""
         return tuple(
@@ -78,88 +77,45 @@ class RadiusClasses(eqx.Module):
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
-        """Names under which losses are booked."""
         return self.stacked.mechanisms * self.count
 
     @property
-    def components(self) -> tuple[str, ...]:
-        """Mechanisms of the forces, elastic first."""
-        return self.stacked.components
-
-    @property
     def panel_lengths(self) -> PanelLengths:
-        """How finely its curves are cut. Without values."""
         return self.stacked.panel_lengths
 
     @property
     def error_floor(self) -> float:
-        """Relative error of curves below which nothing is gained. Without values."""
         return self.stacked.error_floor
 
     @property
     def interaction_range(self) -> jax.Array:
-        """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
         return jnp.max(jax.vmap(lambda part: part.interaction_range)(self.stacked))
 
     @property
     def last_kink(self) -> jax.Array:
-        """Gap [m] beyond which all laws are smooth."""
         return jnp.max(jax.vmap(lambda part: part.last_kink)(self.stacked))
 
     @property
-    def heights(self) -> Scale:
-        """What their heights are on the whole."""
-        return scale_of([part.heights for part in self.parts])
-
-    def initial_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Memory of surfaces that have never touched, one threshold per ``place``."""
-        return self.stacked.initial_memory(place) * self.count
-
-    def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
-        """Saturated memory, on the major unloading branch: all bonds that can hold do."""
-        return self.stacked.saturated_memory(place) * self.count
+    def scale(self) -> Scale:
+        return Scale.largest([part.scale for part in self.parts])
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        """The memory after the separation moved monotonically to ``separation`` [m]."""
         shares = zip(self.parts, self._shares(memory), strict=True)
         return tuple(b for part, own in shares for b in part.remember(own, separation))
 
-    @property
-    def yields(self) -> bool:
-        """Whether what was pressed once stays changed. Without values."""
-        return self.stacked.yields
-
-    def has_yielded(self, memory: Memory) -> jax.Array:
-        """Whether anything was pressed so that it stays changed."""
-        return self.stacked.has_yielded(memory)
-
-    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        """The memory on a major branch; see :meth:`Interface.swept`."""
-        return self.stacked.swept(memory, unloading)
-
-    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        """Separations [m] at which the bonds of each law reach the major branch."""
-        shares = zip(self.parts, self._shares(memory), strict=True)
-        return [d for part, own in shares for d in part.merging(own, unloading)]
-
     def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
-        """Work per area [J/m^2] that bringing free surfaces to a separation takes, at least."""
         if not self.tables:
-            return self.energy(separation, self.initial_memory(), integrated)
+            return super().work_of_approach(separation, integrated)
         return self._sum([table(separation, integrated)[-1] for table in self.tables])
 
     @property
     def only_bonded(self) -> bool:
-        """Whether every law without truncated powers ends with its bonds. Without values."""
         return self.stacked.only_bonded
 
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
-        """All means over the heights; see :meth:`Interface.measure`.
-
-        Places ``near`` one another that are level lie on a major branch.
-        """
+        """Places ``near`` one another that are level lie on a major branch."""
         if not self.tables:
             each = self._each(
                 lambda part, own: part.measure(separation, own, integrated, near), memory
@@ -183,7 +139,6 @@ class RadiusClasses(eqx.Module):
         )
 
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
         if self.tables:
             rows = self._rows(separation, memory, integrated)
             return self._sum([jnp.sum(values[:-1], axis=0) for values in rows])
@@ -191,7 +146,6 @@ class RadiusClasses(eqx.Module):
         return jnp.sum(each, axis=0)
 
     def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        """Stored energy per area [J/m^2], 0 for free surfaces far apart."""
         if self.tables:
             rows = self._rows(separation, memory, integrated)
             return self._sum([values[-1] for values in rows])
@@ -231,7 +185,6 @@ class RadiusClasses(eqx.Module):
         return jnp.sum(jnp.stack(values), axis=0)
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        """Energy [J] lost when one bond forms, and when it breaks, per hysteretic law."""
         formation, rupture = jax.vmap(lambda part: part.losses())(self.stacked)
         return formation.ravel(), rupture.ravel()
 
@@ -256,14 +209,6 @@ def _pieces(parts: Sequence[Interface]) -> int:
     rms = float(part.heights.rms)
     nodes, pieces = part.panel_lengths.along(max(widths, default=0.0) / rms if rms > 0.0 else 0.0)
     return ceil(nodes * pieces / 16)
-
-
-def scale_of(heights: Sequence[Any]) -> Scale:
-    """The largest rms height and the highest height among several distributions."""
-    return Scale(
-        jnp.max(jnp.stack([jnp.asarray(each.rms) for each in heights])),
-        jnp.max(jnp.stack([jnp.asarray(each.top) for each in heights])),
-    )
 
 
 def members(radii: np.ndarray, classes: int = CLASSES) -> list[np.ndarray]:

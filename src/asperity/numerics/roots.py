@@ -1,9 +1,9 @@
-"""Roots of a function of one variable between two places."""
+"""Roots of a function of one variable between two places, and fixed points of many."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .._jax import jax, jnp
 
@@ -25,6 +25,7 @@ def root_between(
     positive: jax.Array,
     other: jax.Array,
     close: jax.Array | float,
+    start: jax.Array | None = None,
 ) -> jax.Array:
     """Where a function is 0 between a place where it is positive and one where it is not.
 
@@ -40,7 +41,10 @@ def root_between(
         The places, in either order.
     close
         A move that is lost in rounding: the last.
+    start
+        A first guess between the places; without it, half-way.
     """
+    first = 0.5 * (positive + other) if start is None else start
 
     def go_on(now: _Between) -> jax.Array:
         return (now.moved > close) & (now.steps < _STEPS)
@@ -54,7 +58,40 @@ def root_between(
         following = jnp.where(inside, target, 0.5 * (positive + other))
         return _Between(positive, other, following, jnp.abs(following - now.at), now.steps + 1)
 
-    begin = _Between(
-        positive, other, 0.5 * (positive + other), jnp.abs(other - positive), jnp.asarray(0)
-    )
+    begin = _Between(positive, other, first, jnp.asarray(jnp.inf), jnp.asarray(0))
     return jax.lax.while_loop(go_on, step, begin).at
+
+
+def fixed_point(
+    step: Callable[[Any], tuple[Any, jax.Array]],
+    start: Any,
+    close: float,
+    steps: jax.Array | int,
+    change: jax.Array | float = jnp.inf,
+) -> tuple[Any, jax.Array]:
+    """What a step leaves as it is, and by how much the last one changed it.
+
+    Parameters
+    ----------
+    step
+        The next value, any tree of arrays, and how far it is from the one given: of Newton's
+        method, or of direct iteration.
+    start
+        The first value.
+    close
+        A change after which no further step is made.
+    steps
+        Steps at most.
+    change
+        What counts as the change before the first: no step is made of one that is close.
+    """
+
+    def go_on(carry: Any) -> jax.Array:
+        return (carry[1] > close) & (carry[2] < steps)
+
+    def following(carry: Any) -> Any:
+        return (*step(carry[0]), carry[2] + 1)
+
+    begin = start, jnp.asarray(change), jnp.asarray(0)
+    value, last, _ = jax.lax.while_loop(go_on, following, begin)
+    return value, last

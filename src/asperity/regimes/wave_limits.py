@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from ..contact import SmoothContact, SmoothPlasticContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..dynamics.wave_radiation import shear_speed
@@ -91,7 +92,7 @@ def _snaps(problem: Problem, motion: Motion) -> list[str]:
     """Bonds of a smooth body, at which the force jumps."""
     lost = zip(problem.contact.mechanisms, motion.impacts.lost[0], strict=False)
     names = dict.fromkeys(name for name, energy in lost if energy > 0.0 and name != "plastic")
-    if not problem.contact.discrete or not names:
+    if not isinstance(problem.contact, SmoothContact | SmoothPlasticContact) or not names:
         return []
     return [
         "the force jumps where a bond forms or breaks: what that radiates is part of the energy "

@@ -13,8 +13,8 @@ import numpy as np
 
 from ..._jax import jax, jnp
 from ...contact.delayed_formation import DelayedContact
-from ...interface.interface import Memory as Thresholds
-from ...interface.layers import Surfaces
+from ...interface.rough_planes import Memory as Thresholds
+from ...interface.rough_planes import RoughPlanes
 
 Holding = Callable[[jax.Array], Thresholds]
 """The memory at given separations of the rings."""
@@ -36,7 +36,7 @@ class Waiting(NamedTuple):
     """
 
     delayed: DelayedContact
-    surfaces: Surfaces
+    surfaces: RoughPlanes
 
     def goal(self, gaps: jax.Array) -> jax.Array:
         """What the thresholds fall towards [m]."""

@@ -19,7 +19,7 @@ from ...contact.equilibrium import RingEquilibrium as Settled
 from ...contact.equilibrium import asked_size, beyond
 from ...contact.resolution import fills_by_contact
 from ...contact.viscoelastic import Relaxation
-from ...interface.interface import Memory as Thresholds
+from ...interface.rough_planes import Memory as Thresholds
 from ...laws.law import Real
 from ...numerics.compilation import kept
 from ..record import Body
@@ -158,7 +158,7 @@ def _errors(bulk: Bulk, end: Here, off: _Rates) -> jax.Array:
     if bulk.waiting is not None:
         pressed = bulk.waiting.pressing(end.gaps, end.thresholds, off.threshold)[:-1]
         # A threshold that is off leaves a force, over a way of about a rms height.
-        way = jnp.asarray(bulk.contact.interface.heights.rms)
+        way = jnp.asarray(bulk.contact.interface.scale.rms)
         dissipated = jnp.abs(dissipated) + way * jnp.abs(bulk.area @ pressed)
     displaced = jnp.max(jnp.abs(bulk.rows @ pressed))
     return jnp.abs(jnp.stack([off.separation, off.speed, displaced, dissipated]))

@@ -8,14 +8,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._jax import jax, jnp
+from ...contact.contact import elastic_part
 from ...contact.delayed_formation import DelayedContact
 from ...contact.elastic import ElasticContact
 from ...contact.equilibrium import compliance
 from ...contact.viscoelastic import Relaxation
 from ...halfspace import ring_mesh
-from ...interface.interface import Memory as Thresholds
+from ...interface.rough_planes import Memory as Thresholds
 from ...laws.law import Real
 from ...numerics.compilation import kept
+from ...numerics.roots import fixed_point
 from .ring_menisci import Holding, Waiting
 
 _CLOSE = 1e-13  # change of a separation that is small enough, relative to heights and itself
@@ -135,11 +137,9 @@ def balanced(
 ) -> tuple[jax.Array, jax.Array]:
     """Separations that agree with their pressures, by Newton's method, and whether they do."""
     surfaces = bulk.contact.interface
-    scale = surfaces.heights.rms
+    scale = surfaces.scale.rms
 
-    def iterate(carry: tuple[jax.Array, jax.Array, jax.Array]) -> Any:
-        gaps, _, count = carry
-
+    def newton(gaps: jax.Array) -> tuple[jax.Array, jax.Array]:
         def pressures(gaps: jax.Array) -> jax.Array:
             return surfaces.pressure(gaps, holding(gaps))
 
@@ -151,14 +151,9 @@ def balanced(
         inner = jnp.pad(rest.rows * slope[:-1], ((0, 0), (0, 1)))
         matrix = jnp.eye(gaps.size) - inner - rest.lever * by_gap
         move = jnp.linalg.solve(matrix, missed[:, None])[:, 0]
-        change = jnp.max(jnp.abs(move) / (scale + jnp.abs(gaps)))
-        return gaps - move, change, count + 1
+        return gaps - move, jnp.max(jnp.abs(move) / (scale + jnp.abs(gaps)))
 
-    def goes_on(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
-        return (carry[1] > _CLOSE) & (carry[2] < _STEPS)
-
-    begin = (guess, jnp.asarray(jnp.inf), jnp.asarray(0))
-    gaps, change, _ = jax.lax.while_loop(goes_on, iterate, begin)
+    gaps, change = fixed_point(newton, guess, _CLOSE, _STEPS)
     return gaps, change <= 1e3 * _CLOSE
 
 
@@ -178,7 +173,7 @@ def row_of(bulk: Bulk, here: Here) -> jax.Array:
     retarded = here.retarded @ (bulk.area * (bulk.rows[:-1] @ here.retarded))
     stored = whole(inside.energy, outside.energy) + 0.5 * (bent + bulk.excess * retarded)
     force = jnp.sum(parts)
-    attraction = force - bulk.contact.elastic_part(parts)
+    attraction = force - elastic_part(bulk.contact.components, parts)
     central = jnp.asarray(mesh.axis) @ here.gaps[:-1]
     head = [
         force,

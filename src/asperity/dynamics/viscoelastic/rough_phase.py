@@ -12,7 +12,7 @@ from ..._jax import jax, jnp
 from ...contact.continuation import first_size
 from ...contact.elastic import ElasticContact
 from ...contact.viscoelastic import Relaxation
-from ...interface.interface import Memory as Thresholds
+from ...interface.rough_planes import Memory as Thresholds
 from ...numerics.compilation import Program
 from ..curve_table import CENTRAL, STORED, quantities
 from ..record import Body
@@ -65,7 +65,7 @@ class RoughBounce:
         self._contact: ElasticContact = base
         self.relaxation, self.body, self.size = relaxation, body, size
         self.ends, self._asked = ends, asked
-        self._rms = float(base.interface.heights.rms)
+        self._rms = float(base.interface.scale.rms)
         self._interaction_range = float(base.interaction_range)
         self._rise = np.asarray(_rise(base, np.asarray(size, float)))
         self._rate = float(relaxation.ratio / relaxation.time)
