@@ -221,7 +221,7 @@ def test_branches_are_the_first_approach_and_then_every_combination_of_bonds():
         assert float(memory[0]) == -1e-7
     assert int(worn.branch_of(pressed, jnp.asarray(True))) == 4
     apart = worn.update_memory(pressed, jnp.asarray(1e-6))
-    assert int(worn.branch_of(apart, jnp.asarray(False))) == worn.rest_branch == 1
+    assert int(worn.branch_of(apart, jnp.asarray(False))) == 1
 
 
 def test_a_law_that_would_count_a_force_twice_is_refused():

@@ -127,10 +127,8 @@ class BatchMotion:
         clock, steps = self.clock, self.steps
         clock.look()
         clock.report(0.02, "tracing")
-        if moving:
+        if moving and self._checked:  # what is launched runs programs that are compiled already
             steps.compile_ahead(here)
-        else:
-            steps.curves.ahead(here, steps.tabulated)
         clock.report(0.04, COMPILATION)
         call = steps.curves.ready(here, steps.tabulated)
         clock.report(0.06, "force curves")

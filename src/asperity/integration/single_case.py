@@ -230,11 +230,14 @@ def _raise_failure(motion: BatchMotion) -> None:
 
 def _contact(problem: Problem, motion: BatchMotion) -> Contact:
     """The contact with the panels that its curves have."""
-    return problem.contact.refined(int(motion.factors[0]))
+    factor = int(motion.factors[0])
+    return problem.contact.refined(factor) if factor > 1 else problem.contact
 
 
 def _body(problem: Problem, motion: BatchMotion) -> Body:
     """The body with the release that was found, where the case gives a speed alone."""
+    if not problem.inputs.chosen_release:
+        return problem.body
     return dataclasses.replace(problem.body, release=motion.batch.body.release[0])
 
 
