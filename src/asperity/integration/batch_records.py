@@ -117,8 +117,8 @@ def _raised(leaf: Any) -> Any:
 
 
 def unbatched(tree: Any) -> Any:
-    """What a batch of one has of its one case."""
-    return jax.tree_util.tree_map(lambda leaf: np.reshape(leaf, np.shape(leaf)[1:]), tree)
+    """What a batch of one has of its one case, as arrays of NumPy: JAX would compile."""
+    return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf).reshape(np.shape(leaf)[1:]), tree)
 
 
 def slices(places: np.ndarray, width: int) -> Iterator[np.ndarray]:

@@ -101,7 +101,11 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
     """
     # It has all the time that it needs.
     problem = problem._replace(inputs=problem.inputs.one_impact(), delayed=None, relaxation=None)
-    solution = integrate(problem, report)
+
+    def within(fraction: float, text: str) -> None:
+        report(min(fraction, 0.3), "first impact" if text == "motion" else text)
+
+    solution = integrate(problem, within)
     return solution.contact, solution.motion
 
 
