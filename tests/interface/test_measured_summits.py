@@ -296,7 +296,7 @@ def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, u
     surface, start = two_ways[0], 0.5 * SIGMA
     gaps = [part.law.forming_gap if unloading else part.law.breaking_gap for part in surface.parts]
     memory = tuple(jnp.asarray(start - gap) for gap in gaps)
-    ends = np.sort([float(end) for end in surface.merging(memory, jnp.asarray(unloading))])
+    ends = np.sort([float(end) for end in surface.rejoining(memory, jnp.asarray(unloading))])
     marks = np.array([start, *(ends if unloading else ends[::-1])])
     steps = np.array([1e-6, 0.1, 0.4, 0.7, 0.9, 1.0 - 1e-6])
     places = jnp.asarray(marks[:-1, None] + np.diff(marks)[:, None] * steps)
@@ -323,7 +323,7 @@ def test_bonds_that_stretch_over_many_rms_heights_are_read_in_pieces():
     resolved = RigidContact(surface, Sphere(BALL)).resolved
     start = -1.0 * SIGMA
     memory = (jnp.asarray(start),) * 2
-    end = float(max(surface.merging(memory, jnp.asarray(True))))
+    end = float(max(surface.rejoining(memory, jnp.asarray(True))))
     places = jnp.linspace(start, end, 101)[None]
     near = Near(level=False, nodes=resolved.nodes * resolved.pieces)
     ours, exact = surface.measure(places, memory, 1, near), plain.measure(places, memory, 1)

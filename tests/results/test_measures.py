@@ -73,9 +73,9 @@ def test_restitution_of_a_drop_is_the_root_of_the_ratio_of_heights(integrated):
 def test_energies_are_compared_where_contact_ends(integrated):
     motion, found = integrated
     peak = float(motion.impacts.force[0])
-    torn = CONTACT.state(found.contact_end, CONTACT.branches()[-1])
-    fresh = CONTACT.state(found.contact_end, CONTACT.initial_memory())
-    largest = max(abs(float(torn.force)), abs(float(fresh.force)))
+    saturated = CONTACT.state(found.contact_end, CONTACT.branches()[-1])
+    initial = CONTACT.state(found.contact_end, CONTACT.initial_memory())
+    largest = max(abs(float(saturated.force)), abs(float(initial.force)))
     assert largest == pytest.approx(1e-6 * peak, rel=1e-3)
 
 

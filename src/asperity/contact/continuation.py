@@ -156,7 +156,7 @@ def fitted(
     return size, rest
 
 
-def descend(
+def continue_branch(
     contact: Deforming, corners: jax.Array, places: jax.Array, thresholds: Thresholds
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
@@ -190,7 +190,7 @@ def descend(
     return sizes, rests
 
 
-def retrace(
+def continue_scanning_curve(
     contact: Deforming,
     memory: RingMemory,
     start: jax.Array,

@@ -23,12 +23,19 @@ from .contact import (
     elastic_part,
     two_branches,
 )
-from .continuation import RingMemory, descend, first_size, fitted, retrace, with_derivatives
+from .continuation import (
+    RingMemory,
+    continue_branch,
+    continue_scanning_curve,
+    first_size,
+    fitted,
+    with_derivatives,
+)
 from .equilibrium import RingEquilibrium, profile_of
 from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
-from .ring_reversals import ring_reversals, swept
+from .ring_reversals import branch_thresholds, ring_reversals
 
 
 class ElasticContact(Contact):
@@ -152,7 +159,7 @@ class ElasticContact(Contact):
         near = places.shape[0] - self.rigid.far
         down = places[:near].ravel()[::-1]
         frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
-        sizes, rests = descend(*frozen)
+        sizes, rests = continue_branch(*frozen)
 
         def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
             rest = with_derivatives(self, place, memory.thresholds, size, rest)
@@ -186,7 +193,7 @@ class ElasticContact(Contact):
         @jax.jit  # traced once, for its shapes and for itself
         def back() -> ScanningCurve:
             frozen = jax.lax.stop_gradient((self, memory, start))
-            enter, leave, places, rests = retrace(*frozen, size, unloading, within)
+            enter, leave, places, rests = continue_scanning_curve(*frozen, size, unloading, within)
             return ScanningCurve(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)
@@ -230,7 +237,7 @@ class ElasticContact(Contact):
         else:
             size, displacement = jax.lax.stop_gradient(held.size), held.field
             # On a major branch no ring holds to what it remembered on its former mesh.
-            pairs = zip(swept(self, held), memory.thresholds, strict=True)
+            pairs = zip(branch_thresholds(self, held), memory.thresholds, strict=True)
             old, outer = tuple(jnp.where(held.outer, new, b) for new, b in pairs), held.outer
         h = separation + profile_of(self, size, self.rings) + displacement
         return RingMemory(self.interface.remember(old, h), size, displacement, outer)

@@ -116,8 +116,9 @@ class RigidContact(Contact):
             return two_branches(laws, lambda threshold: (jnp.asarray(threshold),) * laws)
         if self.left is None:
             return (self.initial_memory(),)
-        ways = (False, True) if self.interface.hysteretic else (False,)
-        return tuple(self.interface.swept(self.left[0], way) for way in ways)
+        memory, branch = self.left[0], self.interface.branch_memory
+        unloading = (False, True) if self.interface.hysteretic else (False,)
+        return tuple(branch(memory, apart) for apart in unloading)
 
     def branch_of(self, memory: Thresholds, unloading: jax.Array) -> jax.Array:
         if not self.yields:
@@ -175,7 +176,7 @@ class RigidContact(Contact):
         """Every bond of a law that is held reaches the branch at the same separation."""
         if not self.interface.hysteretic or (self.yields and self.left is None):
             return None  # a first approach comes from no reversal
-        ends = self.interface.merging(memory, unloading)
+        ends = self.interface.rejoining(memory, unloading)
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * piece_points(self.resolved.nodes)

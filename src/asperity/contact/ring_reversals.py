@@ -23,7 +23,7 @@ class Hysteretic(Deforming, Protocol):
     def scanning_curve(
         self, memory: RingMemory, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> ScanningCurve | None:
-        """The way from a reversal to the major branch."""
+        """The scanning curve from a reversal to the major branch."""
 
     def update_memory(
         self, memory: RingMemory, separation: jax.Array, held: Held | None = None
@@ -37,7 +37,7 @@ def ring_reversals(contact: Hysteretic) -> ReversalSampling:
     rms = jnp.asarray(interface.scale.rms)
 
     def alike(low: jax.Array, high: jax.Array) -> jax.Array:
-        """Where forces fall off along a way by about as much from all of them, and it is short."""
+        """Where forces fall off along all of them by about as much, and they are short."""
         widths = [law.breaking_gap - law.forming_gap for law in interface.hysteretic]
         apart = high - low
         short = apart * jnp.max(jnp.stack(widths)) < rms**2
@@ -47,7 +47,7 @@ def ring_reversals(contact: Hysteretic) -> ReversalSampling:
         start: jax.Array, held: Held, wanted: jax.Array, within: tuple[Any, Any]
     ) -> ScanningCurve:
         size = jax.lax.stop_gradient(held.size)
-        old, flat = swept(contact, held), jnp.zeros(contact.rings + 1)
+        old, flat = branch_thresholds(contact, held), jnp.zeros(contact.rings + 1)
         frozen = jax.lax.stop_gradient((contact, start, old, size, held.field))
         rest = jax.lax.cond(
             wanted,
@@ -66,7 +66,7 @@ def ring_reversals(contact: Hysteretic) -> ReversalSampling:
     return ReversalSampling(number, rms, alike, curve, lambda memory: memory.outer)
 
 
-def swept(contact: Deforming, held: Held) -> Thresholds:
+def branch_thresholds(contact: Deforming, held: Held) -> Thresholds:
     """Thresholds on the major branch on which a body comes."""
     whole = jnp.where(held.unloading, -jnp.inf, jnp.full(contact.rings + 1, jnp.inf))
     return (whole,) * len(contact.interface.hysteretic)

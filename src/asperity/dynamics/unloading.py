@@ -25,8 +25,9 @@ class Unloading(NamedTuple):
     Attributes
     ----------
     pull_off
-        Largest tension while unloading [N]; 0 where nothing pulls, or by less than 1e-15 of the
-        largest force, or than the polynomials tell from none.
+        Largest tension while unloading [N]; 0 where nothing pulls. A tension is rounding, and
+        counts as none, below 1e-15 of the largest force or 1e-14 of the sum of the sizes of the
+        terms of its polynomial.
     separation
         Rigid separation at which it occurs [m]; NaN where nothing pulls.
     work

@@ -19,6 +19,9 @@ from .steps import Steps
 REFINEMENTS = (1, 2, 4, 8)
 """Times the panels, one after the other, until the curves meet the tolerance."""
 
+RELEASE_KEY = "impact.release_separation"
+"""The key of a release that lies inside contact."""
+
 _GAIN = 0.9  # of the error is left by four times the panels: where more is, no more would help
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
@@ -38,7 +41,7 @@ class Slice(NamedTuple):
 
 
 class BatchMotion:
-    """Cases of one structure on their way.
+    """The motions of cases of one structure.
 
     Parameters
     ----------
@@ -191,7 +194,7 @@ class BatchMotion:
                 "`release_separation` must lie outside contact: the contact force there must be "
                 f"below {share} ({limit[slot]:.3g} N), and is {force[slot]:.3g} N; "
                 f"got {release[slot] * 1e9:.6g} nm",
-                key="impact.release_separation",
+                key=RELEASE_KEY,
             )
         return ~inside
 

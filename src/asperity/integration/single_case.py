@@ -19,7 +19,7 @@ from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import InputError, Outcome, SimulationError, Tolerance
 from ..results.conversion import Solution
-from .batch_motion import REFINEMENTS, BatchMotion
+from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, unbatched
 from .clock import Clock, Report, Stopped, silently
 from .steps import Steps
@@ -28,7 +28,7 @@ _STOPPED = "stopped before the first impact"
 
 
 def cut_in_steps(problem: Problem) -> Problem:
-    """The problem with its curves cut in one of a few ways, each at least as fine as its own."""
+    """The problem with curves of one of a few resolutions, each at least as fine as its own."""
     relaxation = problem.relaxation
     if relaxation is not None:
         relaxation = dataclasses.replace(relaxation, contact=_in_steps(relaxation.contact))
@@ -80,8 +80,9 @@ def integrate(
     try:
         return _solution(problem, motion)
     except InputError as error:
-        place = _at_rest(problem, many)
-        raise InputError(f"{error}{place}", key=error.key) from None
+        if error.key != RELEASE_KEY:
+            raise
+        raise InputError(f"{error}{_at_rest(problem, many)}", key=error.key) from None
 
 
 def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, Motion]:

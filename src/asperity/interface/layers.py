@@ -95,11 +95,13 @@ class Layers(RoughPlanes):
         each = [part.has_yielded(own) for part, own in self._shares(memory)]
         return jnp.any(jnp.stack(each))
 
-    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
-        return tuple(b for part, own in self._shares(memory) for b in part.swept(own, unloading))
+    def branch_memory(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
+        return tuple(
+            b for part, own in self._shares(memory) for b in part.branch_memory(own, unloading)
+        )
 
-    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        return [d for part, own in self._shares(memory) for d in part.merging(own, unloading)]
+    def rejoining(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
+        return [d for part, own in self._shares(memory) for d in part.rejoining(own, unloading)]
 
     def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         values = [part.work_of_approach(separation, integrated) for part in self.parts]

@@ -144,14 +144,14 @@ class PlasticInterface(RoughPlanes):
     def has_yielded(self, memory: Memory) -> jax.Array:
         return jnp.any(memory[0] < jnp.inf)
 
-    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
+    def branch_memory(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on a major branch: of bonds alone, the asperities stay as they are."""
         deepest, *thresholds = memory
         end = jnp.where(unloading, -jnp.inf, jnp.inf)
         return (deepest, *(jnp.full_like(b, end) for b in thresholds))
 
-    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
-        return super().merging(memory[1:], unloading)
+    def rejoining(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
+        return super().rejoining(memory[1:], unloading)
 
     def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
         if not self._in_powers:

@@ -128,9 +128,9 @@ class RoughPlanes(eqx.Module):
 
     def saturated_memory(self, place: jax.Array | float = 0.0) -> Memory:
         """Saturated memory, on the major unloading branch: all bonds that can hold do."""
-        return self.swept(self.initial_memory(place), True)
+        return self.branch_memory(self.initial_memory(place), True)
 
-    def swept(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
+    def branch_memory(self, memory: Memory, unloading: jax.Array | bool) -> Memory:
         """The memory on a major branch: no bond is left of what it was, or all hold."""
         return tuple(jnp.where(unloading, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
 
@@ -138,7 +138,7 @@ class RoughPlanes(eqx.Module):
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """The memory after the separation moved monotonically to ``separation`` [m]."""
 
-    def merging(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
+    def rejoining(self, memory: Memory, unloading: jax.Array) -> list[jax.Array]:
         """Separations [m] at which the bonds of each law reach the major branch."""
         return [
             b + jnp.where(unloading, law.breaking_gap, law.forming_gap)
