@@ -36,12 +36,15 @@ class Rebound(NamedTuple):
     excess
         Kinetic energy left at the end of contact [J], as in
         :class:`asperity.dynamics.capture_edges.FirstImpacts`.
+    margin
+        Apex, from the separation below which that is a capture [m].
     """
 
     speed: float
     restitution: float
     captured: bool
     excess: float
+    margin: float
 
 
 _STEPPED = (
@@ -49,7 +52,7 @@ _STEPPED = (
     "`asperity restitution` seeks it"
 )
 
-_UNKNOWN = Rebound(np.nan, np.nan, False, np.nan)
+_UNKNOWN = Rebound(np.nan, np.nan, False, np.nan, np.nan)
 
 
 class Launcher:
@@ -114,16 +117,18 @@ class Launcher:
             float(np.asarray(measures.restitution)[0]),
             bool(measures.captured),
             leaving - float(body.load.potential(measures.contact_end)),
+            float(measures.margin),
         )
 
     def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
         """First impacts with several speeds [m/s], one after the other; there is one case."""
-        found = [self(speed) for speed in speeds.tolist()]
+        found, dragged = [self(speed) for speed in speeds.tolist()], self._problem.body.damped_apart
         return FirstImpacts.of(
             np.array([rebound.speed for rebound in found]),
             np.array([rebound.captured for rebound in found]),
             np.array([rebound.excess for rebound in found]),
             float(self._problem.body.mass),
+            np.array([rebound.margin for rebound in found]) if dragged else None,
         )
 
     def edges(self, solution: Solution) -> Edges | None:
@@ -135,7 +140,7 @@ class Launcher:
             If it was stopped.
         """
         body, impacts = self._problem.body, solution.motion.impacts
-        if not solution.contact.mechanisms and not body.damped:
+        if not (solution.contact.mechanisms or body.mechanisms):
             return None
         lost = float(solution.motion.release) - float(impacts.leaving[0])
         if not np.isfinite(lost):

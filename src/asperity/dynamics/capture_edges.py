@@ -25,8 +25,8 @@ class FirstImpacts(NamedTuple):
     captured
         Whether it captures.
     excess
-        Kinetic energy [J] that is left at the end of contact; negative where it is missing, NaN
-        where that is not known.
+        Kinetic energy [J] that is left at the end of contact; negative where it is missing. With
+        drag outside contact the margin of the apex [m]. NaN where that is not known.
     """
 
     speed: np.ndarray
@@ -35,13 +35,21 @@ class FirstImpacts(NamedTuple):
 
     @classmethod
     def of(
-        cls, speed: np.ndarray, captured: np.ndarray, excess: np.ndarray, mass: np.ndarray | float
+        cls,
+        speed: np.ndarray,
+        captured: np.ndarray,
+        excess: np.ndarray,
+        mass: np.ndarray | float,
+        margin: np.ndarray | None = None,
     ) -> FirstImpacts:
         """The same, with ``mass`` [kg], where capture was told by the force at the apex.
 
         That force ends at a millionth of the largest. Where hardly any energy is left or missing,
-        its sign decides in place of that.
+        its sign decides in place of that. With drag outside contact no energy tells, but the
+        ``margin`` of the apex [m].
         """
+        if margin is not None:
+            return cls(speed, captured, np.where((margin < 0.0) == captured, margin, np.nan))
         near = np.abs(excess) < _EDGE * 0.5 * mass * speed**2
         captured = np.where(near, excess < 0.0, captured).astype(bool)
         agrees = (excess < 0.0) == captured  # else something holds it nearer than the end

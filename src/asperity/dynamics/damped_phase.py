@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
+from equinox.internal import unvmap_any
+
 from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.compilation import kept
@@ -121,27 +123,25 @@ def _over_pieces(
 
     def over(now: PhaseProgress, k: jax.Array) -> tuple[PhaseProgress, Seen]:
         piece = DampedPiece.of(work, k)
-
-        def move() -> tuple[PhaseProgress, Seen]:
-            moved = move_on(body, piece, now.kinetic, piece.leave)
-            on = moved.passed
-            after = PhaseProgress(
-                kinetic=jnp.where(on, moved.kinetic, now.kinetic),
-                time=now.time + jnp.where(on, moved.duration, 0.0),
-                dissipated=now.dissipated + jnp.where(on, moved.lost, 0.0),
-                going=on,
-                piece=k,
-                maximum_kinetic=jnp.maximum(
-                    now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)
-                ),
-            )
-            return after, see(now, piece, moved)
-
-        def stay() -> tuple[PhaseProgress, Seen]:
-            on = now._replace(piece=jnp.where(now.going, k, now.piece))
-            return on, see(now, piece, PieceMotion.none(body, now.kinetic))
-
-        return jax.lax.cond(now.going & (piece.leave != piece.enter), move, stay)
+        active = now.going & (piece.leave != piece.enter)
+        end = jnp.where(active, piece.leave, piece.enter)  # beyond its turn a body stays
+        still = PieceMotion.none(body, now.kinetic)
+        moved = jax.lax.cond(
+            unvmap_any(active), lambda: move_on(body, piece, now.kinetic, end), lambda: still
+        )
+        on = active & moved.passed
+        after = PhaseProgress(
+            kinetic=jnp.where(on, moved.kinetic, now.kinetic),
+            time=now.time + jnp.where(on, moved.duration, 0.0),
+            dissipated=now.dissipated + jnp.where(on, moved.lost, 0.0),
+            going=jnp.where(active, on, now.going),
+            piece=jnp.where(now.going, k, now.piece),
+            maximum_kinetic=jnp.maximum(
+                now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)
+            ),
+        )
+        seen = jax.tree_util.tree_map(lambda a, b: jnp.where(active, a, b), moved, still)
+        return after, see(now, piece, seen)
 
     return jax.lax.scan(over, first, jnp.arange(work.pieces.low.shape[0]))
 

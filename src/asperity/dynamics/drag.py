@@ -151,8 +151,12 @@ def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array)
     # The speed that it would have without drag on this piece: no more than a cut-off needs.
     free = unit * jnp.sqrt(jnp.where(share > 0.0, share, 1.0)) * (share > 0.0)
     drags = 2.0 * piece.drags(body, places, free) * length / (body.mass * unit)
-    # u^2 + (the integral of the drags u) = share, in u = speed / unit.
-    u, solved = _reduced_speeds(share, jnp.sum(drags, axis=0))
+    # u^2 + (the integral of the drags u) = share, in u = speed / unit. Where it is spent without
+    # drag already nothing is solved.
+    spent = jnp.any(share <= 0.0)
+    drags = jnp.where(spent, 0.0, drags)
+    u, solved = _reduced_speeds(jnp.where(spent, 1.0, share), jnp.sum(drags, axis=0))
+    solved = solved & ~spent
     dissipated = most * ((drags * u) @ _UNTIL.T)
     lost = most * ((drags * u) @ _WHOLE)
     left = last - jnp.sum(lost)
@@ -205,32 +209,48 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     they begin there where it is closer, since they do not find a body that the drag stops.
     """
 
-    def compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
-        most = jnp.max(jnp.abs(after))
-        return after, jnp.max(jnp.abs(after - u)) / jnp.where(most > 0.0, most, 1.0)
-
     def direct(u: jax.Array) -> tuple[jax.Array, jax.Array]:
-        return compared(jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0)), u)
+        return _compared(jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0)), u)
+
+    free = jnp.sqrt(jnp.maximum(share, 0.0))
+    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (_UNTIL @ drag)
+    coasts = jnp.all(coasting > 0.0) & (_off(coasting, share, drag) < _off(free, share, drag))
+    start = jnp.where(coasts, coasting, free)
+    turns = jnp.where(_off(start, share, drag) <= _CLOSE * POINTS, 0, _DIRECT)
+    u, _ = fixed_point(direct, start, _CLOSE, turns)
+    return _by_newton(u, start, share, drag)
+
+
+@jax.custom_batching.sequential_vmap
+def _by_newton(
+    u: jax.Array, start: jax.Array, share: jax.Array, drag: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    """The same by Newton's method from ``start`` where ``u`` is no solution, and whether it is one.
+
+    Of a batch those alone are solved that ask for it.
+    """
 
     def newton(u: jax.Array) -> tuple[jax.Array, jax.Array]:
         move = _solved(_slopes(u, drag), _missed(u, share, drag))
         # Never past a tenth of itself: a speed that has no solution falls to nothing.
-        return compared(jnp.maximum(u - move, 0.1 * u), u)
+        return _compared(jnp.maximum(u - move, 0.1 * u), u)
 
-    def off(u: jax.Array) -> jax.Array:
-        return jnp.max(jnp.abs(_missed(u, share, drag)))
+    def solved() -> tuple[jax.Array, jax.Array]:
+        return fixed_point(newton, start + 1e-6, _CLOSE, _STEPS)
 
-    free = jnp.sqrt(jnp.maximum(share, 0.0))
-    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (_UNTIL @ drag)
-    coasts = jnp.all(coasting > 0.0) & (off(coasting) < off(free))
-    start = jnp.where(coasts, coasting, free)
-    turns = jnp.where(off(start) <= _CLOSE * POINTS, 0, _DIRECT)
-    u, _ = fixed_point(direct, start, _CLOSE, turns)
-    unsolved = off(u) > _CLOSE * POINTS
-    u = jnp.where(unsolved, start + 1e-6, u)
-    u, change = fixed_point(newton, u, _CLOSE, _STEPS, jnp.where(unsolved, jnp.inf, 0.0))
-    close = (change <= 1e-9) & (off(u) < 1e-9)
-    return u, close
+    unsolved = _off(u, share, drag) > _CLOSE * POINTS
+    u, change = jax.lax.cond(unsolved, solved, lambda: (u, jnp.zeros(())))
+    return u, (change <= 1e-9) & (_off(u, share, drag) < 1e-9)
+
+
+def _compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """A next value, and by how much it differs from the last, of its largest."""
+    most = jnp.max(jnp.abs(after))
+    return after, jnp.max(jnp.abs(after - u)) / jnp.where(most > 0.0, most, 1.0)
+
+
+def _off(u: jax.Array, share: jax.Array, drag: jax.Array) -> jax.Array:
+    return jnp.max(jnp.abs(_missed(u, share, drag)))
 
 
 @_reduced_speeds.defjvp

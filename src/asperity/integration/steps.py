@@ -184,7 +184,6 @@ def _compiled(curves: Options, impacts: Options, measure: Options) -> _Programs:
 
 
 _OF_MANY, _OF_FEW = _compiled(_FAST, _FAST, _FAST), _compiled(_SOON, _SOON, _SOON)
-# Of one case the impacts come 0.8 s sooner at first, and 1 to 9 ms later afterwards.
-_OF_ONE = _compiled(QUICKLY, AT_ONCE, AT_ONCE)
+_OF_ONE = _compiled(QUICKLY, QUICKLY, QUICKLY)
 # The curves of one that deforms come 2 s sooner at first, and 10 ms later afterwards.
 _OF_ONE_ON_HALF_SPACE: _Programs = (Program(_curves, AT_ONCE), *_OF_ONE[1:])

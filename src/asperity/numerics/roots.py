@@ -67,7 +67,6 @@ def fixed_point(
     start: Any,
     close: float,
     steps: jax.Array | int,
-    change: jax.Array | float = jnp.inf,
 ) -> tuple[Any, jax.Array]:
     """What a step leaves as it is, and by how much the last one changed it.
 
@@ -82,8 +81,6 @@ def fixed_point(
         A change after which no further step is made.
     steps
         Steps at most.
-    change
-        What counts as the change before the first: no step is made of one that is close.
     """
 
     def go_on(carry: Any) -> jax.Array:
@@ -92,6 +89,6 @@ def fixed_point(
     def following(carry: Any) -> Any:
         return (*step(carry[0]), carry[2] + 1)
 
-    begin = start, jnp.asarray(change), jnp.asarray(0)
+    begin = start, jnp.asarray(jnp.inf), jnp.asarray(0)
     value, last, _ = jax.lax.while_loop(go_on, following, begin)
     return value, last

@@ -37,7 +37,7 @@ from .result import Result
 _ROWS = 256
 """Rows of impacts that are measured at least: more than most motions have."""
 
-_measure = Program(measure, AT_ONCE)
+_measure = Program(measure)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
@@ -354,7 +354,7 @@ def _plain(measures: Measures, made: int) -> dict[str, Any]:
     """Measures as plain numbers and lists, None where one does not apply."""
     out: dict[str, Any] = {}
     for name, value in measures._asdict().items():
-        if name in ("contact_end", "touched", "outset", "held_at_pull_off"):
+        if name in ("contact_end", "touched", "outset", "margin", "held_at_pull_off"):
             continue
         array = np.asarray(value)
         if array.ndim == 0:

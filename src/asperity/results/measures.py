@@ -83,6 +83,8 @@ class Measures(NamedTuple):
     outset
         Separation [m] beyond which even the gentlest impact meets no force: in that the weight or
         the pull-off force is the largest.
+    margin
+        Apex of the first impact, from the separation below which that is a capture [m].
     """
 
     impact_speed: jax.Array
@@ -106,6 +108,7 @@ class Measures(NamedTuple):
     touched: jax.Array
     held_at_pull_off: jax.Array
     outset: jax.Array
+    margin: jax.Array
 
 
 @kept
@@ -186,7 +189,8 @@ def measure(
     period = jnp.where(jnp.logical_and(rows.made, jnp.logical_not(away)), duration, jnp.nan)
     total = jnp.sum(rows.lost, axis=1)
     rests = end.outcome == ENDS.index(Outcome.REST)
-    captures = _captures(motion, body, contact_end, outside, away)
+    held = _held_within(motion, body, contact_end, outside)
+    captures = rows.made & (rows.apex < held) & ~away
     touched = ~jnp.isnan(contact_end) if body.forces else jnp.asarray(True)
     captures = (captures | (rests & rows.made & ~rebounds)) & touched
     capture_time = rows.closest_approach_time[jnp.argmax(captures)]
@@ -217,6 +221,7 @@ def measure(
         touched=touched,
         held_at_pull_off=pulled.held,
         outset=first.outset,
+        margin=rows.apex[0] - held,
     )
 
 
@@ -292,19 +297,18 @@ def _shift(values: jax.Array, first: jax.Array | float) -> jax.Array:
     return jnp.concatenate([jnp.asarray(first, dtype=jnp.float64)[None], values[:-1]])
 
 
-def _captures(
-    motion: Motion, body: Body, contact_end: jax.Array, outside: jax.Array, gone: jax.Array
+def _held_within(
+    motion: Motion, body: Body, contact_end: jax.Array, outside: jax.Array
 ) -> jax.Array:
-    """Whether a rebound stays within the contact, per impact.
+    """Separation [m] below which an apex is a capture.
 
-    Drag alone may keep one within its range: that is no capture, and the static equilibrium
-    counts in place of the end of contact.
+    Drag alone may keep a body within the range of its contact: that is no capture, and the static
+    equilibrium counts in place of the end of contact.
     """
-    rows, still = motion.impacts, motion.reference.equilibrium
+    still = motion.reference.equilibrium
     alone = body.damped_apart and not body.forces  # a spring draws a body out that drag held
     held = jnp.fmin(contact_end, still) if alone else contact_end
-    held = jnp.where(outside, held, still)
-    return jnp.logical_and(rows.made, jnp.logical_and(rows.apex < held, ~gone))
+    return jnp.where(outside, held, still)
 
 
 def _speed(energy: jax.Array, mass: Real) -> jax.Array:
