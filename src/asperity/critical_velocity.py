@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .contact import ElasticContact
-from .contact.viscoelastic import RelaxedContact
 from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
@@ -234,9 +233,7 @@ def sought(
     """
     if not solution.outcome.ok:
         return _without("not sought: the motion did not come to its end")
-    contact = solution.contact
-    bulk = contact.base if isinstance(contact, RelaxedContact) else contact
-    if solution.trajectory is not None and isinstance(bulk, ElasticContact):
+    if solution.trajectory is not None and isinstance(solution.contact, ElasticContact):
         return _without(_STEPPED)
     try:
         launcher = Launcher(problem, solution, limits, many=many, stop=stop)

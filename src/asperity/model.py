@@ -20,7 +20,7 @@ from .contact import (
 from .contact.delayed_formation import LATE, DelayedContact
 from .contact.profile import Sphere
 from .contact.resolution import Resolution
-from .contact.viscoelastic import Relaxation
+from .contact.viscoelastic import VISCOUS, Relaxation
 from .dynamics import Body
 from .dynamics.external_forces import Drag, ExternalForce
 from .dynamics.gas_film import SqueezeFilm
@@ -88,6 +88,7 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
     if inputs.structure.viscoelastic:
         relaxation = Relaxation(contact, inputs.relaxed_modulus_ratio, inputs.relaxation_time)
         contact = relaxation.relaxed()
+        body = dataclasses.replace(body, on_creep=(VISCOUS,))
     return Problem(contact, body, inputs, delayed, _class_error(inputs), relaxation)
 
 

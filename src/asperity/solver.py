@@ -152,7 +152,7 @@ def _told(
 
 
 def _failure(problem: Problem) -> str:
-    drags = " and ".join(problem.body.mechanisms)
+    drags = " and ".join(drag.name for drag in problem.body.drags)
     damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
     return f"the motion left the tabulated separations{damped}"
 

@@ -14,7 +14,6 @@ from asperity.cli import app
 from asperity.config import load
 from asperity.config.case_solids import solids_of
 from asperity.config.resolve import resolve
-from asperity.contact.viscoelastic import RelaxedContact
 from asperity.materials.solids import contact_modulus
 from asperity.model import build
 from asperity.results import colours
@@ -124,8 +123,8 @@ def test_a_case_with_creep_reads_back_and_knows_both_moduli():
     assert load(case.toml()) == case
     problem = build(resolve(case))
     modulus = contact_modulus(*solids_of(case))
-    assert isinstance(problem.contact, RelaxedContact)
-    assert float(problem.contact.base.law.modulus) == pytest.approx(0.4 * modulus)
+    assert problem.body.mechanisms == ("viscous",)
+    assert float(problem.contact.law.modulus) == pytest.approx(0.4 * modulus)
     assert float(problem.relaxation.contact.law.modulus) == pytest.approx(modulus)
     assert problem.inputs.modulus == pytest.approx(modulus)
 

@@ -1,12 +1,14 @@
 """A rough sphere on a half-space that creeps, stepped in time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from asperity._jax import jax, jnp
 from asperity.contact import ElasticContact, SmoothContact
 from asperity.contact.profile import Sphere
-from asperity.contact.viscoelastic import Relaxation
+from asperity.contact.viscoelastic import VISCOUS, Relaxation
 from asperity.dynamics import Body, Limits, simulate
 from asperity.dynamics.motion import prepare
 from asperity.dynamics.stepped_motion import integrate_stepped
@@ -32,7 +34,7 @@ def contact(modulus=MODULUS, density=DENSITY, law=LAW, rings=48):
 
 def integrated(ratio, time, body=BODY, tolerance=ONE, told=None):
     relaxation = Relaxation(told or contact(), ratio, time)
-    relaxed = relaxation.relaxed()
+    relaxed, body = relaxation.relaxed(), replace(body, on_creep=(VISCOUS,))
     prepared = _prepare(relaxed, body)
     return integrate_stepped(
         relaxed, relaxation, body, prepared, Limits.of(tolerance), lambda made: None

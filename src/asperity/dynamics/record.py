@@ -46,6 +46,9 @@ class Body(eqx.Module):
         What takes energy on its way, in the order of the ledger.
     forces
         What acts on it besides its weight, its contact and the drags.
+    on_creep
+        What a bulk under its contact takes by creep (static): losses of a motion that is stepped
+        in time, after those of the drags.
     """
 
     mass: Real = quantity()
@@ -54,11 +57,12 @@ class Body(eqx.Module):
     speed: Real = quantity(0.0)
     drags: tuple[Drag, ...] = ()
     forces: tuple[ExternalForce, ...] = ()
+    on_creep: tuple[str, ...] = eqx.field(static=True, default=())
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
         """Names of the losses that are not the contact's."""
-        return tuple(drag.name for drag in self.drags)
+        return (*(drag.name for drag in self.drags), *self.on_creep)
 
     @property
     def damped(self) -> bool:

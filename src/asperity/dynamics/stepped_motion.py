@@ -54,7 +54,7 @@ def integrate_stepped(
     ----------
     contact
         The contact that slow motions meet: with menisci that form at once, or with a bulk that has
-        relaxed and a ``viscous`` loss.
+        relaxed.
     mechanism
         What takes time: the menisci of a rigid or smooth body, or the bulk and what is on it.
     body

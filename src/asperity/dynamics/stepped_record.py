@@ -66,7 +66,7 @@ class Ledger(NamedTuple):
     Attributes
     ----------
     contact, body
-        What moves on what; the contact has a ``viscous`` loss where its bulk relaxes.
+        What moves on what.
     prepared
         The table of the contact when its bulk has relaxed, and the static equilibrium.
     limits

@@ -10,7 +10,7 @@ import numpy as np
 from ..contact import Contact, ElasticContact, RigidContact
 from ..contact.delayed_formation import DelayedContact
 from ..contact.resolution import in_steps
-from ..contact.viscoelastic import Relaxation, RelaxedContact
+from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.problem import CLEARANCE, Problem
 from ..dynamics.record import ENDS
@@ -36,8 +36,6 @@ def cut_in_steps(problem: Problem) -> Problem:
 
 
 def _in_steps(contact: Contact) -> Contact:
-    if isinstance(contact, RelaxedContact):
-        return RelaxedContact(_in_steps(contact.base))
     if not isinstance(contact, RigidContact | ElasticContact):
         return contact
     resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
@@ -101,7 +99,9 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
         As :func:`solve`.
     """
     # It has all the time that it needs.
-    problem = problem._replace(inputs=problem.inputs.one_impact(), delayed=None, relaxation=None)
+    body = dataclasses.replace(problem.body, on_creep=())
+    inputs = problem.inputs.one_impact()
+    problem = problem._replace(inputs=inputs, body=body, delayed=None, relaxation=None)
 
     def within(fraction: float, text: str) -> None:
         report(min(fraction, 0.3), "first impact" if text == "motion" else text)
@@ -171,6 +171,7 @@ def _of_one(
     launched: bool = False,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
+    many = many and problem.delayed is None and problem.relaxation is None  # those have no such
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many), clock,

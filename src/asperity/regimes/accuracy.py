@@ -52,7 +52,7 @@ def ring_warnings(problem: Problem, motion: Motion) -> list[str]:
         The motion; without its curves nothing is said.
     """
     contact, table = problem.contact, motion.table
-    if not isinstance(contact, ElasticContact) or table is None:
+    if not isinstance(contact, ElasticContact) or table is None or problem.relaxation is not None:
         return []
     deepest = float(motion.impacts.closest_approach[0])
     row = read_row(table, 0, deepest)

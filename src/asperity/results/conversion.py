@@ -285,9 +285,9 @@ def _histories(
     for force in load.forces:
         forces[force.name] = -np.asarray(force.force(series.separation))
         forces["total"] = forces["total"] + forces[force.name]
-    for k, name in enumerate(body.mechanisms):
-        forces[name] = -series.drag[:, k] * series.speed
-        forces["total"] = forces["total"] + forces[name]
+    for k, drag in enumerate(body.drags):
+        forces[drag.name] = -series.drag[:, k] * series.speed
+        forces["total"] = forces["total"] + forces[drag.name]
     zero = _zero_height(motion.reference)
     energies = {
         "kinetic": 0.5 * float(body.mass) * series.speed**2,

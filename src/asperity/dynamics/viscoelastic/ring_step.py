@@ -60,7 +60,7 @@ class Step(NamedTuple):
     rates
         Acceleration [m/s^2] and power of the creep, or lost on delayed menisci [W], at its end.
     row
-        Quantities of the contact at its end; what creep has taken is left at 0.
+        Quantities of the contact at its end.
     lost
         Energy lost within it, by law, and by creep last where the bulk creeps [J].
     fit

@@ -158,7 +158,7 @@ def balanced(
 
 
 def row_of(bulk: Bulk, here: Here) -> jax.Array:
-    """Quantities of the contact in one row, without its field; what creep takes is 0."""
+    """Quantities of the contact in one row, without its field."""
     surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
     inside = surfaces.measure(here.gaps, here.thresholds)
     last = tuple(b[-1:] for b in here.thresholds)
@@ -184,5 +184,4 @@ def row_of(bulk: Bulk, here: Here) -> jax.Array:
         bulk.size,
     ]
     bonds = whole(inside.bonds, outside.bonds)
-    taken = jnp.zeros(1 if bulk.delayed is None else 0)
-    return jnp.concatenate([jnp.stack(head), bonds, taken, parts])
+    return jnp.concatenate([jnp.stack(head), bonds, parts])

@@ -71,9 +71,9 @@ class RoughBounce:
         self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
         rings = base.rings
-        self.layout = quantities(base)
+        self._columns = quantities(base).components.stop
         self._delayed = relaxation.delayed
-        self.lost = np.zeros(len(base.mechanisms) + (relaxation.delayed is None))
+        self.lost = np.zeros(len(base.mechanisms) + len(body.on_creep))
         self.time, self.fit = 0.0, 1.0
         gaps = float(body.release) + self._rise
         thresholds = base.interface.initial_memory(np.zeros(rings + 1))
@@ -179,20 +179,14 @@ class RoughBounce:
         place = float(self.here.separation) + spans * (
             float(self.here.speed) - 0.5 * self._gravity * spans
         )
-        rows = np.zeros((spans.size, self.layout.components.stop + (self._delayed is None)))
+        rows = np.zeros((spans.size, self._columns))
         rows[:, STORED] = float(left.stored) * share**2
         rows[:, CENTRAL] = place + float(left.axis) * share
         lost = np.repeat(self.lost[None], spans.size, axis=0)
         if self._delayed is None:
             lost[:, -1] += float(left.stored) * (1.0 - share**2)
-        self._book(rows, lost)
         speed = float(self.here.speed) - self._gravity * spans
         return Samples(self.time + spans, place, speed, rows, lost)
-
-    def _book(self, rows: np.ndarray, lost: np.ndarray) -> None:
-        """What creep has taken, in its column."""
-        if self._delayed is None:
-            rows[:, self.layout.bonds.stop] = lost[:, -1]
 
     def _go(self, inwards: bool) -> tuple[str, Samples]:
         """One step within the interaction range, that ends where the body turns."""
@@ -202,8 +196,6 @@ class RoughBounce:
         self.here, self.fit = done.here, float(done.fit)
         self.time += span
         self.lost = self.lost + done.lost
-        rows = done.row[None].copy()
-        self._book(rows, self.lost[None])
         speed = float(self.here.speed)
         self.maximum_kinetic = max(self.maximum_kinetic, 0.5 * self._mass * speed**2)
         fate = ""
@@ -213,7 +205,7 @@ class RoughBounce:
         elif self._rests():
             fate = AT_REST
         time, place = np.array([self.time]), np.array([float(self.here.separation)])
-        return fate, Samples(time, place, np.array([speed]), rows, self.lost[None])
+        return fate, Samples(time, place, np.array([speed]), done.row[None], self.lost[None])
 
     @property
     def _still(self) -> float:

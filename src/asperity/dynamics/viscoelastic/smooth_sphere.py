@@ -80,8 +80,8 @@ class SmoothBounce:
         stored = (track.stored + track.dented) * self._energy
         spent = track.spent * self._energy
         separation = -track.depth * self._length
-        columns = [FORCE, STORED, CENTRAL, CONTACTING, -2, -1]
-        rows[:, columns] = np.stack([force, stored, separation, contacting, spent, force], axis=1)
+        columns = [FORCE, STORED, CENTRAL, CONTACTING, -1]
+        rows[:, columns] = np.stack([force, stored, separation, contacting, force], axis=1)
         return Samples(
             track.time * self._time, separation, -track.speed * self._speed, rows, spent[:, None]
         )
