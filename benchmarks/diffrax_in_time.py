@@ -25,7 +25,7 @@ from asperity.config.resolve import resolve
 from asperity.contact.delayed_formation import DelayedContact
 from asperity.dynamics import Body, Limits, prepare
 from asperity.dynamics.stepped_motion import integrate_stepped
-from asperity.dynamics.time_collocation import Here
+from asperity.dynamics.time_collocation import BodyState
 from asperity.dynamics.time_stepping import Frame
 from asperity.errors import Tolerance
 from asperity.model import build
@@ -34,7 +34,7 @@ METHODS = {"Dopri8": 1e-11, "Tsit5": 1e-10, "Kvaerno5": 1e-10}
 """Methods, and the tolerance of each at which its turning points agree to 1e-9."""
 
 TIMES = ("1 ns", "10 us")  # formation times
-_NUDGE = 1e-7  # of a leg's first guess: an event function must not begin at 0
+_NUDGE = 1e-7  # of a first guess: an event function must not begin at 0
 _CLOSE = optimistix.Newton(1e-13, 1e-13)
 
 
@@ -70,11 +70,11 @@ def _caught_up(t: Any, y: jax.Array, args: Any, **_: Any) -> jax.Array:
 
 
 def stepping(method: str, rtol: float) -> Callable[..., Any]:
-    """A compiled leg to the next event: its time, state, events, steps, and whether it ended."""
+    """What goes to the next event: its time, state, events, steps, and whether it ended."""
     solver = getattr(diffrax, method)()
 
     @eqx.filter_jit
-    def leg(y: jax.Array, given: Any, span: float, scale: jax.Array) -> Any:
+    def go_on(y: jax.Array, given: Any, span: float, scale: jax.Array) -> Any:
         start = y[1] == 0.0
         pull = field(0.0, y, given)[1] * jnp.where(start, _NUDGE * span, 0.0)
         begun = jnp.where(start, _NUDGE * span, 0.0)
@@ -88,10 +88,10 @@ def stepping(method: str, rtol: float) -> Callable[..., Any]:
         ended = found.result == diffrax.RESULTS.event_occurred
         return begun + found.ts[-1], found.ys[-1], found.event_mask, found.stats["num_steps"], ended
 
-    return leg
+    return go_on
 
 
-def first_impact(leg: Any, frame: Frame, memory: Any) -> tuple[float, float, float, int]:
+def first_impact(go_on: Any, frame: Frame, memory: Any) -> tuple[float, float, float, int]:
     """Closest approach and apex [m], the apex's time [s], and steps that were taken."""
     contact, body = frame.contact, frame.body
     goal, release = float(frame.forming[contact.meniscus_index]), float(body.release)
@@ -103,12 +103,12 @@ def first_impact(leg: Any, frame: Frame, memory: Any) -> tuple[float, float, flo
     for sign in (-1.0, 1.0):
         turned = False
         while not turned:
-            here = Here(*map(np.asarray, (y[0], y[1], 0.0, y[2])), memory, forming)
+            here = BodyState(*map(np.asarray, (y[0], y[1], 0.0, y[2])), memory, forming)
             mark = frame.next_mark(here, int(sign))
             given = (contact, body, memory, jnp.asarray(forming), sign, mark)
-            took, y, event, count, ended = leg(y, given, 0.1 * fall, scale)
+            took, y, event, count, ended = go_on(y, given, 0.1 * fall, scale)
             if not bool(ended):
-                raise RuntimeError("a leg ended without an event")
+                raise RuntimeError("a go_on ended without an event")
             clock, steps = clock + float(took), steps + int(count)
             turned, marked, caught = (bool(each) for each in event)
             if caught:
@@ -164,9 +164,9 @@ def _compare(formation_time: str) -> None:
     )
     frame = Frame.of(contact, delayed, body, table)
     for method, rtol in METHODS.items():
-        leg = stepping(method, rtol)
+        go_on = stepping(method, rtol)
         found, cold, again = _timed(
-            lambda leg=leg: first_impact(leg, frame, contact.initial_memory())
+            lambda go_on=go_on: first_impact(go_on, frame, contact.initial_memory())
         )
         off = [one / other - 1.0 for one, other in zip(found, wanted, strict=False)]
         sys.stdout.write(

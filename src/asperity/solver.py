@@ -61,7 +61,7 @@ def solve(
     _ = case.launch
     report, problem = progress or silently, build(resolve(case))
     solution = integrate(problem, report, stop)
-    result = _told(case, name, problem, solution, report, None)
+    result = _result(case, name, problem, solution, report, None)
     if critical:
         report(0.92, "critical velocity")
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
@@ -100,7 +100,7 @@ def explore(
     _ = case.launch
     report, problem = progress or silently, cut_in_steps(build(resolve(case)))
     solution = integrate(problem, report, stop, many=True)
-    result = _told(case, name, problem, solution, report, most)
+    result = _result(case, name, problem, solution, report, most)
     if solution.outcome is Outcome.FAILED:
         raise SimulationError(_failure(problem), result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
@@ -141,7 +141,7 @@ def critical_velocity(
     return sought(solution, problem, Limits.of(inputs.tolerance), stop, many=True)
 
 
-def _told(
+def _result(
     case: Case, name: str, problem: Problem, solution: Solution, report: Report, most: int | None
 ) -> Result:
     """The result of a motion."""

@@ -21,7 +21,7 @@ from asperity.dynamics import Body, Limits, prepare
 from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.dynamics.motion import simulate
 from asperity.dynamics.stepped_motion import integrate_stepped
-from asperity.dynamics.time_collocation import Here, step
+from asperity.dynamics.time_collocation import BodyState, step
 from asperity.errors import Tolerance
 from asperity.interface.interface import Interface
 from asperity.laws import ConstantVolume, Hertz, Jkr, Meniscus
@@ -219,7 +219,7 @@ def test_a_step_is_of_high_order():
     one = eqx.filter_jit(step)
 
     def end(span, parts):
-        here = Here(
+        here = BodyState(
             *(jnp.asarray(x) for x in (44e-9, -1e-4, 0.0, 45e-9)),
             contact.initial_memory(),
             jnp.asarray(True),

@@ -14,7 +14,7 @@ from asperity.dynamics.motion import prepare
 from asperity.dynamics.stepped_motion import integrate_stepped
 from asperity.dynamics.viscoelastic import rough_phase
 from asperity.dynamics.viscoelastic.ring_step import step
-from asperity.dynamics.viscoelastic.ring_system import Here
+from asperity.dynamics.viscoelastic.ring_system import RingState
 from asperity.errors import Outcome, Tolerance
 from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Meniscus
@@ -127,7 +127,7 @@ def test_steps_are_of_the_fourth_order():
     size = jnp.asarray(1e-6)
     rise = told.shape.profile(size * jnp.append(jnp.asarray(_mesh(told).radius), _mesh(told).end))
     start = jnp.asarray(7.0 * SIGMA)
-    here = Here(
+    here = RingState(
         start, jnp.asarray(-0.02), start + rise, jnp.zeros(told.rings),
         told.interface.initial_memory(jnp.zeros(told.rings + 1)),
     )  # fmt: skip

@@ -28,7 +28,7 @@ STIFFNESS = 1.25
 def impact(ratio, time, weight=0.0):
     """One impact at unit speed: its restitution, and all its samples."""
     bounce = Bounce(Solid(ratio, time, weight), 0.0, 1.0, (0.0, 0.0), -1.0)
-    fates, tracks = zip(*(bounce.way(inwards) for inwards in (True, False)), strict=True)
+    fates, tracks = zip(*(bounce.follow(inwards) for inwards in (True, False)), strict=True)
     assert fates == (TURNED, LEFT)
     samples = [np.concatenate(c) for c in zip(*tracks[0], *tracks[1], strict=True)]
     return -float(bounce.state[1]), samples
@@ -196,7 +196,7 @@ def test_impacts_on_dents_and_turns_within_contact_are_those_of_the_single_sprin
     bounce = Bounce(solid, depth, 0.0, (1.0, 1e-3), -9.0)
     tracks = []
     while bounce._clock + bounce.time < end:
-        fate, found = bounce.way(inwards=len(tracks) % 2 == 0)
+        fate, found = bounce.follow(inwards=len(tracks) % 2 == 0)
         assert fate == TURNED
         tracks.append(found)
     joined = [np.concatenate(c) for c in zip(*(t for way in tracks for t in way), strict=True)]

@@ -164,7 +164,7 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     return Motion(impacts, end, table, reference, origin)
 
 
-class _Leg(NamedTuple):
+class _PhaseEnd(NamedTuple):
     turn: TurningPoint
     phase: Phase
     row: jax.Array
@@ -185,7 +185,7 @@ def _phase_of_impact(
     rest: Rest,
     progress: Progress,
     unloading: jax.Array,
-) -> tuple[Progress, _Leg]:
+) -> tuple[Progress, _PhaseEnd]:
     """One phase down or up, and the bonds that it makes or breaks."""
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
@@ -221,14 +221,16 @@ def _phase_of_impact(
         memory=contact.update_memory(progress.memory, turn.place, held), place=turn.place,
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
     )  # fmt: skip
-    leg = _Leg(
+    end = _PhaseEnd(
         turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
         *fate, jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
     )  # fmt: skip
-    return after, leg
+    return after, end
 
 
-def _no_rise(fall: tuple[Progress, _Leg], rise: tuple[Progress, _Leg]) -> tuple[Progress, _Leg]:
+def _no_rise(
+    fall: tuple[Progress, _PhaseEnd], rise: tuple[Progress, _PhaseEnd]
+) -> tuple[Progress, _PhaseEnd]:
     """A way up that is none where drag stopped the body on its way down."""
     after, here = fall
     stay = here._replace(
@@ -237,7 +239,7 @@ def _no_rise(fall: tuple[Progress, _Leg], rise: tuple[Progress, _Leg]) -> tuple[
     kept = jax.tree_util.tree_map(
         lambda a, b: jnp.where(here.stopped, a, b), (after, stay), rise
     )  # fmt: skip
-    return cast("tuple[Progress, _Leg]", kept)
+    return cast("tuple[Progress, _PhaseEnd]", kept)
 
 
 def _impact(
@@ -252,32 +254,34 @@ def _impact(
     """Down to closest approach and up to the next apex."""
     rest = Rest(reference.equilibrium, limits.rest)
 
-    def leg(progress: Progress, unloading: jax.Array) -> tuple[Progress, tuple[Progress, _Leg]]:
-        after, way = _phase_of_impact(contact, body, table, rest, progress, unloading)
-        return after, (after, way)
+    def one_phase(
+        progress: Progress, unloading: jax.Array
+    ) -> tuple[Progress, tuple[Progress, _PhaseEnd]]:
+        after, end = _phase_of_impact(contact, body, table, rest, progress, unloading)
+        return after, (after, end)
 
     # One body of code for both directions: half to compile.
-    _, both = jax.lax.scan(leg, progress, jnp.asarray([False, True]))
+    _, both = jax.lax.scan(one_phase, progress, jnp.asarray([False, True]))
     down, up = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
     up = _no_rise(down, up) if body.damped_apart else up
     fall, (end, rise) = down[1], up
-    legs = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
-    potential = body.load.potential(legs.turn.place)
-    mechanical = legs.turn.kinetic + potential + legs.row[:, STORED]
-    energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(legs.lost, axis=1) - origin))
+    phases = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
+    potential = body.load.potential(phases.turn.place)
+    mechanical = phases.turn.kinetic + potential + phases.row[:, STORED]
+    energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(phases.lost, axis=1) - origin))
     # On a spring a body may be held anywhere: how far it swings tells whether it rests.
     height = end.place - (fall.turn.place if body.forces else reference.equilibrium)
     first = jnp.where(progress.made == 0, height, progress.first)
-    energies = legs.turn.maximum_kinetic
+    energies = phases.turn.maximum_kinetic
     largest = jnp.max(energies) if body.forces else energies[0]
     energy = jnp.where(progress.made == 0, largest, progress.impact_energy)
     cycle = jnp.sum(rise.lost - progress.lost)
     risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
-    sound = fall.turn.found & jnp.all(legs.followed) & jnp.isfinite(mechanical[1])
+    sound = fall.turn.found & jnp.all(phases.followed) & jnp.isfinite(mechanical[1])
     rules = EndRules.of(
         limits,
         failed=jnp.logical_not(sound),
-        at_rest=jnp.any(legs.at_rest),
+        at_rest=jnp.any(phases.at_rest),
         stopped=fall.stopped | rise.stopped,
         # Flattened tips may pull at once by more than what they press.
         stuck=jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen),

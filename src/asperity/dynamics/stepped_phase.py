@@ -1,4 +1,4 @@
-"""The way from one turning point to the next where menisci take time to form: a row of steps."""
+"""The phase from one turning point to the next where menisci take time to form: a row of steps."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from ..numerics.compilation import Program
 from .curve_table import FORCE, quantities
 from .damped_phase import STILL, slow_at
 from .static_equilibrium import Reference
-from .time_collocation import NODES_IN_TIME, Here
-from .time_stepping import BOND, MARK, SWITCH, TURN, Frame, Taken, take
+from .time_collocation import NODES_IN_TIME, BodyState
+from .time_stepping import BOND, MARK, SWITCH, TURN, AcceptedStep, Frame, accepted_step
 
 TURNED, LEFT, AT_REST, FAILED = "turned", "left", "at rest", "failed"
 STOPPED = "stopped"
-"""How a leg ends: by a turn, at the end of the table, at rest without a turn, not at all, or where
-the film alone stops the body."""
+"""How a phase ends: by a turn, at the end of the table, at rest without a turn, not at all, or
+where the film alone stops the body."""
 
 _MOST_STEPS = 10_000
 _SLOW = 1e-7  # of the speed at the release: the film has stopped a body that is slower
 _SPENT = 1e-9  # of the energy with which a body came close to rest: with less it creeps
 
 
-def _remembered(contact: DelayedContact, here: Here) -> Any:
+def _remembered(contact: DelayedContact, here: BodyState) -> Any:
     held = contact.with_threshold(here.memory, here.threshold)
     return contact.base.update_memory(held, here.separation)
 
@@ -40,10 +40,10 @@ class Ended(Exception):
     """The motion was asked to end."""
 
 
-class Place(NamedTuple):
+class MotionState(NamedTuple):
     """A body between two steps: where, when [s], the next span [s], energy lost by name [J]."""
 
-    here: Here
+    here: BodyState
     time: float
     span: float
     lost: np.ndarray
@@ -74,12 +74,12 @@ class Samples(NamedTuple):
         return cls(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-class Leg(NamedTuple):
-    """The way from one turning point to the next.
+class TimedPhase(NamedTuple):
+    """The phase from one turning point to the next.
 
     Attributes
     ----------
-    place
+    state
         Its end.
     fate
         TURNED, LEFT, AT_REST, FAILED or STOPPED.
@@ -88,18 +88,18 @@ class Leg(NamedTuple):
     pull_work
         Work of the attractive forces [J].
     samples
-        The leg, without its start.
+        The phase, without its start.
     """
 
-    place: Place
+    state: MotionState
     fate: str
     maximum_kinetic: float
     pull_work: float
     samples: list[Samples]
 
 
-class Course(NamedTuple):
-    """What legs need to know.
+class PhaseRules(NamedTuple):
+    """What ends a phase, and what it is booked by.
 
     Attributes
     ----------
@@ -126,8 +126,8 @@ class Course(NamedTuple):
         reference: Reference,
         rest: float,
         asked: Callable[[], None],
-    ) -> Course:
-        """The course on a contact; ``rest`` as in a tolerance."""
+    ) -> PhaseRules:
+        """The rules on a contact; ``rest`` as in a tolerance."""
         formed, broken = (np.asarray(x) for x in contact.losses())
         still, release = float(reference.equilibrium), float(frame.body.release)
         goal = still + rest * (release - still)
@@ -136,35 +136,37 @@ class Course(NamedTuple):
         return cls(frame, (formed, broken), (still, goal), asked)
 
 
-def leg(course: Course, place: Place, sign: int) -> Leg:
+def phase_in_time(rules: PhaseRules, state: MotionState, sign: int) -> TimedPhase:
     """From a turning point, inwards (-1) or outwards (1), to the next."""
-    frame = course.frame
+    frame = rules.frame
     mass = float(frame.body.mass)
-    way = Leg(place, "", 0.5 * mass * float(place.here.speed) ** 2, 0.0, [])
-    near: Leg | None = None
-    while not way.fate:
-        course.asked()
-        taken = take(frame, way.place.here, sign, way.place.span, way.maximum_kinetic)
-        if taken is None or len(way.samples) >= _MOST_STEPS:
-            return way._replace(fate=FAILED)
-        maximum_kinetic = 0.5 * mass * float(np.max(taken.step.speed**2))
-        way = Leg(
-            _after(course, way.place, taken, sign),
-            _fate(frame, taken, sign),
-            max(way.maximum_kinetic, maximum_kinetic),
-            way.pull_work + float(taken.step.attraction[-1]),
-            [*way.samples, _drawn(course, way.place, taken)],
+    phase = TimedPhase(state, "", 0.5 * mass * float(state.here.speed) ** 2, 0.0, [])
+    near: TimedPhase | None = None
+    while not phase.fate:
+        rules.asked()
+        taken = accepted_step(
+            frame, phase.state.here, sign, phase.state.span, phase.maximum_kinetic
         )
-        if taken.event == MARK and taken.mark == course.rest[1] and sign < 0 and not near:
-            near = way
-        if near is not None and _creeps(course, near, way):
-            return _at_rest(course, near)
-        if not way.fate and _stands(frame, way):
-            return _at_rest(course, way)._replace(fate=STOPPED)
-    return way
+        if taken is None or len(phase.samples) >= _MOST_STEPS:
+            return phase._replace(fate=FAILED)
+        maximum_kinetic = 0.5 * mass * float(np.max(taken.step.speed**2))
+        phase = TimedPhase(
+            _after(rules, phase.state, taken, sign),
+            _fate(frame, taken, sign),
+            max(phase.maximum_kinetic, maximum_kinetic),
+            phase.pull_work + float(taken.step.attraction[-1]),
+            [*phase.samples, _drawn(rules, phase.state, taken)],
+        )
+        if taken.event == MARK and taken.mark == rules.rest[1] and sign < 0 and not near:
+            near = phase
+        if near is not None and _creeps(rules, near, phase):
+            return _at_rest(rules, near)
+        if not phase.fate and _stands(frame, phase):
+            return _at_rest(rules, phase)._replace(fate=STOPPED)
+    return phase
 
 
-def _fate(frame: Frame, taken: Taken, sign: int) -> str:
+def _fate(frame: Frame, taken: AcceptedStep, sign: int) -> str:
     if taken.event == TURN:
         return TURNED
     low, high = frame.ends
@@ -173,38 +175,38 @@ def _fate(frame: Frame, taken: Taken, sign: int) -> str:
     return ""
 
 
-def _drawn(course: Course, place: Place, taken: Taken) -> Samples:
+def _drawn(rules: PhaseRules, state: MotionState, taken: AcceptedStep) -> Samples:
     """The points of a step."""
     done = taken.step
-    lost = place.lost + _lost(course, place.here, taken)
-    time = place.time + taken.span * NODES_IN_TIME
+    lost = state.lost + _lost(rules, state.here, taken)
+    time = state.time + taken.span * NODES_IN_TIME
     columns = done.separation, done.speed, done.rows, lost
     return Samples(time, *(column[1:] for column in columns))
 
 
-def _lost(course: Course, here: Here, taken: Taken) -> np.ndarray:
+def _lost(rules: PhaseRules, here: BodyState, taken: AcceptedStep) -> np.ndarray:
     """Energy lost within a step, by name [J]."""
-    delayed, done = course.frame.contact.meniscus_index, taken.step
-    formed, broken = course.losses
-    bonds = done.rows[:, quantities(course.frame.contact.base).bonds]
+    delayed, done = rules.frame.contact.meniscus_index, taken.step
+    formed, broken = rules.losses
+    bonds = done.rows[:, quantities(rules.frame.contact.base).bonds]
     gone = np.maximum(bonds[0] - bonds, 0.0) * broken
     by_law = np.maximum(bonds - bonds[0], 0.0) * formed + gone
     by_law[:, delayed] = done.delayed if here.forming else gone[:, delayed]
-    dragged = [done.dissipated[:, None]] if course.frame.body.damped else []
+    dragged = [done.dissipated[:, None]] if rules.frame.body.damped else []
     return np.concatenate([by_law, *dragged], axis=1)
 
 
-def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
+def _after(rules: PhaseRules, state: MotionState, taken: AcceptedStep, sign: int) -> MotionState:
     """Where a step leaves a body, with the bonds that its end makes and breaks."""
-    frame, done = course.frame, taken.step
+    frame, done = rules.frame, taken.step
     goal = frame.forming[frame.contact.meniscus_index]
-    here = place.here._replace(
+    here = state.here._replace(
         separation=done.separation[-1],
         speed=done.speed[-1],
         acceleration=done.acceleration[-1],
         threshold=done.threshold[-1],
     )
-    lost = place.lost + _lost(course, place.here, taken)[-1]
+    lost = state.lost + _lost(rules, state.here, taken)[-1]
     if taken.event == TURN:
         here = _turned(frame, here._replace(speed=np.zeros(())), sign)
     elif taken.event == SWITCH:
@@ -214,12 +216,12 @@ def _after(course: Course, place: Place, taken: Taken, sign: int) -> Place:
         if sign < 0 and here.separation <= here.threshold + goal + frame.close:
             here = here._replace(forming=np.asarray(True))
     if frame.contact.discrete and taken.event in (MARK, BOND):
-        here, gone = _snapped(course, here, taken.event, sign)
+        here, gone = _snapped(rules, here, taken.event, sign)
         lost = lost + gone
-    return Place(here, place.time + taken.span, taken.next_span, lost)
+    return MotionState(here, state.time + taken.span, taken.next_span, lost)
 
 
-def _turned(frame: Frame, here: Here, sign: int) -> Here:
+def _turned(frame: Frame, here: BodyState, sign: int) -> BodyState:
     """The memory after a turn."""
     contact = frame.contact
     memory = jax.tree_util.tree_map(np.asarray, _remember(contact, here))
@@ -231,10 +233,12 @@ def _turned(frame: Frame, here: Here, sign: int) -> Here:
     return here._replace(memory=memory, threshold=threshold, forming=behind)
 
 
-def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, np.ndarray]:
+def _snapped(
+    rules: PhaseRules, here: BodyState, event: str, sign: int
+) -> tuple[BodyState, np.ndarray]:
     """A smooth body's bonds made or broken at a place, and the energy lost by name [J]."""
-    frame, delayed = course.frame, course.frame.contact.meniscus_index
-    formed, broken = course.losses
+    frame, delayed = rules.frame, rules.frame.contact.meniscus_index
+    formed, broken = rules.losses
     place, held = here.separation, here.memory > 0.5
     made = ~held & (place <= frame.forming + frame.close) & (sign < 0)
     gone = held & (place >= frame.breaking - frame.close) & (sign > 0)
@@ -248,40 +252,40 @@ def _snapped(course: Course, here: Here, event: str, sign: int) -> tuple[Here, n
     return here._replace(memory=memory), np.concatenate([lost, rest])
 
 
-def _kinetic(frame: Frame, place: Place) -> float:
-    return 0.5 * float(frame.body.mass) * float(place.here.speed) ** 2
+def _kinetic(frame: Frame, state: MotionState) -> float:
+    return 0.5 * float(frame.body.mass) * float(state.here.speed) ** 2
 
 
-def _stands(frame: Frame, way: Leg) -> bool:
+def _stands(frame: Frame, phase: TimedPhase) -> bool:
     """Whether the film has stopped a body where nothing moves it; see :data:`STILL`."""
     body = frame.body
     if not body.damped or float(body.weight) > 0.0:
         return False
     released = float(body.kinetic)
-    push = abs(float(way.samples[-1].rows[-1, FORCE]) * float(body.release))
-    return _kinetic(frame, way.place) <= _SLOW**2 * released and push <= STILL * released
+    push = abs(float(phase.samples[-1].rows[-1, FORCE]) * float(body.release))
+    return _kinetic(frame, phase.state) <= _SLOW**2 * released and push <= STILL * released
 
 
-def _creeps(course: Course, near: Leg, way: Leg) -> bool:
+def _creeps(rules: PhaseRules, near: TimedPhase, phase: TimedPhase) -> bool:
     """Whether a body that came near its rest stays there."""
-    still, goal = course.rest
-    place = float(way.place.here.separation)
-    kinetic = _kinetic(course.frame, near.place)
-    if way.fate == TURNED:
-        slow = bool(slow_at(course.frame.body, kinetic, way.maximum_kinetic, course.rest))
+    still, goal = rules.rest
+    place = float(phase.state.here.separation)
+    kinetic = _kinetic(rules.frame, near.state)
+    if phase.fate == TURNED:
+        slow = bool(slow_at(rules.frame.body, kinetic, phase.maximum_kinetic, rules.rest))
         return slow and place > still - (goal - still)
-    slow = _kinetic(course.frame, way.place) < _SPENT * kinetic
+    slow = _kinetic(rules.frame, phase.state) < _SPENT * kinetic
     return slow and place > still
 
 
-def _at_rest(course: Course, near: Leg) -> Leg:
-    """A leg that ends where the body came near its rest; what is left goes to the gas."""
-    place = near.place
-    lost = place.lost.copy()
-    lost[-1] += _kinetic(course.frame, place)
+def _at_rest(rules: PhaseRules, near: TimedPhase) -> TimedPhase:
+    """A phase that ends where the body came near its rest; what is left goes to the gas."""
+    state = near.state
+    lost = state.lost.copy()
+    lost[-1] += _kinetic(rules.frame, state)
     last = near.samples[-1]
     speed, losses = last.speed.copy(), last.lost.copy()
     speed[-1], losses[-1] = 0.0, lost
-    place = place._replace(here=place.here._replace(speed=np.zeros(())), lost=lost)
+    state = state._replace(here=state.here._replace(speed=np.zeros(())), lost=lost)
     samples = [*near.samples[:-1], last._replace(speed=speed, lost=losses)]
-    return near._replace(place=place, fate=AT_REST, samples=samples)
+    return near._replace(state=state, fate=AT_REST, samples=samples)

@@ -50,7 +50,7 @@ _AT_START = (legendre.legvander(np.array([-1.0]), STAGES - 1) @ _TO_SERIES)[0]
 
 
 @kept
-class Here(NamedTuple):
+class BodyState(NamedTuple):
     """Where a body is.
 
     Attributes
@@ -76,7 +76,7 @@ class Here(NamedTuple):
 
 
 @kept
-class Step(NamedTuple):
+class CollocationStep(NamedTuple):
     """A step in time, at its start and at NODES_IN_TIME of it.
 
     Attributes
@@ -109,7 +109,7 @@ class Step(NamedTuple):
     solved: Real
 
 
-def step(contact: DelayedContact, body: Body, here: Here, span: Real) -> Step:
+def step(contact: DelayedContact, body: Body, here: BodyState, span: Real) -> CollocationStep:
     """Go on for ``span`` [s] in which no bond is made or broken at one stroke."""
     pace = jnp.where(here.forming, span / contact.time, 0.0)
     behind = jnp.linalg.inv(jnp.eye(STAGES) + pace * _UNTIL)
@@ -124,38 +124,38 @@ def step(contact: DelayedContact, body: Body, here: Here, span: Real) -> Step:
         nodes = separation, speed, threshold
         return tuple(jnp.append(a, b) for a, b in zip(start, nodes, strict=True))
 
-    def newton(carry: tuple[jax.Array, Any]) -> tuple[tuple[jax.Array, _Look], jax.Array]:
+    def newton(carry: tuple[jax.Array, Any]) -> tuple[tuple[jax.Array, _Forces], jax.Array]:
         before = carry[0]
         separation, speed, threshold = path(before[1:])
-        look = _look(contact, body, here.memory, separation, speed, threshold)
+        forces = _forces_along(contact, body, here.memory, separation, speed, threshold)
         slope = (
-            look.by_separation[1:, None] * span**2 * _TWICE
-            + look.by_speed[1:, None] * span * _UNTIL
-            + look.by_threshold[1:, None] * span**2 * (behind @ (pace * _UNTIL @ _TWICE))
+            forces.by_separation[1:, None] * span**2 * _TWICE
+            + forces.by_speed[1:, None] * span * _UNTIL
+            + forces.by_threshold[1:, None] * span**2 * (behind @ (pace * _UNTIL @ _TWICE))
         )
-        missed = before[1:] - look.acceleration[1:]
+        missed = before[1:] - forces.acceleration[1:]
         change = jnp.linalg.solve(jnp.eye(STAGES) - slope, missed[:, None])[:, 0]
-        after = jnp.append(look.acceleration[0], before[1:] - change)
+        after = jnp.append(forces.acceleration[0], before[1:] - change)
         scale = jnp.max(jnp.abs(after)) + jnp.abs(here.speed) / span
-        return (after, look), jnp.max(jnp.abs(change)) / scale
+        return (after, forces), jnp.max(jnp.abs(change)) / scale
 
     start = jnp.full(STAGES + 1, here.acceleration)
     shapes = jax.eval_shape(newton, (start, None))[0][1]
     blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
-    (acceleration, look), change = fixed_point(newton, (start, blank), _CLOSE, _STEPS)
+    (acceleration, forces), change = fixed_point(newton, (start, blank), _CLOSE, _STEPS)
     places = path(acceleration[1:])
-    course = _Course(places[0], places[1], acceleration, places[2])
-    return _finished(contact, here, span, course, look, change <= 10.0 * _CLOSE)
+    followed = _Path(places[0], places[1], acceleration, places[2])
+    return _finished(contact, here, span, followed, forces, change <= 10.0 * _CLOSE)
 
 
-class _Course(NamedTuple):
+class _Path(NamedTuple):
     separation: jax.Array
     speed: jax.Array
     acceleration: jax.Array
     threshold: jax.Array
 
 
-class _Look(NamedTuple):
+class _Forces(NamedTuple):
     """What acts at some places, and how it changes with them."""
 
     acceleration: jax.Array
@@ -168,14 +168,14 @@ class _Look(NamedTuple):
     rows: jax.Array
 
 
-def _look(
+def _forces_along(
     contact: DelayedContact,
     body: Body,
     memory: Memory,
     separation: jax.Array,
     speed: jax.Array,
     threshold: jax.Array,
-) -> _Look:
+) -> _Forces:
     def contacts(place: jax.Array) -> tuple[jax.Array, tuple[jax.Array, jax.Array]]:
         state = contact.state(place[0], memory, place[1])
         bonds = state.bonds[contact.meniscus_index]
@@ -191,7 +191,7 @@ def _look(
         jnp.stack([separation, threshold], axis=1)
     )
     drag, drag_slope = jax.vmap(jax.value_and_grad(drag_at))(separation)
-    return _Look(
+    return _Forces(
         acceleration=(forces[:, 0] - body.weight - drag * speed) / body.mass,
         by_separation=(slopes[:, 0, 0] - drag_slope * speed) / body.mass,
         by_speed=-drag / body.mass,
@@ -205,18 +205,18 @@ def _look(
 
 def _finished(
     contact: DelayedContact,
-    here: Here,
+    here: BodyState,
     span: jax.Array,
-    course: _Course,
-    look: _Look,
+    followed: _Path,
+    forces: _Forces,
     solved: jax.Array,
-) -> Step:
+) -> CollocationStep:
     """What a step does to the energies."""
-    separation, speed, acceleration, threshold = course
+    separation, speed, acceleration, threshold = followed
     goal = separation - contact.law.forming_gap
     rate = jnp.where(here.forming, (goal - threshold) / contact.time, 0.0)
-    delayed = look.bonds_by_threshold * rate * contact.loss(separation - threshold)
-    dissipated, attraction = look.drag * speed**2, look.attraction * speed
+    delayed = forces.bonds_by_threshold * rate * contact.loss(separation - threshold)
+    dissipated, attraction = forces.drag * speed**2, forces.attraction * speed
     until = [
         jnp.append(0.0, span * (_UNTIL @ power[1:])) for power in (delayed, dissipated, attraction)
     ]
@@ -224,4 +224,6 @@ def _finished(
         jnp.abs(p[0] - _AT_START @ p[1:]) * span for p in (acceleration, delayed + dissipated)
     ]
     made, dissipated, attraction = until
-    return Step(*course, rate, look.rows, made, dissipated, attraction, jnp.stack(missed), solved)
+    return CollocationStep(
+        *followed, rate, forces.rows, made, dissipated, attraction, jnp.stack(missed), solved
+    )

@@ -16,14 +16,14 @@ from ..laws.law import terms
 from ..numerics.compilation import Program
 from .curve_table import Table
 from .record import Body
-from .time_collocation import NODES_IN_TIME, STAGES, Here, Step, step
+from .time_collocation import NODES_IN_TIME, STAGES, BodyState, CollocationStep, step
 
 TURN, SWITCH, MARK, BOND = "turn", "switch", "mark", "bond"
 """What ends a step: speed 0, a threshold caught up with, a separation, a smooth body's meniscus."""
 
 _TOLERANCE = 1e-8  # of what the polynomials miss at a step's start; its end is far closer
 _CLOSE = 1e-13  # relative: what counts as the same place
-_LEAST = 1e-12  # of a leg's first step: a shorter one is a failure
+_LEAST = 1e-12  # of a phase's first step: a shorter one is a failure
 _POLISH = 8  # steps of Newton's method towards an event
 KNOTS = np.append(0.0, NODES_IN_TIME)
 """Start and points of a step, as fractions of it."""
@@ -83,7 +83,7 @@ class Frame(NamedTuple):
             marks += [*forming, *breaking, *kinks]
         return cls(delayed, body, ends, np.unique(marks), forming, breaking, interaction_range)
 
-    def next_mark(self, here: Here, sign: int) -> float:
+    def next_mark(self, here: BodyState, sign: int) -> float:
         """The next separation [m] at which the force changes its law."""
         place, delayed = float(here.separation), self.contact.meniscus_index
         rough = not self.contact.discrete
@@ -97,7 +97,7 @@ class Frame(NamedTuple):
         return float(sign * np.min(sign * ahead)) if ahead.size else sign * np.inf
 
 
-class Taken(NamedTuple):
+class AcceptedStep(NamedTuple):
     """A step that was taken.
 
     Attributes
@@ -114,26 +114,28 @@ class Taken(NamedTuple):
         The separation that did [m].
     """
 
-    step: Step
+    step: CollocationStep
     span: float
     next_span: float
     event: str
     mark: float
 
 
-def go(frame: Frame, here: Here, span: float) -> Step:
+def go(frame: Frame, here: BodyState, span: float) -> CollocationStep:
     """One step, as NumPy's arrays."""
     # Everything as arrays: a plain number would be static, and compile anew.
     here = jax.tree_util.tree_map(np.asarray, here)
     done = _step(frame.contact, frame.body, here, np.asarray(span))
-    answer: Step = jax.tree_util.tree_map(np.asarray, done)
+    answer: CollocationStep = jax.tree_util.tree_map(np.asarray, done)
     return answer
 
 
-def take(frame: Frame, here: Here, sign: int, span: float, maximum_kinetic: float) -> Taken | None:
-    """The next step of a leg, at most ``span`` [s] long; None where there is none.
+def accepted_step(
+    frame: Frame, here: BodyState, sign: int, span: float, maximum_kinetic: float
+) -> AcceptedStep | None:
+    """The next step of a phase, at most ``span`` [s] long; None where there is none.
 
-    ``maximum_kinetic`` is the largest kinetic energy of the leg so far [J].
+    ``maximum_kinetic`` is the largest kinetic energy of the phase so far [J].
     """
     least = _LEAST * span
     while span > least:
@@ -144,17 +146,17 @@ def take(frame: Frame, here: Here, sign: int, span: float, maximum_kinetic: floa
             mark = frame.next_mark(here, sign)
             event = _first_event(frame, here, done, sign, mark)
             if event is None:
-                return Taken(done, span, span * min(factor, 5.0), "", mark)
+                return AcceptedStep(done, span, span * min(factor, 5.0), "", mark)
             name, share = event
             found = _polished(frame, here, name, share * span, sign, mark)
             if found is not None:
-                return Taken(*found, span, name, mark)
+                return AcceptedStep(*found, span, name, mark)
             factor = 0.5 * share
         span *= min(max(factor, 0.1), 0.9)
     return None
 
 
-def _error(frame: Frame, done: Step, maximum_kinetic: float) -> float:
+def _error(frame: Frame, done: CollocationStep, maximum_kinetic: float) -> float:
     """Error of a step over what is allowed; infinite where it is not solved."""
     if not done.solved or not np.all(np.isfinite(done.rows)):
         return np.inf
@@ -165,7 +167,7 @@ def _error(frame: Frame, done: Step, maximum_kinetic: float) -> float:
 
 
 def _functions(
-    frame: Frame, here: Here, sign: int, mark: float
+    frame: Frame, here: BodyState, sign: int, mark: float
 ) -> dict[str, Callable[..., np.ndarray]]:
     """What rises to 0 at each event, of separation, speed and threshold."""
     goal = frame.forming[frame.contact.meniscus_index]
@@ -182,7 +184,7 @@ def _functions(
 
 
 def _first_event(
-    frame: Frame, here: Here, done: Step, sign: int, mark: float
+    frame: Frame, here: BodyState, done: CollocationStep, sign: int, mark: float
 ) -> tuple[str, float] | None:
     """The first event of a step and where in it, by its polynomials."""
     from scipy.optimize import brentq
@@ -206,8 +208,8 @@ def _first_event(
 
 
 def _polished(
-    frame: Frame, here: Here, name: str, span: float, sign: int, mark: float
-) -> tuple[Step, float] | None:
+    frame: Frame, here: BodyState, name: str, span: float, sign: int, mark: float
+) -> tuple[CollocationStep, float] | None:
     """The step that ends at an event, by Newton's method on its length."""
     function = _functions(frame, here, sign, mark)[name]
     for _ in range(_POLISH):

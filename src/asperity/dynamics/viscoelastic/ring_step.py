@@ -23,7 +23,7 @@ from ...interface.rough_planes import Memory as Thresholds
 from ...laws.law import Real
 from ...numerics.compilation import kept
 from ..record import Body
-from .ring_system import Bulk, Here, Rest, balanced, row_of
+from .ring_system import Bulk, Rest, RingState, balanced, row_of
 
 _DIAGONAL = 0.25
 _STAGES = np.zeros((6, 6))
@@ -50,7 +50,7 @@ _ENERGY_SAMPLES = legendre.legvander(np.linspace(-1.0, 1.0, 65), 5) @ np.linalg.
 
 
 @kept
-class Step(NamedTuple):
+class RingStep(NamedTuple):
     """A step in time.
 
     Attributes
@@ -71,7 +71,7 @@ class Step(NamedTuple):
         Whether all stages are solved.
     """
 
-    here: Here
+    here: RingState
     rates: Real
     row: Real
     lost: Real
@@ -102,7 +102,7 @@ class _Rates(NamedTuple):
         return _Rates(*(a.at[stage].set(b) for a, b in zip(self, rates, strict=True)))
 
 
-def step(relaxation: Relaxation, body: Body, size: Real, here: Here, span: Real) -> Step:
+def step(relaxation: Relaxation, body: Body, size: Real, here: RingState, span: Real) -> RingStep:
     """Go on for ``span`` [s] on a mesh of a ``size`` [m]."""
     bulk = Bulk.of(relaxation, jnp.asarray(size))
     first = _rates(bulk, body, here.speed, here.retarded, here.gaps, here.thresholds)
@@ -121,7 +121,7 @@ def step(relaxation: Relaxation, body: Body, size: Real, here: Here, span: Real)
     off = rates.along(span * (_WEIGHTS - _LOWER))
     path = jnp.asarray(_ENERGY_SAMPLES) @ jnp.concatenate([here.gaps[None], gaps])
     thresholds, lost = _bonds(bulk, _waited(bulk, here.thresholds, change), path)
-    end = Here(
+    end = RingState(
         here.separation + change.separation, here.speed + change.speed, gaps[-1],
         here.retarded + change.retarded, thresholds,
     )  # fmt: skip
@@ -138,7 +138,7 @@ def step(relaxation: Relaxation, body: Body, size: Real, here: Here, span: Real)
         lost = jnp.append(lost, change.dissipated)
     else:
         lost = lost.at[bulk.delayed.meniscus_index].add(change.dissipated)
-    return Step(
+    return RingStep(
         end, jnp.stack([rates.speed[-1], rates.dissipated[-1]]), row_of(bulk, end),
         lost, fit, _errors(bulk, end, off), jnp.all(solved),
     )  # fmt: skip
@@ -152,8 +152,8 @@ def _waited(bulk: Bulk, held: Thresholds, change: _Rates) -> Thresholds:
     return delayed.with_threshold(held, held[delayed.meniscus_index] + change.threshold)
 
 
-def _errors(bulk: Bulk, end: Here, off: _Rates) -> jax.Array:
-    """Errors of a step by those of its changes, see :class:`Step`."""
+def _errors(bulk: Bulk, end: RingState, off: _Rates) -> jax.Array:
+    """Errors of a step by those of its changes, see :class:`RingStep`."""
     pressed, dissipated = bulk.excess * off.retarded, off.dissipated
     if bulk.waiting is not None:
         pressed = bulk.waiting.pressing(end.gaps, end.thresholds, off.threshold)[:-1]
@@ -185,7 +185,7 @@ def _rates(
 
 
 def _solved(
-    bulk: Bulk, body: Body, here: Here, known: _Rates, span: jax.Array, guess: jax.Array
+    bulk: Bulk, body: Body, here: RingState, known: _Rates, span: jax.Array, guess: jax.Array
 ) -> tuple[jax.Array, _Rates, jax.Array]:
     """Separations at a stage and the rates there, from what is known of its values."""
     gain = span * bulk.pace

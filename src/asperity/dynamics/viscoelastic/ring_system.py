@@ -25,7 +25,7 @@ _STEPS = 30
 
 
 @kept
-class Here(NamedTuple):
+class RingState(NamedTuple):
     """Where a body and its rings are.
 
     Attributes
@@ -157,7 +157,7 @@ def balanced(
     return gaps, change <= 1e3 * _CLOSE
 
 
-def row_of(bulk: Bulk, here: Here) -> jax.Array:
+def row_of(bulk: Bulk, here: RingState) -> jax.Array:
     """Quantities of the contact in one row, without its field."""
     surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
     inside = surfaces.measure(here.gaps, here.thresholds)

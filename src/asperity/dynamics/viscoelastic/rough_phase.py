@@ -19,8 +19,8 @@ from ..record import Body
 from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples
 from ..stepped_record import Ledger, SteppedPhase
 from .ring_menisci import FreeFlight
-from .ring_step import Step, step
-from .ring_system import Freed, Here, freed
+from .ring_step import RingStep, step
+from .ring_system import Freed, RingState, freed
 from .sample_times import flight_times
 
 TOLERANCE = 1e-9
@@ -80,8 +80,8 @@ class RoughBounce:
         if relaxation.delayed is not None:  # in equilibrium with the vapour
             goal = gaps - float(relaxation.delayed.law.forming_gap)
             thresholds = relaxation.delayed.with_threshold(thresholds, jnp.asarray(goal))
-        here = Here(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
-        self.here: Here = jax.tree_util.tree_map(np.asarray, here)
+        here = RingState(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
+        self.here: RingState = jax.tree_util.tree_map(np.asarray, here)
         # A body may be let go at rest where forces begin; a fall by a height is its first scale.
         speed = sqrt(float(body.speed) ** 2 + 2.0 * self._gravity * self._rms)
         self.maximum_kinetic = 0.5 * self._mass * speed**2
@@ -221,7 +221,7 @@ class RoughBounce:
         energy = 0.5 * self._mass * float(here.speed) ** 2
         return energy <= _SPENT * self._mass * self._gravity * near
 
-    def _taken(self, inwards: bool) -> tuple[Step | None, float]:
+    def _taken(self, inwards: bool) -> tuple[RingStep | None, float]:
         """A step that is precise enough, and its length [s]."""
         ahead = -1.0 if inwards else 1.0
         span, least = self._span, 1e-9 * self._span
@@ -244,7 +244,7 @@ class RoughBounce:
             span *= min(max(factor, 0.1), 0.9)
         return None, span
 
-    def _turn(self, done: Step, span: float, ahead: float) -> tuple[Step, float] | None:
+    def _turn(self, done: RingStep, span: float, ahead: float) -> tuple[RingStep, float] | None:
         """The step that ends where the speed is 0: a root between no step and this one."""
         low, high = 0.0, span
         at_low, at_high = ahead * float(self.here.speed), ahead * float(done.here.speed)
@@ -264,12 +264,12 @@ class RoughBounce:
             high, at_high = (high, at_high) if value > 0.0 else (span, value)
         return done, span
 
-    def _try(self, span: float) -> Step:
+    def _try(self, span: float) -> RingStep:
         done = _step(self.relaxation, self.body, np.asarray(self.size), self.here, np.asarray(span))
-        answer: Step = jax.tree_util.tree_map(np.asarray, done)
+        answer: RingStep = jax.tree_util.tree_map(np.asarray, done)
         return answer
 
-    def _error(self, done: Step) -> float:
+    def _error(self, done: RingStep) -> float:
         """Error of a step over what is allowed; infinite where it is not solved."""
         if not done.solved or not np.all(np.isfinite(done.row)):
             return inf

@@ -68,7 +68,7 @@ class SmoothBounce:
 
     def phase(self, inwards: bool) -> SteppedPhase:
         """The phase until the body turns."""
-        fate, tracks = self._bounce.way(inwards)
+        fate, tracks = self._bounce.follow(inwards)
         return SteppedPhase(fate, self._samples(tracks))
 
     def _samples(self, tracks: Sequence[Track]) -> Samples:

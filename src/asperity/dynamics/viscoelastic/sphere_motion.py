@@ -75,8 +75,8 @@ class Bounce:
         self.phase = Phase(solid, ADVANCES, 0.0, ResidualIndentation())
         self.pressed = False
 
-    def way(self, inwards: bool) -> tuple[str, list[Track]]:
-        """The stretches until the body turns, and how they end."""
+    def follow(self, inwards: bool) -> tuple[str, list[Track]]:
+        """The tracks until the body turns, and how they end."""
         tracks: list[Track] = []
         for _ in range(_MOST):
             fate, track = (self._press if self.pressed else self._free_flight)(inwards)

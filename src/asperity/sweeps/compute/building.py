@@ -20,7 +20,7 @@ from asperity.errors import InputError
 from asperity.integration.batch_records import Batch
 from asperity.model import build
 from asperity.numerics.compilation import Program
-from asperity.sweeps.compute.rows import Rows, Split
+from asperity.sweeps.compute.batch_values import BatchValues, Mixed
 
 if TYPE_CHECKING:
     from asperity.sweeps.study.study import Study
@@ -128,9 +128,9 @@ def _together(study: Study, values: Values, rows: np.ndarray, out: Built) -> Non
         return
     try:
         group, delayed = _as_one(study, values, rows)
-    except Split as split:
-        _together(study, values, rows[split.holds], out)
-        _together(study, values, rows[~split.holds], out)
+    except Mixed as mixed:
+        _together(study, values, rows[mixed.holds], out)
+        _together(study, values, rows[~mixed.holds], out)
     except (InputError, _Differs):
         _each(study, values, rows, out)  # for each one's own message, too
     else:
@@ -145,11 +145,11 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     chosen: dict[str, Any] = {}
     for key, array in values.items():
         some = array[rows]
-        chosen[key] = Rows.of(some) if some.dtype.kind == "f" else some.tolist()[0]
+        chosen[key] = BatchValues.of(some) if some.dtype.kind == "f" else some.tolist()[0]
     try:
         case = study.case_of(chosen)
         problem = build(resolve(case), _UNRESOLVED)
-    except (InputError, Split):
+    except (InputError, Mixed):
         raise
     except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
         raise _Differs from error
