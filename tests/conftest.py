@@ -28,10 +28,13 @@ _worker = os.environ.get("PYTEST_XDIST_WORKER", "alone")
 os.environ.setdefault("JAX_PLATFORMS", "cpu")
 os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(_compile_cache(_worker)))
 os.environ.setdefault("MPLBACKEND", "Agg")
+# Most of a first run is compilation: what XLA would optimise takes longer than it saves here.
+_flags = ["--xla_backend_optimization_level=0", "--xla_cpu_use_fusion_emitters=false"]
 if _worker != "alone":
-    os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false")
+    _flags.append("--xla_cpu_multi_thread_eigen=false")
     for _variable in ("NPROC", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(_variable, "1")
+os.environ.setdefault("XLA_FLAGS", " ".join(_flags))
 
 # Compiling takes the first example over any deadline; on CI the examples are always the same.
 hypothesis.settings.register_profile("here", deadline=None)

@@ -5,6 +5,7 @@ import pytest
 
 import asperity
 from asperity.config import load_file
+from asperity.critical_velocity import Launcher
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
 from asperity.errors import InputError
 from jkr_spheres import CRITICAL, MODULUS, RADIUS, W, smooth
@@ -93,3 +94,28 @@ def test_speeds_that_cannot_be_computed_are_passed_over():
 def test_speeds_that_are_none_are_refused(speeds):
     with pytest.raises(InputError, match="`speeds` must be positive and finite"):
         asperity.restitution_curve(smooth("jkr"), np.array(speeds))
+
+
+DRAGGED = {
+    "gas": ("examples/drop-in-air.toml", {}),
+    "waves": ("examples/jkr-stick.toml", {"waves": {"model": "hunter"}}),
+}
+
+
+@pytest.mark.parametrize("drag", DRAGGED)
+def test_with_drag_too_few_first_impacts_tell_the_edge(monkeypatch, drag):
+    """The margin of the apex, or the energy left, tells it: halving would take forty."""
+    file, change = DRAGGED[drag]
+    tried, launch = [], Launcher.__call__
+
+    def counted(self, speed):
+        tried.append((self, speed, launch(self, speed)))
+        return tried[-1][-1]
+
+    monkeypatch.setattr(Launcher, "__call__", counted)
+    critical = asperity.solve(load_file(file).replace(change)).measures["critical_velocity"]
+    assert len(tried) <= 30
+    launcher, speed, last = tried[-1]
+    assert last.speed == pytest.approx(critical, rel=1e-10)
+    assert launch(launcher, speed * (1.0 - 1e-8)).captured
+    assert not launch(launcher, speed * (1.0 + 1e-8)).captured

@@ -15,7 +15,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from ..numerics.roots import fixed_point
-from .curve_table import CENTRAL
+from .curve_table import CENTRAL, FORCE
 from .external_forces import Along, Load
 from .phase import Work
 from .phase_time import NEAR, missed_time
@@ -31,6 +31,9 @@ _GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
 SHARES = np.sin(0.5 * np.pi * _GAUSS) ** 2
 """Places on a piece, as fractions of what is passed of it."""
 _PACE = 0.5 * np.pi * np.sin(np.pi * _GAUSS)
+
+
+_DERIVATIVE = np.pad(DERIVATIVE, ((0, 1), (0, 0)))
 
 
 def _integrals(ends: np.ndarray) -> np.ndarray:
@@ -91,7 +94,7 @@ class PieceMotion(NamedTuple):
 
 
 class DampedPiece(NamedTuple):
-    """One of :class:`Pieces`, with the integral of its force."""
+    """One of :class:`Pieces`, with the integral of its force, and that up to its entry [J]."""
 
     low: jax.Array
     high: jax.Array
@@ -100,21 +103,22 @@ class DampedPiece(NamedTuple):
     force: jax.Array
     integral: jax.Array
     central: jax.Array
+    entry: jax.Array
 
     @classmethod
     def of(cls, work: Work, k: jax.Array) -> DampedPiece:
         """Piece ``k`` of those that work is done along."""
-        p = work.pieces
+        p, integral = work.pieces, work.integral[:, k, 0]
+        low, high, enter = p.low[k], p.high[k], p.enter[k]
+        entry = chebyshev_sum(integral, local(low, high, enter))
         return cls(
-            p.low[k], p.high[k], p.enter[k], p.leave[k], p.values[k, :, 0],
-            work.integral[:, k, 0], p.values[k, :, CENTRAL],
+            low, high, enter, p.leave[k], p.values[k, :, FORCE], integral,
+            p.values[k, :, CENTRAL], entry,
         )  # fmt: skip
 
     def energy(self, places: jax.Array, load: Load) -> jax.Array:
         """What contact and load add to the kinetic energy from the entry to there [J]."""
-        x = local(self.low, self.high, places)
-        first = local(self.low, self.high, self.enter)
-        gain = chebyshev_sum(self.integral, x) - chebyshev_sum(self.integral, first)
+        gain = chebyshev_sum(self.integral, local(self.low, self.high, places)) - self.entry
         return gain - load.potential_gain(self.enter, places - self.enter)
 
     def push(self, place: jax.Array, load: Load) -> jax.Array:
@@ -126,9 +130,9 @@ class DampedPiece(NamedTuple):
         x = local(self.low, self.high, places)
         width = self.high - self.low
         rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
-        slope = rate * (DERIVATIVE @ self.force)
-        bend = rate * (DERIVATIVE[:-1, :-1] @ slope)
-        central, stiffness, change = (chebyshev_sum(c, x) for c in (self.central, slope, bend))
+        slope = rate * (_DERIVATIVE @ self.force)
+        along = jnp.stack([self.central, slope, rate * (_DERIVATIVE @ slope)], axis=1)
+        central, stiffness, change = chebyshev_sum(along[:, :, None], x)
         return body.resistances(Along(central, stiffness, change, speed))
 
     @property
@@ -141,8 +145,8 @@ def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array)
     """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
     span = stop - piece.enter
     places = piece.enter + span * SHARES
-    energy = kinetic + piece.energy(places, body.load)
-    last = kinetic + piece.energy(stop, body.load)
+    energies = kinetic + piece.energy(jnp.append(places, stop), body.load)
+    energy, last = energies[:-1], energies[-1]
     most = jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last))
     most = jnp.where(most > 0.0, most, 1.0)
     unit = jnp.sqrt(2.0 * most / body.mass)

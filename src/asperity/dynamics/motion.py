@@ -223,7 +223,7 @@ def _phase_of_impact(
     )  # fmt: skip
     end = _PhaseEnd(
         turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
-        *fate, jnp.asarray(jnp.nan) if body.damped else mechanical_at_end(ahead),
+        *fate, mechanical_at_end(ahead) - jnp.sum(dissipated),
     )  # fmt: skip
     return after, end
 

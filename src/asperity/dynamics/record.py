@@ -164,8 +164,9 @@ class Impacts(NamedTuple):
         Kinetic, potential and stored energy at the apex [J].
     leaving
         The same energy were the body to leave the contact, whether or not it has enough: a body
-        that is captured has less than its potential energy at the end of contact. NaN with drag
-        and for motions stepped in time, which tell it of no body that is captured.
+        that is captured has less than its potential energy at the end of contact. With drag, less
+        what that took until the apex. NaN for motions stepped in time, which tell it of no body
+        that is captured.
     force
         Contact force at closest approach [N].
     contacting, bonds

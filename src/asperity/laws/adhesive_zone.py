@@ -44,6 +44,22 @@ def _polynomial(coefficients: np.ndarray, x: Any) -> Any:
     return value
 
 
+def _of_one(coefficients: np.ndarray, x: Any) -> Any:
+    """The same at few places, in fewer operations: by rows, each of powers of x to a multiple."""
+    width = int(np.ceil(np.sqrt(coefficients.size)))
+    table = np.pad(coefficients, (0, -coefficients.size % width)).reshape(-1, width)
+    across, down = _powers(x, width), _powers(x**width, table.shape[0])
+    return jnp.sum(down * jnp.sum(table * across[..., None, :], axis=-1), axis=-1)
+
+
+def _powers(x: Any, count: int) -> jax.Array:
+    """1, x, x^2, so many, along a new last axis."""
+    found = [jnp.ones_like(x)]
+    for _ in range(count - 1):
+        found.append(found[-1] * x)
+    return jnp.stack(found, axis=-1)
+
+
 class Zone(NamedTuple):
     """What the angle phi = arccos(a/c) stands for.
 
@@ -72,11 +88,13 @@ class Zone(NamedTuple):
     bend: Any
 
 
-def _zone(t: Any, sine: Any, cosine: Any) -> Zone:
+def _zone(
+    t: Any, sine: Any, cosine: Any, polynomial: Callable[[np.ndarray, Any], Any] = _polynomial
+) -> Zone:
     """Everything from the tangent of half the angle, its sine and its cosine."""
     square = t * t
     # A quotient is where the compiler cuts: the polynomial is evaluated once for all its uses.
-    slack = _polynomial(_SLACK, 2.0 * square - 1.0) / (1.0 + square)
+    slack = polynomial(_SLACK, 2.0 * square - 1.0) / (1.0 + square)
     ratio, rise = 1.0 - square * slack, t * sine
     cubic, whole = 0.5 * sine * rise, (1.0 + square) ** 2 * slack
     return Zone(
@@ -91,9 +109,9 @@ def _zone(t: Any, sine: Any, cosine: Any) -> Zone:
     )
 
 
-def _of_tangent(t: Any) -> Zone:
+def _of_tangent(t: Any, polynomial: Callable[[np.ndarray, Any], Any] = _polynomial) -> Zone:
     share = 1.0 / (1.0 + t * t)
-    return _zone(t, 2.0 * t * share, (1.0 - t * t) * share)
+    return _zone(t, 2.0 * t * share, (1.0 - t * t) * share, polynomial)
 
 
 def of_radii(inner: jax.Array, flank: jax.Array) -> tuple[jax.Array, Zone]:
@@ -141,12 +159,15 @@ class End(NamedTuple):
         Overlap, a and c there.
     curvature
         Half the second derivative of the overlap with a; its first is 0.
+    last
+        Overlap at which the bonded branch ends: there, or at its fold outside contact.
     """
 
     overlap: jax.Array
     inner: jax.Array
     outer: jax.Array
     curvature: jax.Array
+    last: jax.Array
 
 
 @jax.jit
@@ -154,27 +175,22 @@ def contact_end(l: jax.Array) -> End:
     """The end of the contact; the table of its angle spans all lambda above :data:`SOFT`."""
     stiff = jnp.minimum(SOFT / l, 1.0)
     soft = stiff < 1.0
-    z = _of_tangent(jnp.where(soft, stiff * _polynomial(_FOLDS, 2.0 * stiff - 1.0), 1.0))
+    tangent = jnp.where(soft, stiff * _of_one(_FOLDS, 2.0 * stiff - 1.0), 1.0)
+    z = _of_tangent(tangent, _of_one)
     linear = 4.0 / 3.0 * l**2 * z.gape
     outer = 2.0 / (linear + jnp.sqrt(linear**2 + 2.0 * l * z.pull))
     inner, flank = outer * jnp.where(soft, z.cosine, 0.0), outer * z.sine
     hold, hold_slope = _hold(inner, outer, z, l)
     curvature = (flank + 2.0 / 3.0 * l) * (inner * hold_slope + hold)
     curvature = curvature / (flank * hold + 4.0 / 3.0 * l * outer * z.angle)
-    return End(inner**2 - 4.0 / 3.0 * l * flank, inner, outer, curvature)
+    overlap = inner**2 - 4.0 / 3.0 * l * flank
+    outside = -2.0 / (pi * l) - 0.5 * falling_apart(l) ** 2
+    return End(overlap, inner, outer, curvature, jnp.where(l < SOFT, outside, overlap))
 
 
 def falling_apart(l: jax.Array) -> jax.Array:
     """Outer radius at the fold outside contact."""
     return 8.0 / (3.0 * pi) * l
-
-
-@jax.jit
-def last(l: jax.Array) -> jax.Array:
-    """Overlap at which the bonded branch ends."""
-    return jnp.where(
-        l < SOFT, -2.0 / (pi * l) - 0.5 * falling_apart(l) ** 2, contact_end(l).overlap
-    )
 
 
 def _hold(inner: jax.Array, outer: jax.Array, z: Zone, l: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -253,16 +269,15 @@ def _closer(inner: jax.Array, flank: jax.Array, least: jax.Array, l: jax.Array) 
 
 @jax.custom_jvp
 @jax.jit
-def radii(overlap: jax.Array, l: jax.Array) -> Radii:
-    """Equilibrium on the bonded branch, not beyond its end."""
-    end = contact_end(l)
+def radii(overlap: jax.Array, l: jax.Array, end: End) -> Radii:
+    """Equilibrium on the bonded branch, not beyond its :func:`contact_end`."""
 
     def closer(_: int, at: Radii) -> Radii:
         return _closer(at[0], at[1], end.inner, l)
 
     inner, flank = jax.lax.fori_loop(0, 3, closer, _first(overlap, end, l))
     apart = jnp.logical_and(overlap < end.overlap, l < SOFT)
-    outside = falling_apart(l) + jnp.sqrt(2.0 * _excess(overlap, last(l)))
+    outside = falling_apart(l) + jnp.sqrt(2.0 * _excess(overlap, end.last))
     return jnp.where(apart, 0.0, inner), jnp.where(apart, outside, flank)
 
 
@@ -290,8 +305,8 @@ def slopes(
 @jax.jit
 def _radii_jvp(primals, tangents):  # type: ignore[no-untyped-def]
     inner, flank = radii(*primals)
-    overlap, l = primals
-    outer_change, inner_change = slopes(overlap, l, (inner, flank), tangents)
+    overlap, l, _ = primals
+    outer_change, inner_change = slopes(overlap, l, (inner, flank), tangents[:2])
     touching = inner > 0.0
     # Where the contact begins a grows like a square root; what is made of it does not.
     inner_rate = jnp.where(touching, inner_change / jnp.where(touching, inner, 1.0), 0.0)

@@ -6,17 +6,7 @@ from math import pi
 from typing import ClassVar
 
 from .._jax import jax, jnp
-from .adhesive_zone import (
-    SOFT,
-    Radii,
-    Zone,
-    contact_end,
-    falling_apart,
-    last,
-    of_radii,
-    radii,
-    slopes,
-)
+from .adhesive_zone import End, Radii, Zone, contact_end, of_radii, radii, slopes
 from .law import Law, Real, quantity
 
 RANGE_PER_SPACING = 9.0 * 3.0**0.5 / 16.0
@@ -68,8 +58,7 @@ class Maugis(Law):
 
     @property
     def breaking_gap(self) -> jax.Array:
-        outside = self.forming_gap + self._depth * 0.5 * falling_apart(self.elasticity) ** 2
-        return jnp.where(self.elasticity < SOFT, outside, self.rupture_gap)
+        return -self._depth * contact_end(self.elasticity).last
 
     @property
     def rupture_gap(self) -> jax.Array:
@@ -127,13 +116,14 @@ class Maugis(Law):
 
 def _state(overlap: jax.Array, l: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
     """Elastic and adhesive force, and energy, on the bonded branch; at its end beyond it."""
-    return _held(jnp.maximum(overlap, last(l)), l)
+    end = contact_end(l)
+    return _held(jnp.maximum(overlap, end.last), l, jax.lax.stop_gradient(end))
 
 
 @jax.custom_jvp
 @jax.jit
-def _held(overlap: jax.Array, l: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-    return _within(overlap, l, radii(overlap, l))
+def _held(overlap: jax.Array, l: jax.Array, end: End) -> tuple[jax.Array, jax.Array, jax.Array]:
+    return _within(overlap, l, radii(overlap, l, end))
 
 
 def _within(
@@ -159,11 +149,11 @@ def _stress_work(overlap: jax.Array, inner: jax.Array, outer: jax.Array, z: Zone
 @_held.defjvp
 @jax.jit
 def _held_jvp(primals, tangents):  # type: ignore[no-untyped-def]
-    (overlap, l), (by_overlap, by_l) = primals, tangents
-    inner, flank = radii(overlap, l)
+    (overlap, l, end), (by_overlap, by_l, _) = primals, tangents
+    inner, flank = radii(overlap, l, end)
     elastic, pull, energy = _within(overlap, l, (inner, flank))
     outer, z = of_radii(inner, flank)
-    outer_change, inner_change = slopes(overlap, l, (inner, flank), tangents)
+    outer_change, inner_change = slopes(overlap, l, (inner, flank), (by_overlap, by_l))
     # Both equations make the energy stationary in a and c, so only its explicit slopes count.
     elastic_change = 3.0 * inner * inner_change
     force_change = 1.5 * inner * by_overlap - outer**2 * z.segment * by_l
