@@ -42,7 +42,7 @@ frozen: dev-environment
 
 # -E: executed pages and docstrings follow the code, not the last build.
 docs: dev-environment
-	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -E -W --keep-going -q -j $(WORKERS) -b html docs docs/_build/html
 
 lint: dev-environment
 	$(BIN)/ruff check

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
+from ..laws.law import Real
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from ..numerics.roots import fixed_point
 from .curve_table import CENTRAL, FORCE
@@ -222,29 +223,31 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     start = jnp.where(coasts, coasting, free)
     turns = jnp.where(_off(start, share, drag) <= _CLOSE * POINTS, 0, _DIRECT)
     u, _ = fixed_point(direct, start, _CLOSE, turns)
-    return _by_newton(u, start, share, drag)
+    return _by_newton(u, start, share, drag, jnp.asarray(_UNTIL))
 
 
 @jax.custom_batching.sequential_vmap
 def _by_newton(
-    u: jax.Array, start: jax.Array, share: jax.Array, drag: jax.Array
+    u: jax.Array, start: jax.Array, share: jax.Array, drag: jax.Array, until: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
     """The same by Newton's method from ``start`` where ``u`` is no solution, and whether it is one.
 
-    Of a batch those alone are solved that ask for it.
+    Of a batch those alone are solved that ask for it. ``until`` are the integrals: within a batch
+    of batches JAX knows no constants here.
     """
 
     def newton(u: jax.Array) -> tuple[jax.Array, jax.Array]:
-        move = _solved(_slopes(u, drag), _missed(u, share, drag))
+        slopes = jnp.diag(2.0 * u) + until * drag
+        move = jnp.linalg.solve(slopes, _missed(u, share, drag, until)[:, None])[:, 0]
         # Never past a tenth of itself: a speed that has no solution falls to nothing.
         return _compared(jnp.maximum(u - move, 0.1 * u), u)
 
     def solved() -> tuple[jax.Array, jax.Array]:
         return fixed_point(newton, start + 1e-6, _CLOSE, _STEPS)
 
-    unsolved = _off(u, share, drag) > _CLOSE * POINTS
+    unsolved = _off(u, share, drag, until) > _CLOSE * POINTS
     u, change = jax.lax.cond(unsolved, solved, lambda: (u, jnp.zeros(())))
-    return u, (change <= 1e-9) & (_off(u, share, drag) < 1e-9)
+    return u, (change <= 1e-9) & (_off(u, share, drag, until) < 1e-9)
 
 
 def _compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -253,8 +256,8 @@ def _compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
     return after, jnp.max(jnp.abs(after - u)) / jnp.where(most > 0.0, most, 1.0)
 
 
-def _off(u: jax.Array, share: jax.Array, drag: jax.Array) -> jax.Array:
-    return jnp.max(jnp.abs(_missed(u, share, drag)))
+def _off(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = _UNTIL) -> jax.Array:
+    return jnp.max(jnp.abs(_missed(u, share, drag, until)))
 
 
 @_reduced_speeds.defjvp
@@ -262,7 +265,7 @@ def _reduced_speeds_jvp(primals, tangents):  # type: ignore[no-untyped-def]
     (share, drag), (dshare, ddrag) = primals, tangents
     u, close = _reduced_speeds(share, drag)
     sound = close & jnp.all(u > 0.0)  # else nothing moves, or nothing is solved
-    matrix = jnp.where(sound, _slopes(u, drag), jnp.eye(POINTS))
+    matrix = jnp.where(sound, jnp.diag(2.0 * u) + _UNTIL * drag, jnp.eye(POINTS))
     push = jnp.where(sound, dshare - _UNTIL @ (ddrag * u), 0.0)
     moved = jax.lax.custom_linear_solve(
         lambda x: matrix @ x,
@@ -273,12 +276,8 @@ def _reduced_speeds_jvp(primals, tangents):  # type: ignore[no-untyped-def]
     return (u, close), (moved, np.zeros(close.shape, jax.dtypes.float0))
 
 
-def _missed(u: jax.Array, share: jax.Array, drag: jax.Array) -> jax.Array:
-    return u**2 + _UNTIL @ (drag * u) - share
-
-
-def _slopes(u: jax.Array, drag: jax.Array) -> jax.Array:
-    return jnp.diag(2.0 * u) + _UNTIL * drag
+def _missed(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = _UNTIL) -> jax.Array:
+    return u**2 + until @ (drag * u) - share
 
 
 @jax.custom_batching.sequential_vmap
