@@ -15,7 +15,7 @@ from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
 from .integration import launch, prepared
 from .results.conversion import Solution, contact_end, measured
-from .results.measures import least_peak
+from .results.first_contact import least_peak
 from .results.summary import amount
 
 _ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted

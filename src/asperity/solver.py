@@ -18,8 +18,9 @@ from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
 from .regimes.validity import pull_warnings
+from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
-from .results.conversion import Assessment, Solution, assessment_of, first_restitution, result_of
+from .results.conversion import Solution, first_restitution, result_of
 from .results.result import Curve, Result
 
 

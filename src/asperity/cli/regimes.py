@@ -22,7 +22,7 @@ from asperity.results.records import check_folder, plain, write_folder
 from asperity.results.summary import WIDTH, amount, warning_lines
 
 if TYPE_CHECKING:
-    from asperity.results.conversion import Assessment
+    from asperity.results.assessment import Assessment
 
 MAP_FILE = "adhesion-map.png"
 """The map's picture unless another is named."""

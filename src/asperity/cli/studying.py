@@ -101,7 +101,7 @@ def merge(
     verbose: Verbose = False,
 ) -> None:
     """Make one store of those of a study's shards."""
-    from asperity.cli.sweeping import merge as join
+    from asperity.cli.merging import merge as join
 
     join(
         stores, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose

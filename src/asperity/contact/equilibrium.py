@@ -17,6 +17,7 @@ from .._jax import jax, jnp
 from ..halfspace import ring_mesh
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
+from ..laws.law import Real
 from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
 from .profile import Sphere
 
@@ -69,8 +70,8 @@ class _Step(NamedTuple):
         return self.change * jnp.minimum(self.rate, 1.0) < _ENOUGH
 
 
-def profile_of(contact: Rough, size: jax.Array, rings: int) -> jax.Array:
-    """Rise of the body's surface at the rings and at the mesh's end [m]."""
+def profile_of(contact: Rough, size: Real, rings: int) -> jax.Array:
+    """Profile of the body at the rings and at the mesh's end [m]."""
     mesh = ring_mesh(rings)
     return contact.shape.profile(size * np.append(mesh.radius, mesh.end))
 

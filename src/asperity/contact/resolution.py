@@ -91,26 +91,40 @@ def fills_by_contact(bonds: Iterable[Law]) -> bool:
     return any(isinstance(law, KelvinFilling) for law in bonds)
 
 
-_RIGID = (Resolution(7, 16, 2),)
-_DEFORMS = (Resolution(9, 16, 3),)
+FEW_RIGID = (
+    Resolution(7, 16, 2),
+    Resolution(14, 16, 4, 14),
+    Resolution(28, 16, 8, 28),
+    Resolution(56, 16, 16, 56),
+)
+FEW_DEFORMING = (
+    Resolution(9, 16, 3),
+    Resolution(18, 16, 6, 14),
+    Resolution(36, 16, 12, 28),
+    Resolution(72, 16, 24, 56),
+)
+"""From coarse to fine; of one case after the other."""
+
+FEW_OF_MANY = (
+    Resolution(6, 8, 1, 7),
+    Resolution(8, 16, 1, 7),
+    Resolution(8, 8, 2, 7),
+    Resolution(16, 16, 2, 14),
+    Resolution(32, 16, 4, 28),
+    Resolution(64, 16, 8, 56),
+)
+"""From coarse to fine; of many cases side by side."""
 
 
-def in_steps(resolved: Resolution, *, deforms: bool) -> Resolution:
-    """The first of a few resolutions that is at least as fine, so that few are compiled."""
-    steps = [*(_DEFORMS if deforms else _RIGID)]
-    while any(have < need for have, need in zip(steps[-1][:4], resolved[:4], strict=True)):
-        last = steps[-1]
-        steps.append(last._replace(
-            panels=2 * last.panels, nodes=max(16, resolved.nodes), pieces=2 * last.pieces,
-            shared=2 * last.shared,
-        ))  # fmt: skip
-    step = next(
-        step for step in steps
-        if all(have >= need for have, need in zip(step[:4], resolved[:4], strict=True))
-    )  # fmt: skip
-    return resolved._replace(
-        panels=step.panels, nodes=step.nodes, pieces=step.pieces, shared=step.shared
-    )
+def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
+    """The first of a few resolutions that is at least as fine, since each is compiled.
+
+    Where none is, one of powers of two.
+    """
+    for one in few:
+        if all(number <= most for number, most in zip(found, one, strict=True)):
+            return one
+    return Resolution(*(1 << (number - 1).bit_length() for number in found))
 
 
 def _shared(interaction_range: float, panels: int) -> int:

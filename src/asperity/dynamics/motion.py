@@ -23,14 +23,7 @@ from .curve_table import (
 )
 from .motion_end import EndRules
 from .overdamped import Rest, come_to_rest
-from .phase import (
-    TurningPoint,
-    in_order,
-    look_ahead,
-    mechanical_at_end,
-    pull_work,
-    row_at,
-)
+from .phase import TurningPoint, in_order, look_ahead, mechanical_at_end, pull_work, row_at
 from .phase_time import travel_time
 from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
 from .resolved_pieces import resolved
@@ -40,7 +33,6 @@ from .turning_point import find_turning_point
 
 LEAST_RISE = 1e-9
 """Share of the fall: a body that rises less stays where it turned."""
-
 
 FEW = 8
 """Impacts up to which each reversal is better solved as it comes."""
@@ -178,6 +170,9 @@ class _PhaseEnd(NamedTuple):
     leaving: jax.Array
 
 
+_Ended = tuple[Progress, _PhaseEnd]
+
+
 def _phase_of_impact(
     contact: Contact,
     body: Body,
@@ -185,7 +180,7 @@ def _phase_of_impact(
     rest: Rest,
     progress: Progress,
     unloading: jax.Array,
-) -> tuple[Progress, _PhaseEnd]:
+) -> _Ended:
     """One phase down or up, and the bonds that it makes or breaks."""
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
@@ -228,18 +223,15 @@ def _phase_of_impact(
     return after, end
 
 
-def _no_rise(
-    fall: tuple[Progress, _PhaseEnd], rise: tuple[Progress, _PhaseEnd]
-) -> tuple[Progress, _PhaseEnd]:
+def _no_rise(fall: _Ended, rise: _Ended) -> _Ended:
     """A way up that is none where drag stopped the body on its way down."""
     after, here = fall
     stay = here._replace(
         phase=rise[1].phase._replace(stop=rise[1].phase.start), pull_work=jnp.zeros(())
     )
-    kept = jax.tree_util.tree_map(
-        lambda a, b: jnp.where(here.stopped, a, b), (after, stay), rise
-    )  # fmt: skip
-    return cast("tuple[Progress, _PhaseEnd]", kept)
+    choose = lambda a, b: jnp.where(here.stopped, a, b)  # noqa: E731
+    kept = jax.tree_util.tree_map(choose, (after, stay), rise)
+    return cast("_Ended", kept)
 
 
 def _impact(
@@ -254,9 +246,7 @@ def _impact(
     """Down to closest approach and up to the next apex."""
     rest = Rest(reference.equilibrium, limits.rest)
 
-    def one_phase(
-        progress: Progress, unloading: jax.Array
-    ) -> tuple[Progress, tuple[Progress, _PhaseEnd]]:
+    def one_phase(progress: Progress, unloading: jax.Array) -> tuple[Progress, _Ended]:
         after, end = _phase_of_impact(contact, body, table, rest, progress, unloading)
         return after, (after, end)
 

@@ -13,7 +13,7 @@ from ..dynamics import Body, Impacts, Limits, Progress, Table
 from ..dynamics.release import AtRelease
 from ..dynamics.static_equilibrium import Reference
 from ..numerics.compilation import kept
-from ..results.measures import FirstContact, Passing
+from ..results.first_contact import FirstContact, Passing
 
 
 class Batch(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact, RigidContact
 from ..contact.delayed_formation import DelayedContact
-from ..contact.resolution import in_steps
+from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.problem import CLEARANCE, Problem
@@ -38,8 +38,8 @@ def cut_in_steps(problem: Problem) -> Problem:
 def _in_steps(contact: Contact) -> Contact:
     if not isinstance(contact, RigidContact | ElasticContact):
         return contact
-    resolved = in_steps(contact.resolved, deforms=isinstance(contact, ElasticContact))
-    return dataclasses.replace(contact, resolved=resolved)
+    few = FEW_DEFORMING if isinstance(contact, ElasticContact) else FEW_RIGID
+    return dataclasses.replace(contact, resolved=one_of_few(contact.resolved, few))
 
 
 def integrate(

@@ -16,7 +16,8 @@ from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
 from ..numerics.compilation import AT_ONCE, QUICKLY, Program
-from ..results.measures import FirstContact, Measures, first_contact, measure, passing_at
+from ..results.first_contact import FirstContact, first_contact, passing_at
+from ..results.measures import Measures, measure
 from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows
 
 FEW_CASES = 64

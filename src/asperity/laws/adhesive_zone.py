@@ -16,6 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from .._jax import jax, jnp
+from ..numerics.polynomials import power_sum, power_sum_at_few
 
 _X, _WEIGHT = (np.asarray(a) for a in legendre.leggauss(30))
 
@@ -35,29 +36,6 @@ def _fitted(values: Callable[[np.ndarray], np.ndarray], degree: int) -> np.ndarr
 
 
 _SLACK = _fitted(_slack, 20)
-
-
-def _polynomial(coefficients: np.ndarray, x: Any) -> Any:
-    value = coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
-        value = value * x + coefficient
-    return value
-
-
-def _of_one(coefficients: np.ndarray, x: Any) -> Any:
-    """The same at few places, in fewer operations: by rows, each of powers of x to a multiple."""
-    width = int(np.ceil(np.sqrt(coefficients.size)))
-    table = np.pad(coefficients, (0, -coefficients.size % width)).reshape(-1, width)
-    across, down = _powers(x, width), _powers(x**width, table.shape[0])
-    return jnp.sum(down * jnp.sum(table * across[..., None, :], axis=-1), axis=-1)
-
-
-def _powers(x: Any, count: int) -> jax.Array:
-    """1, x, x^2, so many, along a new last axis."""
-    found = [jnp.ones_like(x)]
-    for _ in range(count - 1):
-        found.append(found[-1] * x)
-    return jnp.stack(found, axis=-1)
 
 
 class Zone(NamedTuple):
@@ -89,7 +67,7 @@ class Zone(NamedTuple):
 
 
 def _zone(
-    t: Any, sine: Any, cosine: Any, polynomial: Callable[[np.ndarray, Any], Any] = _polynomial
+    t: Any, sine: Any, cosine: Any, polynomial: Callable[[np.ndarray, Any], Any] = power_sum
 ) -> Zone:
     """Everything from the tangent of half the angle, its sine and its cosine."""
     square = t * t
@@ -109,7 +87,7 @@ def _zone(
     )
 
 
-def _of_tangent(t: Any, polynomial: Callable[[np.ndarray, Any], Any] = _polynomial) -> Zone:
+def _of_tangent(t: Any, polynomial: Callable[[np.ndarray, Any], Any] = power_sum) -> Zone:
     share = 1.0 / (1.0 + t * t)
     return _zone(t, 2.0 * t * share, (1.0 - t * t) * share, polynomial)
 
@@ -175,8 +153,8 @@ def contact_end(l: jax.Array) -> End:
     """The end of the contact; the table of its angle spans all lambda above :data:`SOFT`."""
     stiff = jnp.minimum(SOFT / l, 1.0)
     soft = stiff < 1.0
-    tangent = jnp.where(soft, stiff * _of_one(_FOLDS, 2.0 * stiff - 1.0), 1.0)
-    z = _of_tangent(tangent, _of_one)
+    tangent = jnp.where(soft, stiff * power_sum_at_few(_FOLDS, 2.0 * stiff - 1.0), 1.0)
+    z = _of_tangent(tangent, power_sum_at_few)
     linear = 4.0 / 3.0 * l**2 * z.gape
     outer = 2.0 / (linear + jnp.sqrt(linear**2 + 2.0 * l * z.pull))
     inner, flank = outer * jnp.where(soft, z.cosine, 0.0), outer * z.sine

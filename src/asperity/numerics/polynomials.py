@@ -1,6 +1,8 @@
-"""Polynomials on an interval: Chebyshev sums and their integrals, and quintics by their ends."""
+"""Polynomials: Chebyshev sums and their integrals, quintics by their ends, sums of powers."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -76,3 +78,30 @@ def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
 def antiderivative(coefficients: jax.Array) -> jax.Array:
     """Chebyshev coefficients of the integral over x; first axis the degree."""
     return jnp.tensordot(jnp.asarray(ANTIDERIVATIVE), coefficients, axes=1)
+
+
+def power_sum(coefficients: np.ndarray, x: Any) -> Any:
+    """Sum of powers of x, from the constant on, by Horner's rule; of arrays of either library."""
+    value = coefficients[-1]
+    for coefficient in coefficients[-2::-1]:
+        value = value * x + coefficient
+    return value
+
+
+def power_sum_at_few(coefficients: np.ndarray, x: jax.Array) -> jax.Array:
+    """The same at few places, in a third of the operations: those are compiled one by one.
+
+    By rows of coefficients, each times powers of x, and the rows times powers of the last.
+    """
+    width = int(np.ceil(np.sqrt(coefficients.size)))
+    table = np.pad(coefficients, (0, -coefficients.size % width)).reshape(-1, width)
+    across, down = _powers(x, width), _powers(x**width, table.shape[0])
+    return jnp.sum(down * jnp.sum(table * across[..., None, :], axis=-1), axis=-1)
+
+
+def _powers(x: jax.Array, count: int) -> jax.Array:
+    """1, x, x^2, so many, along a new last axis."""
+    found = [jnp.ones_like(x)]
+    for _ in range(count - 1):
+        found.append(found[-1] * x)
+    return jnp.stack(found, axis=-1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..contact import ElasticContact
 from ..contact.ring_error import ring_error
 from ..dynamics import Motion
@@ -63,4 +65,27 @@ def ring_warnings(problem: Problem, motion: Motion) -> list[str]:
     return [
         f"{contact.rings} rings leave an estimated error of {off:.1g} in the force at closest "
         f"approach, above {allowed:.0e}: raise `numerics.rings`"
+    ]
+
+
+def ledger_warnings(problem: Problem, motion: Motion) -> list[str]:
+    """A line where the energies of a motion do not add up to what a model closes to.
+
+    Parameters
+    ----------
+    problem, motion
+        As for :func:`ring_warnings`.
+    """
+    what = "scanning curve" if problem.relaxation is None else "viscoelastic contact"
+    if isinstance(problem.contact, ElasticContact) and problem.relaxation is None:
+        what += f" or the deformation on {problem.contact.rings} rings"
+    rows = motion.impacts
+    off = float(
+        np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.maximum_kinetic[0]
+    )
+    if off <= CLOSED:
+        return []
+    return [
+        f"the energy ledger closes to {off:.1g} of the impact energy only, not to {CLOSED:.0e}: "
+        f"the {what} is not resolved"
     ]

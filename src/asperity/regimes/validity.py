@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact
+from ..contact import Contact
 from ..dynamics import Motion
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, read_row
 from ..dynamics.problem import Problem
@@ -16,7 +16,7 @@ from ..dynamics.time_series import sample
 from ..errors import InputError
 from ..inputs import Inputs
 from . import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, missed, tabor_number
-from .accuracy import CLOSED, fall_warnings, ring_warnings
+from .accuracy import fall_warnings, ledger_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
 from .model_domain import covered_share, domain_warnings
 from .plastic_validity import yielded
@@ -88,7 +88,7 @@ def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Mot
         *domain_warnings(problem, at_depth.elastic, at_depth.central, motion),
         *fall_warnings(problem, motion),
         *ring_warnings(problem, motion),
-        *_ledger(problem, motion),
+        *ledger_warnings(problem, motion),
     ]
 
 
@@ -290,20 +290,4 @@ def slow_menisci(
     return [
         f"menisci take {time:.3g} s to form and the first contact lasts {held[-1] - held[0]:.3g} "
         "s: few form, and more energy may go into those few than if all had formed at once"
-    ]
-
-
-def _ledger(problem: Problem, motion: Motion) -> list[str]:
-    what = "scanning curve" if problem.relaxation is None else "viscoelastic contact"
-    if isinstance(problem.contact, ElasticContact) and problem.relaxation is None:
-        what += f" or the deformation on {problem.contact.rings} rings"
-    rows = motion.impacts
-    off = float(
-        np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.maximum_kinetic[0]
-    )
-    if off <= CLOSED:
-        return []
-    return [
-        f"the energy ledger closes to {off:.1g} of the impact energy only, not to {CLOSED:.0e}: "
-        f"the {what} is not resolved"
     ]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.config.amounts import amount as amount
 from asperity.config.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
+from asperity.results.impact_table import cell_text, impact_table
 from asperity.results.shares import share_texts
 from asperity.results.verdict import sentence
 
@@ -21,19 +21,6 @@ WIDTH = 80
 _ROUNDING = 1e-15  # m: a separation below it is 0
 FEW = 5
 """How many impacts a terminal shows of many."""
-_FEW_MORE = 3  # are shown too
-
-_COLUMNS = (
-    ("height", "rebound_height", "m"),
-    ("restitution", "restitution", ""),
-    ("period", "rebound_period", "s"),
-)
-_PUBLISHED = (
-    ("decrement", "log_decrement", ""),
-    ("power loss", "power_loss", "W"),
-    ("one-way", "power_loss_published", "W"),
-)
-"""What the publication counts."""
 
 
 def of_result(
@@ -59,7 +46,7 @@ def of_result(
             *_section("Surface", _surface(result.surface)),
             *_section("Regime", _regime(result.regime)),
             *_chosen(result.regime),
-            *_impacts(result, None, published),
+            *impact_table(result, None, published),
             *warning_lines(result.warnings),
             *_provenance(made),
             "",
@@ -83,7 +70,7 @@ def brief(result: ResultData, *, published: bool | None = None) -> str:
             *_wrapped(_ended(result)),
             *_section("", rows),
             *_chosen(result.regime),
-            *_impacts(result, FEW, published),
+            *impact_table(result, FEW, published),
             *warning_lines(result.warnings),
         ]
     )
@@ -131,7 +118,7 @@ def _motion(measures: dict[str, Any]) -> list[tuple[str, str]]:
         critical = amount(measures["critical_velocity"], "m/s") + note
     return [
         ("impact speed", amount(measures.get("impact_speed"), "m/s")),
-        ("restitution", _cell(first, 1.0, "")),
+        ("restitution", cell_text(first, 1.0, "")),
         ("captured at first impact", captured),
         ("critical velocity", critical or "-"),
         ("contact time", amount(measures.get("contact_time"), "s")),
@@ -251,42 +238,6 @@ def _jumps(found: dict[str, Any] | None) -> list[tuple[str, str]]:
 
 def _place(separation: float, force: float) -> str:
     return f"{amount(separation, 'm')}, {amount(force, 'N')}"
-
-
-def _impacts(result: ResultData, most: int | None, published: bool | None) -> list[str]:
-    """The table of impacts, each column in one unit; its first ``most`` rows of many more."""
-    shows = result.case.publication is not None if published is None else published
-    columns = [*_COLUMNS, *(_PUBLISHED if shows else ())]
-    given = [result.measures.get(key) or [] for _, key, _ in columns]
-    count = max(len(values) for values in given)
-    if not count:
-        return []
-    shown = count if most is None or count <= most + _FEW_MORE else most
-    units = [_column_unit(values[:shown], columns[i][2]) for i, values in enumerate(given)]
-    lines = ["", "Impacts" + " (one-way: the power loss as the publication counts it)" * shows]
-    lines.append(_row("", [title for title, _, _ in columns]))
-    lines.append(_row("", [unit for _, unit in units]))
-    for number in range(shown):
-        cells = [
-            _cell(values[number] if number < len(values) else None, factor, unit)
-            for values, (factor, unit) in zip(given, units, strict=True)
-        ]
-        lines.append(_row(str(number + 1), cells))
-    return lines if shown == count else [*lines, f"  and {count - shown} more"]
-
-
-def _column_unit(values: Sequence[float | None], unit: str) -> tuple[float, str]:
-    return scaled(max((abs(v) for v in values if v is not None), default=0.0), unit)
-
-
-def _cell(value: float | None, factor: float, unit: str) -> str:
-    """A value of the table; a ratio with more digits, since it may be close to 1."""
-    digits = 4 if unit else 6
-    return "-" if value is None or not math.isfinite(value) else f"{value / factor:.{digits}g}"
-
-
-def _row(first: str, cells: Iterable[str]) -> str:
-    return (f"{first:>6}" + "".join(f"{cell:>12}" for cell in cells)).rstrip()
 
 
 def _heading(name: str, sentence: str) -> list[str]:

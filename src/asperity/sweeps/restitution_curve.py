@@ -22,8 +22,9 @@ from ..dynamics import Limits
 from ..errors import InputError, SimulationError
 from ..integration import Report, integrate, silently
 from ..model import build
+from ..results.assessment import assessment_of
 from ..results.case_source import CaseLike, case_of
-from ..results.conversion import assessment_of, measured
+from ..results.conversion import measured
 from ..results.result import drawing
 from ..results.summary import amount, warning_lines
 

@@ -8,7 +8,6 @@ import json
 import threading
 from collections.abc import AsyncIterator, Callable, Iterable
 from importlib import resources
-from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -24,12 +23,13 @@ from asperity.config import BUILTINS, FIRST, Case
 from asperity.config.case_file import SIZE_LIMIT, builtin_text, tables
 from asperity.config.case_text import text_of
 from asperity.config.problems import check
-from asperity.errors import InputError, OutputError, SimulationError, one_line
+from asperity.errors import InputError
 from asperity.web.answer import adhesion_map
 from asperity.web.exploring import FILES, ahead, critical, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
 from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
+from asperity.web.json_answers import HANDLERS, event_line
 from asperity.web.missing_keys import completed, remedies
 from asperity.web.openapi import DESCRIPTION
 from asperity.web.requests import Asked, asked, changed, refuse_depth
@@ -49,8 +49,6 @@ MOST_UPLOADS = 2
 
 MOST_KINDS = 64
 """Kinds of cases of which it is remembered that all their laws are compiled."""
-
-_BUSY = "too much is being asked already; try again in a few seconds"
 
 
 def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOCAL) -> Starlette:
@@ -87,11 +85,8 @@ def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOC
         Route("/api/surfaces/{name}", page.surface, methods=["POST"]),
         Mount("/static", StaticFiles(directory=str(static))),
     ]
-    refusals: dict[Any, Callable[[Request, Any], Any]] = {
-        InputError: _input, OutputError: _output, Busy: _busy, HTTPException: _http,
-    }  # fmt: skip
     guarded = [Middleware(Guard, names=tuple(names))]
-    return Starlette(routes=routes, middleware=guarded, exception_handlers=refusals, lifespan=alive)
+    return Starlette(routes=routes, middleware=guarded, exception_handlers=HANDLERS, lifespan=alive)
 
 
 class _Page:
@@ -198,7 +193,7 @@ class _Page:
         asker = f"{what.asker or _from(request)} critical"
         event = await self._last(request, asker, critical(what, self.surfaces))
         if event.kind != "answer":
-            return JSONResponse(_told(event), 422 if event.kind == "error" else 409)
+            return JSONResponse(event_line(event), 422 if event.kind == "error" else 409)
         return JSONResponse(event.value)
 
     async def file(self, request: Request) -> Response:
@@ -211,7 +206,7 @@ class _Page:
         asker = f"{what.asker or _from(request)} {name}"
         event = await self._last(request, asker, file(what, self.surfaces, name))
         if event.kind != "answer":
-            refusal = _told(event)
+            refusal = event_line(event)
             return JSONResponse(refusal, 422 if event.kind == "error" else 409)
         headers = {"content-disposition": f'attachment; filename="{name}"'}
         return Response(event.value, media_type=FILES[name], headers=headers)
@@ -263,7 +258,7 @@ async def _lines(job: Job, answered: Callable[[], None]) -> AsyncIterator[str]:
     events = job.events(PATIENCE)
     try:
         async for event in events:
-            yield json.dumps(_told(event), allow_nan=False) + "\n"
+            yield json.dumps(event_line(event), allow_nan=False) + "\n"
             if event.kind == "answer":
                 answered()
     finally:
@@ -301,43 +296,3 @@ async def _in_time() -> AsyncIterator[None]:
 def _from(request: Request) -> str:
     client = request.client
     return f"{client.host}:{client.port}" if client else "nobody"
-
-
-def _told(event: Event) -> dict[str, Any]:
-    """An event as JSON."""
-    if event.kind == "progress":
-        fraction, text = event.value
-        return {"progress": round(fraction, 3), "text": text}
-    if event.kind == "answer":
-        return {"answer": event.value}
-    if event.kind == "replaced":
-        return {"replaced": True}
-    return {"error": _words(event.value)}
-
-
-def _words(error: Exception) -> dict[str, Any]:
-    """What went wrong, in a line."""
-    if isinstance(error, InputError):
-        problems = [{"key": one.key, "message": str(one)} for one in error.problems]
-        return {**problems[0], "kind": "input", "problems": problems}
-    if isinstance(error, SimulationError):
-        return {"kind": "numerics", "key": None, "message": one_line(str(error))}
-    return {"kind": "program", "key": None, "message": "the program failed; its log says more"}
-
-
-def _input(request: Request, error: InputError) -> Response:
-    return JSONResponse({"error": _words(error)}, 422)
-
-
-def _output(request: Request, error: OutputError) -> Response:
-    return JSONResponse({"error": {"kind": "output", "key": None, "message": str(error)}}, 507)
-
-
-def _busy(request: Request, error: Busy) -> Response:
-    words = {"kind": "busy", "key": None, "message": _BUSY}
-    return JSONResponse({"error": words}, 503, headers={"retry-after": "3"})
-
-
-def _http(request: Request, error: HTTPException) -> Response:
-    words = {"kind": "request", "key": None, "message": error.detail}
-    return JSONResponse({"error": words}, error.status_code, headers=error.headers)

@@ -126,7 +126,7 @@ def step(relaxation: Relaxation, body: Body, size: Real, here: RingState, span: 
         here.retarded + change.retarded, thresholds,
     )  # fmt: skip
     # Rings that turned within the step hold bonds that the stages did not know of.
-    base = end.separation + bulk.rise + bulk.excess * (bulk.rows @ end.retarded)
+    base = end.separation + bulk.profile + bulk.excess * (bulk.rows @ end.retarded)
     rest = Rest(base, bulk.rows, jnp.zeros(()))
     settled, agree = balanced(bulk, lambda gaps: thresholds, rest, gaps[-1])
     end, solved = end._replace(gaps=settled), jnp.append(solved, agree)
@@ -192,7 +192,7 @@ def _solved(
     retarded = (here.retarded + known.retarded) / (1.0 + gain)
     speed = here.speed + known.speed - span * body.gravity
     place = here.separation + known.separation + span * speed
-    base = place + bulk.rise + bulk.excess * (bulk.rows @ retarded)
+    base = place + bulk.profile + bulk.excess * (bulk.rows @ retarded)
     rows = bulk.rows * (1.0 + bulk.excess * gain / (1.0 + gain))
     rest = Rest(base, rows, span**2 / body.mass)
 

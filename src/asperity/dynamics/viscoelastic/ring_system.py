@@ -5,13 +5,11 @@ from __future__ import annotations
 from math import pi
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..._jax import jax, jnp
 from ...contact.contact import elastic_part
 from ...contact.delayed_formation import DelayedContact
 from ...contact.elastic import ElasticContact
-from ...contact.equilibrium import compliance
+from ...contact.equilibrium import compliance, profile_of
 from ...contact.viscoelastic import Relaxation
 from ...halfspace import ring_mesh
 from ...interface.rough_planes import Memory as Thresholds
@@ -71,10 +69,9 @@ class Bulk(NamedTuple):
         return cls(contact, relaxation.delayed, size, rows, area, around, excess, pace)
 
     @property
-    def rise(self) -> jax.Array:
-        """Rise of the body's surface at the rings and at the mesh's end [m]."""
-        mesh = ring_mesh(self.contact.rings)
-        return self.contact.shape.profile(self.size * np.append(mesh.radius, mesh.end))
+    def profile(self) -> jax.Array:
+        """Profile of the body at the rings and at the mesh's end [m]."""
+        return profile_of(self.contact, self.size, self.contact.rings)
 
     def pressed(self, gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
         """Pressure on the rings [Pa] and the whole force [N]."""

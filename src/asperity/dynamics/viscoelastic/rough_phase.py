@@ -11,6 +11,7 @@ import numpy as np
 from ..._jax import jax, jnp
 from ...contact.continuation import first_size
 from ...contact.elastic import ElasticContact
+from ...contact.equilibrium import profile_of
 from ...contact.viscoelastic import Relaxation
 from ...interface.rough_planes import Memory as Thresholds
 from ...numerics.compilation import Program
@@ -36,6 +37,7 @@ _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
 
 _step = Program(step)
 _freed = Program(freed)
+_profile_of = Program(profile_of)
 
 
 class RoughBounce:
@@ -67,7 +69,7 @@ class RoughBounce:
         self.ends, self._asked = ends, asked
         self._rms = float(base.interface.scale.rms)
         self._interaction_range = float(base.interaction_range)
-        self._rise = np.asarray(_rise(base, np.asarray(size, float)))
+        self._profile = np.asarray(_profile_of(base, np.asarray(size, float), base.rings))
         self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
         rings = base.rings
@@ -75,7 +77,7 @@ class RoughBounce:
         self._delayed = relaxation.delayed
         self.lost = np.zeros(len(base.mechanisms) + len(body.on_creep))
         self.time, self.fit = 0.0, 1.0
-        gaps = float(body.release) + self._rise
+        gaps = float(body.release) + self._profile
         thresholds = base.interface.initial_memory(np.zeros(rings + 1))
         if relaxation.delayed is not None:  # in equilibrium with the vapour
             goal = gaps - float(relaxation.delayed.law.forming_gap)
@@ -115,7 +117,7 @@ class RoughBounce:
 
     def _edge(self) -> float:
         """Separation beyond which nothing acts [m]: the range, and what stands out of the bulk."""
-        displacement = self.here.gaps - self._rise - self.here.separation
+        displacement = self.here.gaps - self._profile - self.here.separation
         return self._interaction_range + max(0.0, -float(np.min(displacement)))
 
     def _free_flight(self, inwards: bool) -> tuple[str, Samples]:
@@ -141,7 +143,7 @@ class RoughBounce:
             separation=np.asarray(place),
             speed=np.asarray(0.0 if fate == TURNED else samples.speed[-1]),
             retarded=self.here.retarded * share,
-            gaps=place + self._rise + left.displacement * share,
+            gaps=place + self._profile + left.displacement * share,
         )
         self.time, self.lost = float(samples.time[-1]), samples.lost[-1].copy()
         self._span = _FIRST * self._rms / max(abs(float(samples.speed[-1])), 1e-300)
@@ -277,15 +279,6 @@ class RoughBounce:
         speed = sqrt(2.0 * energy / self._mass)
         scale = np.array([self._rms, speed, self._rms, energy])
         return float(np.max(done.error / scale)) / TOLERANCE
-
-
-def _rise_of(contact: ElasticContact, size: Any) -> Any:
-    from ...contact.equilibrium import profile_of
-
-    return profile_of(contact, size, contact.rings)
-
-
-_rise = Program(_rise_of)
 
 
 def fitted_bounce(relaxation: Relaxation, ledger: Ledger, asked: Callable[[], None]) -> RoughBounce:

@@ -13,7 +13,13 @@ from asperity._jax import jax, jnp
 from asperity.config import Case
 from asperity.config.resolve import resolve
 from asperity.contact import ElasticContact, RigidContact
-from asperity.contact.resolution import Resolution, lengths_in_rms, resolution_of
+from asperity.contact.resolution import (
+    FEW_OF_MANY,
+    Resolution,
+    lengths_in_rms,
+    one_of_few,
+    resolution_of,
+)
 from asperity.dynamics import Limits
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError
@@ -26,16 +32,6 @@ if TYPE_CHECKING:
     from asperity.sweeps.study.study import Study
 
 Values = Mapping[str, np.ndarray]
-
-_KINDS = (
-    Resolution(6, 8, 1, 7),
-    Resolution(8, 16, 1, 7),
-    Resolution(8, 8, 2, 7),
-    Resolution(16, 16, 2, 14),
-    Resolution(32, 16, 4, 28),
-    Resolution(64, 16, 8, 56),
-)
-"""How finely curves are cut in a study, from coarse to fine; see `Resolution`."""
 
 _ROUNDING = 1e-12  # relative, between one case built alone and among others
 _UNRESOLVED = Resolution(1, 8, 1)
@@ -237,7 +233,7 @@ def _by_resolution(group: Group) -> list[Group]:
     kinds: dict[Resolution, list[int]] = {}
     for row, each in enumerate(lengths.tolist()):
         found = resolution_of(contact.interface, tuple(each), deforms=deforms)
-        kinds.setdefault(_even(found), []).append(row)
+        kinds.setdefault(one_of_few(found, FEW_OF_MANY), []).append(row)
     return [_taken(group, np.asarray(rows), kind) for kind, rows in kinds.items()]
 
 
@@ -252,19 +248,7 @@ def _coarser(group: Group) -> Group:
     contact = group.batch.contact
     if not isinstance(contact, RigidContact | ElasticContact):
         return group
-    return _resolved(group, _even(contact.resolved))
-
-
-def _even(found: Resolution) -> Resolution:
-    """As fine at least, of few kinds: each is compiled."""
-    level = next((n for n, kind in enumerate(_KINDS) if _fits(found, kind)), None)
-    if level is None:  # finer than any: a kind of its own, of even numbers
-        return Resolution(*(1 << (number - 1).bit_length() for number in found))
-    return _KINDS[level]
-
-
-def _fits(found: Resolution, kind: Resolution) -> bool:
-    return all(number <= most for number, most in zip(found, kind, strict=True))
+    return _resolved(group, one_of_few(contact.resolved, FEW_OF_MANY))
 
 
 def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:

@@ -7,7 +7,7 @@ from typing import Any
 from asperity.dynamics import Impacts, Motion
 from asperity.dynamics.problem import Problem
 from asperity.regimes.validity import AtDepth, pull_warnings, release_warnings, warnings_of
-from asperity.results.conversion import regime_of
+from asperity.results.assessment import regime_of
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 
 Warned = tuple[int, str]

@@ -1,0 +1,97 @@
+"""Which models hold in a case, by the depth of its first impact."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .. import regimes
+from ..contact import Contact
+from ..dynamics import Motion
+from ..dynamics.problem import Problem
+from ..regimes.liquid_regime import liquid_state
+from ..regimes.validity import AtDepth, check_surface, slow_menisci, warnings_of
+
+
+class Assessment(NamedTuple):
+    """Which models hold in a case, at the deepest point of its first impact.
+
+    Attributes
+    ----------
+    name
+        What the case is called.
+    regime
+        Its dimensionless numbers.
+    verdicts
+        What each number says, by the number's name.
+    warnings
+        What to know before the case is believed.
+    """
+
+    name: str
+    regime: regimes.Regime
+    verdicts: dict[str, regimes.Verdict]
+    warnings: list[str]
+
+
+def assessment_of(name: str, problem: Problem, contact: Contact, motion: Motion) -> Assessment:
+    """What a case's numbers say, from a motion of one impact.
+
+    Parameters
+    ----------
+    name
+        What to call it.
+    problem
+        What was built from a case.
+    contact, motion
+        The contact that it was integrated with, and the motion.
+    """
+    at_depth = AtDepth.of(contact, motion)
+    check_surface(problem, at_depth)
+    regime = regime_of(problem, at_depth)
+    inputs = problem.inputs
+    rough, liquid = inputs.asperities, inputs.liquid
+    situation = regimes.Situation(
+        regime=regime,
+        rough=rough is not None,
+        tip_radius=inputs.tip_radius,
+        spacing=None if rough is None else rough.spacing,
+        contacting=at_depth.contacting,
+        kelvin_radius=inputs.liquid_radius,
+        molecule_size=None if liquid is None else liquid.molecule_size,
+        bounded=inputs.liquid_radius < inputs.kelvin_radius,
+        on_tips=inputs.structure.liquid != "kelvin-filling" or rough is None,
+        yields=inputs.yields,
+    )
+    warnings = warnings_of(problem, regime, at_depth, motion)
+    warnings += slow_menisci(problem, motion)
+    return Assessment(name, regime, regimes.verdicts(situation), warnings)
+
+
+def regime_of(problem: Problem, at_depth: AtDepth) -> regimes.Regime:
+    """The dimensionless numbers of a case, by its contact at closest approach."""
+    inputs = problem.inputs
+    rough, soft, tip = inputs.asperities, inputs.yielding, inputs.tip_radius
+    work, spacing = inputs.work_of_adhesion, inputs.equilibrium_spacing
+    tabor = plasticity = load = None
+    if work and spacing:
+        tabor = regimes.tabor_number(tip, work, inputs.modulus, spacing)
+    if rough is not None and soft is not None:
+        plasticity = regimes.plasticity_index(
+            inputs.modulus, soft.hardness, rough.rms_height, rough.asperity_radius
+        )
+    contacting = max(at_depth.contacting, 0.0)  # far apart, a polynomial may say a little less
+    if work and contacting > 0.0:
+        load = regimes.load_parameter(at_depth.elastic, contacting, work, tip)
+    elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
+    liquid = liquid_state(
+        radius=inputs.liquid_radius,
+        span=inputs.liquid_span,
+        tip_radius=tip,
+        spacing=None if rough is None else rough.spacing,
+        central=at_depth.central,
+        rms_height=inputs.surface_rms_height,
+    )
+    return regimes.Regime(
+        tabor, elasticity, plasticity, load, inputs.structure.adhesion, inputs.adhesion_reason,
+        liquid.regime, liquid.reason, None if rough is None else contacting,
+    )  # fmt: skip
