@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity.errors import Outcome
+from asperity.errors import ENDS, Outcome
 from asperity.sweeps.store.store import Store
-from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import Study, parse
 
-REST, FAILED = OUTCOMES.index(Outcome.REST), OUTCOMES.index(Outcome.FAILED)
+REST, FAILED = ENDS.index(Outcome.REST), ENDS.index(Outcome.FAILED)
 LEAST_SPEED = 0.1
 """Speed [m/s] below which a body of `law` sticks."""
 

@@ -123,6 +123,17 @@ class Outcome(enum.Enum):
         return self not in (Outcome.INTERRUPTED, Outcome.FAILED)
 
 
+ENDS = (
+    Outcome.REST,
+    Outcome.OSCILLATING,
+    Outcome.ESCAPED,
+    Outcome.TIME_LIMIT,
+    Outcome.MAX_IMPACTS,
+    Outcome.FAILED,
+    Outcome.STOPPED,
+)
+"""Outcomes in the order of their codes, in a motion and in a study's column ``outcome``."""
+
 _MESSAGES = {
     Outcome.REST: "The body came to rest: its rebound fell below `numerics.rest_height_ratio` of "
     "the first.",

@@ -20,6 +20,7 @@ from .contact import (
 from .contact.delayed_formation import LATE, DelayedContact
 from .contact.profile import Sphere
 from .contact.resolution import Resolution
+from .contact.rough import RoughContact
 from .contact.viscoelastic import VISCOUS, Relaxation
 from .dynamics import Body
 from .dynamics.external_forces import Drag, ExternalForce
@@ -163,7 +164,7 @@ def _delayed(inputs: Inputs, contact: Contact) -> DelayedContact | None:
     """The contact with the formation time of its menisci, if they take any."""
     if not inputs.formation_time or LATE not in contact.mechanisms:
         return None
-    assert isinstance(contact, RigidContact | ElasticContact | SmoothContact)
+    assert isinstance(contact, RoughContact | SmoothContact)
     return DelayedContact(contact, inputs.formation_time)
 
 

@@ -15,10 +15,10 @@ from typing import Any
 
 import pytest
 
+from asperity.errors import ENDS
 from asperity.sweeps.compute.runner import fill
 from asperity.sweeps.store.store import Store
 from asperity.sweeps.store.whole_files import beside
-from asperity.sweeps.study.columns import OUTCOMES
 from fake_study import FakeStudy, expected, in_order
 from store_files import contents, flip
 
@@ -68,7 +68,7 @@ def test_json_is_one_object_with_the_counts():
     (line,) = ran.stdout.splitlines()
     said = json.loads(line)
     codes = list(expected(STUDY, range(STUDY.size))["outcome"])
-    found = {outcome.value: codes.count(code) for code, outcome in enumerate(OUTCOMES)}
+    found = {outcome.value: codes.count(code) for code, outcome in enumerate(ENDS)}
     assert said["outcomes"] == found
     assert said["failed"] == found["failed"]
     assert (said["store"], said["cases"], said["done"]) == ("study.zarr", 50, 50)

@@ -13,8 +13,7 @@ from asperity.config.resolve import resolve
 from asperity.contact import RigidContact, SmoothContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, quasi_static, simulate
-from asperity.dynamics.record import ENDS
-from asperity.errors import Outcome, Tolerance
+from asperity.errors import ENDS, Outcome, Tolerance
 from asperity.interface.interface import Interface
 from asperity.interface.layers import Layers
 from asperity.laws import (

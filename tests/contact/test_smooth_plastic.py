@@ -9,8 +9,7 @@ import pytest
 from asperity._jax import jax, jnp
 from asperity.contact import SmoothContact, SmoothPlasticContact
 from asperity.dynamics import Body, simulate
-from asperity.dynamics.record import ENDS
-from asperity.errors import InputError, Outcome, Tolerance
+from asperity.errors import ENDS, InputError, Outcome, Tolerance
 from asperity.laws import ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
 from asperity.laws.plastic.adhesive_sphere import AdhesiveThorntonNing

@@ -11,8 +11,7 @@ from asperity._jax import jax, jnp
 from asperity.config.resolve import resolve
 from asperity.dynamics import simulate
 from asperity.dynamics.gas_film import SqueezeFilm
-from asperity.dynamics.record import ENDS
-from asperity.errors import Outcome, Tolerance
+from asperity.errors import ENDS, Outcome, Tolerance
 from asperity.model import build
 from asperity.results.measures import measure
 

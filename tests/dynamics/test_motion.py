@@ -12,8 +12,7 @@ from asperity.contact import ElasticContact, RigidContact, SmoothContact
 from asperity.contact.profile import Sphere
 from asperity.contact.resolution import resolution
 from asperity.dynamics import Body, simulate
-from asperity.dynamics.record import ENDS
-from asperity.errors import Outcome, Tolerance
+from asperity.errors import ENDS, Outcome, Tolerance
 from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Meniscus
 from asperity.results.measures import measure

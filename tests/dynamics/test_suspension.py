@@ -15,9 +15,8 @@ from asperity._jax import jax, jnp
 from asperity.contact import SmoothContact
 from asperity.dynamics import Body, simulate
 from asperity.dynamics.external_forces import Along, Load
-from asperity.dynamics.record import ENDS
 from asperity.dynamics.suspension import Dashpot, Spring
-from asperity.errors import Outcome, Tolerance
+from asperity.errors import ENDS, Outcome, Tolerance
 from asperity.laws import Hertz, Jkr
 from asperity.numerics.compilation import AT_ONCE
 from asperity.results.measures import measure

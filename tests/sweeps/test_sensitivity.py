@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from asperity.cli.attributing import sensitivity as command
-from asperity.errors import InputError, Outcome, SimulationError
+from asperity.errors import ENDS, InputError, Outcome, SimulationError
 from asperity.plots.study import bars
 from asperity.sweeps.analysis.sensitivity import Sensitivity, sensitivity
-from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import Study, parse
 
-REST, FAILED = OUTCOMES.index(Outcome.REST), OUTCOMES.index(Outcome.FAILED)
+REST, FAILED = ENDS.index(Outcome.REST), ENDS.index(Outcome.FAILED)
 AXES = {
     "impact.speed": '{from = "0.1 m/s", to = "0.3 m/s"}',
     "capillary.humidity": "{from = 0.1, to = 0.5}",

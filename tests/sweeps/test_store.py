@@ -15,14 +15,13 @@ import pytest
 import zarr
 
 from asperity.cli.tallying import warnings
-from asperity.errors import InputError, OutputError
+from asperity.errors import ENDS, InputError, OutputError
 from asperity.sweeps.compute.runner import Tally, fill
 from asperity.sweeps.store.array import metadata
 from asperity.sweeps.store.counting import first_failure, outcomes
 from asperity.sweeps.store.merge import Shard, join, shard, whole
 from asperity.sweeps.store.repair import mend, remove
 from asperity.sweeps.store.store import Store, manifest_of
-from asperity.sweeps.study.columns import OUTCOMES
 from fake_study import FakeStudy, backwards, compute, expected, in_order
 from store_files import contents, flip
 
@@ -71,7 +70,7 @@ def test_a_store_describes_itself(path: Path):
     assert group["restitution"].metadata.dimension_names == ("case", "impact")
     assert group["time_to_rest"].attrs["unit"] == "s"
     codes = group["outcome"].attrs["codes"]
-    assert [codes[outcome.value] for outcome in OUTCOMES] == list(range(len(OUTCOMES)))
+    assert [codes[outcome.value] for outcome in ENDS] == list(range(len(ENDS)))
 
 
 def test_a_store_gives_back_its_columns(path: Path):
@@ -335,7 +334,7 @@ def test_outcomes_are_counted_and_the_first_failure_told(path: Path, tmp_path: P
     store = Store.open(path)
     codes = expected(STUDY, range(STUDY.size))["outcome"]
     assert outcomes(store) == {
-        outcome.value: int((codes == code).sum()) for code, outcome in enumerate(OUTCOMES)
+        outcome.value: int((codes == code).sum()) for code, outcome in enumerate(ENDS)
     }
     assert first_failure(store) == (3, "case 3 fails")
     assert first_failure(Store.open(filled(tmp_path / "empty.zarr", tasks=[]))) is None

@@ -11,9 +11,9 @@ import xarray
 import asperity
 from asperity import InputError, Outcome
 from asperity.config import load
+from asperity.errors import ENDS
 from asperity.sweeps import sweep
 from asperity.sweeps.compute import batch
-from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import parse
 from jkr_spheres import SMOOTH
 
@@ -69,7 +69,7 @@ def test_a_sweep_leaves_no_file(tmp_path, monkeypatch):
 def test_cases_that_break_a_rule_between_keys_fail_alone_and_say_why(tmp_path):
     """That a material is known is a rule between [body] and the catalogue."""
     found = asperity.sweep(load(DMT), {"body.material": ["soft", "sofd"]}, keep="pull_off")
-    assert found["outcome"].values[1] == OUTCOMES.index(Outcome.FAILED)
+    assert found["outcome"].values[1] == ENDS.index(Outcome.FAILED)
     assert np.isnan(found["pull_off"].values[1])
     assert found["pull_off"].values[0] > 0.0
     assert "did you mean 'soft'?" in found["reason"].values[1]

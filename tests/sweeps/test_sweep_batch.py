@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.errors import InputError
+from asperity.errors import ENDS, InputError
 from asperity.integration.clock import Stopped
 from asperity.solver import solve
 from asperity.sweeps.compute.batch import compute, evaluate
 from asperity.sweeps.compute.building import built
-from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import parse
 
 KEEP = """keep = ["captured", "impact_speed", "restitution", "rebound_height", "log_decrement",
@@ -110,7 +109,7 @@ def test_cases_side_by_side_are_the_cases_one_by_one(name):
     for number in range(study.size):
         result = solve(study.case(number))
         count = len(result.measures["restitution"])
-        assert OUTCOMES[columns["outcome"][number]] is result.outcome
+        assert ENDS[columns["outcome"][number]] is result.outcome
         assert columns["impacts"][number] == count
         assert columns["energy_balance_error"][number] < 1e-6
         for key in SINGLE:
@@ -167,7 +166,7 @@ def test_values_that_break_a_rule_fail_alone_and_say_why():
         reason = bytes(columns["reason"][number]).rstrip(b"\0").decode()
         error = refusal(study, number)
         if error is not None:
-            assert OUTCOMES[columns["outcome"][number]].value == "failed"
+            assert ENDS[columns["outcome"][number]].value == "failed"
             assert reason
             assert str(error)[:25] == reason[:25]
             assert np.isnan(columns["restitution"][number]).all()
@@ -218,7 +217,7 @@ def test_cases_that_are_stepped_in_time_have_the_same_columns():
         result = solve(study.case(number))
         warned = [line for at, line in effort.warned if at == number]
         assert number not in study.corners or warned == sorted(result.warnings)
-        assert OUTCOMES[columns["outcome"][number]] is result.outcome
+        assert ENDS[columns["outcome"][number]] is result.outcome
         count = len(result.measures["restitution"])
         assert columns["impacts"][number] == count
         assert columns["restitution"][number].tolist() == pytest.approx(

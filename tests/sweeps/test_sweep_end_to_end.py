@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.errors import Outcome
+from asperity.errors import ENDS, Outcome
 from asperity.solver import solve
 from asperity.sweeps.compute.clients import local
 from asperity.sweeps.compute.cluster import on_cluster
@@ -16,7 +16,6 @@ from asperity.sweeps.compute.runner import fill, in_process
 from asperity.sweeps.store.counting import first_failure, outcomes
 from asperity.sweeps.store.merge import Shard, join
 from asperity.sweeps.store.store import Store
-from asperity.sweeps.study.columns import OUTCOMES
 from asperity.sweeps.study.study import Study, read
 from store_files import contents
 
@@ -53,7 +52,7 @@ def test_cases_of_a_store_are_those_of_single_runs(study: Study, store: Store):
     code, restitution = store.column("outcome"), store.column("restitution")
     for number in (4000, study.size - 1):
         alone = solve(study.case(number))
-        assert OUTCOMES[code[number]] is alone.outcome
+        assert ENDS[code[number]] is alone.outcome
         first = alone.measures["restitution"][:2]
         np.testing.assert_allclose(restitution[number, : len(first)], first, rtol=1e-8)
 

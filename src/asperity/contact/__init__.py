@@ -1,7 +1,7 @@
 """Force between two bodies: laws, heights, profile and half-space put together.
 
 `contact`: what the equation of motion asks of every contact. `profile`: shapes of bodies.
-`smooth`, `smooth_plastic`: one law for the whole body. `rigid`: a rough paraboloid without bulk
+`smooth`, `smooth_plastic`: one law for the whole body. `rough`: a rough body. `rigid`: without bulk
 deformation. `elastic`: the same on a half-space (`equilibrium` solves one separation,
 `continuation` follows a path of them, `ring_error` estimates the mesh error).
 `viscoelastic`, `delayed_formation`: contacts whose force depends on time.

@@ -16,9 +16,8 @@ from ..interface.layers import Layers
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Law, Powers, Real, Sum, TruncatedPower, quantity, terms
 from .contact import Contact, Memory, State
-from .elastic import ElasticContact
 from .resolution import Resolution
-from .rigid import RigidContact
+from .rough import RoughContact
 from .smooth import SmoothContact
 
 LATE = "capillary"
@@ -144,7 +143,7 @@ class DelayedContact(eqx.Module):
     meniscus_index: int = eqx.field(static=True)
     time: Real = quantity()
 
-    def __init__(self, contact: RigidContact | ElasticContact | SmoothContact, time: Real) -> None:
+    def __init__(self, contact: RoughContact | SmoothContact, time: Real) -> None:
         smooth = isinstance(contact, SmoothContact)
         self.laws = (
             tuple(law for law in terms(contact.law) if law.hysteretic)
@@ -204,11 +203,9 @@ def _base_of_smooth(contact: Any) -> SmoothContact:
     return dataclasses.replace(contact, law=law)
 
 
-def _base_of_rough(contact: Any) -> RigidContact | ElasticContact:
+def _base_of_rough(contact: Any) -> RoughContact:
     base = _base_of_surfaces(contact.interface)
-    answer: RigidContact | ElasticContact = dataclasses.replace(
-        contact, interface=base, resolved=_UNUSED
-    )
+    answer: RoughContact = dataclasses.replace(contact, interface=base, resolved=_UNUSED)
     return answer
 
 

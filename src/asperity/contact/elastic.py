@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from math import pi
 from typing import Any
 
@@ -14,7 +13,6 @@ from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
 from .contact import (
-    Contact,
     Held,
     Potential,
     ReversalSampling,
@@ -36,24 +34,23 @@ from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
 from .ring_reversals import branch_thresholds, ring_reversals
+from .rough import RoughContact
 
 
-class ElasticContact(Contact):
+class ElasticContact(RoughContact):
     """A rough sphere on a plane, both elastic half-spaces in bulk.
 
     Parameters
     ----------
-    interface
-        What happens between the two mean planes.
-    shape
-        The body.
+    interface, shape
+        As for :class:`~asperity.contact.rough.RoughContact`.
     modulus
         Contact modulus E* [Pa] of the bulk.
     rings
         Number of rings (static); the next multiple of 8 is taken. The force converges with a high
         order in it.
     resolved
-        As for :class:`RigidContact`; of several pieces the last one is where the rings that
+        As there; of several pieces the last one is where the rings that
         lag behind reach the branch.
 
     Notes
@@ -63,10 +60,7 @@ class ElasticContact(Contact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
-    interface: RoughPlanes
-    shape: Sphere
     rings: int = eqx.field(static=True)
-    resolved: Resolution = eqx.field(static=True)
     modulus: Real = quantity()
 
     def __init__(
@@ -84,26 +78,9 @@ class ElasticContact(Contact):
         self.resolved = resolved or resolution(interface, deforms=True)
 
     @property
-    def mechanisms(self) -> tuple[str, ...]:
-        return self.interface.mechanisms
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        return self.interface.components
-
-    @property
     def rigid(self) -> RigidContact:
         """The same contact without bulk deformation."""
         return RigidContact(self.interface, self.shape, self.resolved)
-
-    @property
-    def error_floor(self) -> float:
-        return self.interface.error_floor
-
-    def refined(self, factor: int) -> ElasticContact:
-        now = self.resolved
-        finer = now._replace(panels=factor * now.panels, reversals=factor * now.reversals)
-        return dataclasses.replace(self, resolved=finer)
 
     def initial_memory(self) -> RingMemory:
         return self.branches()[0]
@@ -241,9 +218,6 @@ class ElasticContact(Contact):
             old, outer = tuple(jnp.where(held.outer, new, b) for new, b in pairs), held.outer
         h = separation + profile_of(self, size, self.rings) + displacement
         return RingMemory(self.interface.remember(old, h), size, displacement, outer)
-
-    def losses(self) -> tuple[jax.Array, jax.Array]:
-        return self.interface.losses()
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

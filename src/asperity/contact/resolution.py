@@ -45,6 +45,14 @@ class Resolution(NamedTuple):
     shared: int = EVEN
     reversals: int = 10
 
+    def finer(self, factor: int) -> Resolution:
+        """So many times as fine."""
+        return self._replace(
+            panels=factor * self.panels,
+            shared=factor * self.shared,
+            reversals=factor * self.reversals,
+        )
+
 
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.

@@ -6,7 +6,6 @@ import dataclasses
 from math import pi
 from typing import Any
 
-import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
@@ -14,7 +13,6 @@ from ..interface.height_quadrature import Near
 from ..interface.rough_planes import Means, RoughPlanes
 from ..interface.rough_planes import Memory as Thresholds
 from .contact import (
-    Contact,
     Held,
     Potential,
     ScanningCurve,
@@ -24,6 +22,7 @@ from .contact import (
 )
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
+from .rough import RoughContact
 from .scanning_curve import first_out_of_reach, piece_points, pieces_to
 
 Left = tuple[Thresholds, jax.Array, Any]
@@ -32,17 +31,13 @@ _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
 
 
-class RigidContact(Contact):
+class RigidContact(RoughContact):
     """A rough sphere on a plane, without bulk deformation.
 
     Parameters
     ----------
-    interface
-        What happens between the two mean planes.
-    shape
-        The body.
-    resolved
-        How finely its curves are cut (static); by default as its forces ask for.
+    interface, shape, resolved
+        As for :class:`~asperity.contact.rough.RoughContact`.
     left
         Memory and separation [m] at the deepest point of the first impact, where asperities
         that yield have had one, and what it left of them.
@@ -54,9 +49,6 @@ class RigidContact(Contact):
     which for Gaussian heights raises the order of each height integral by one.
     """
 
-    interface: RoughPlanes
-    shape: Sphere
-    resolved: Resolution = eqx.field(static=True)
     left: Left | None
 
     def __init__(
@@ -72,25 +64,8 @@ class RigidContact(Contact):
         self.resolved = resolved or resolution(interface, deforms=False)
 
     @property
-    def mechanisms(self) -> tuple[str, ...]:
-        return self.interface.mechanisms
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        return self.interface.components
-
-    @property
     def _measure(self) -> jax.Array:
         return jnp.asarray(2.0 * pi * self.shape.radius)
-
-    @property
-    def error_floor(self) -> float:
-        return self.interface.error_floor
-
-    def refined(self, factor: int) -> RigidContact:
-        now = self.resolved
-        finer = now._replace(panels=factor * now.panels, shared=factor * now.shared)
-        return dataclasses.replace(self, resolved=finer)
 
     @property
     def far(self) -> int:
@@ -191,9 +166,6 @@ class RigidContact(Contact):
         low, high = jnp.minimum(start, end), jnp.maximum(start, end)
         panels = self.left[1] + self.interface.unloading_panels
         return jnp.append(jnp.clip(panels, low, high), end)
-
-    def losses(self) -> tuple[jax.Array, jax.Array]:
-        return self.interface.losses()
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from .._jax import jax, jnp
-from ..errors import Outcome
-from .record import ENDS, IN_MOTION, Limits
+from ..errors import ENDS, Outcome
+from .record import IN_MOTION, Limits
 
 LEAST_LOSS = 1e-9
 """Share of the impact energy below which a cycle loses none: the body goes on bouncing."""

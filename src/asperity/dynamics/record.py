@@ -9,7 +9,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.contact import Memory
-from ..errors import Outcome, Tolerance
+from ..errors import Tolerance
 from ..laws.law import Real, as_float64, quantity
 from ..numerics.compilation import kept
 from .curve_table import Pieces, Table
@@ -17,16 +17,7 @@ from .external_forces import Along, Drag, ExternalForce, Load
 from .static_equilibrium import Reference
 
 IN_MOTION = -1
-ENDS = (
-    Outcome.REST,
-    Outcome.OSCILLATING,
-    Outcome.ESCAPED,
-    Outcome.TIME_LIMIT,
-    Outcome.MAX_IMPACTS,
-    Outcome.FAILED,
-    Outcome.STOPPED,
-)
-"""Outcomes in the order of their codes in :class:`Progress`."""
+"""Code of a motion that has not ended; see :data:`asperity.errors.ENDS`."""
 
 
 class Body(eqx.Module):

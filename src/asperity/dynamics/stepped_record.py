@@ -9,11 +9,11 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.contact import Contact
-from ..errors import Outcome
+from ..errors import ENDS, Outcome
 from ..numerics.polynomials import NODES
 from .curve_table import ATTRACTION, CONTACTING, FORCE, STORED, Pieces, Table, quantities
 from .motion_end import LEAST_LOSS, EndRules
-from .record import ENDS, Body, Impacts, Limits, Motion, Phase, Progress
+from .record import Body, Impacts, Limits, Motion, Phase, Progress
 from .static_equilibrium import Reference
 from .stepped_phase import AT_REST, FAILED, LEFT, STOPPED, Samples
 from .stepped_series import Trajectory

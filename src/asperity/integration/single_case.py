@@ -7,17 +7,17 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact, RigidContact
+from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
+from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.problem import CLEARANCE, Problem
-from ..dynamics.record import ENDS
 from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
-from ..errors import InputError, Outcome, SimulationError, Tolerance
+from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
 from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, unbatched
@@ -36,7 +36,7 @@ def cut_in_steps(problem: Problem) -> Problem:
 
 
 def _in_steps(contact: Contact) -> Contact:
-    if not isinstance(contact, RigidContact | ElasticContact):
+    if not isinstance(contact, RoughContact):
         return contact
     few = FEW_DEFORMING if isinstance(contact, ElasticContact) else FEW_RIGID
     return dataclasses.replace(contact, resolved=one_of_few(contact.resolved, few))

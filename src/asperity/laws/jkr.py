@@ -6,10 +6,10 @@ from math import pi
 from typing import ClassVar
 
 from .._jax import jax, jnp
-from .law import Law, Real, quantity
+from .law import OnlyBonded, Real, quantity
 
 
-class Jkr(Law):
+class Jkr(OnlyBonded):
     """Johnson-Kendall-Roberts contact of a paraboloid and a plane, Hertz included.
 
     Parameters
@@ -35,10 +35,6 @@ class Jkr(Law):
     work_of_adhesion: Real = quantity()
 
     counts: ClassVar[frozenset[str]] = frozenset({"elastic", "adhesion"})
-
-    @property
-    def hysteretic(self) -> bool:
-        return True
 
     @property
     def breaking_gap(self) -> jax.Array:
@@ -70,16 +66,6 @@ class Jkr(Law):
     def _radius_scale(self) -> jax.Array:
         w, r, e = self.work_of_adhesion, self.radius, self.modulus
         return jnp.cbrt(2.0 * pi * w * r**2 / e)
-
-    @property
-    def only_bonded(self) -> bool:
-        return True
-
-    def force(self, gap: jax.Array) -> jax.Array:
-        return jnp.zeros_like(gap)
-
-    def energy(self, gap: jax.Array) -> jax.Array:
-        return jnp.zeros_like(gap)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
         parts = self.components(gap, jnp.asarray(True))

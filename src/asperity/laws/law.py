@@ -164,6 +164,24 @@ class Law(eqx.Module):
         return Sum((*terms(self), *terms(other)))
 
 
+class OnlyBonded(Law):
+    """A law whose free branch is nothing at all: what its forces are, it is by its bond."""
+
+    @property
+    def hysteretic(self) -> bool:
+        return True
+
+    @property
+    def only_bonded(self) -> bool:
+        return True
+
+    def force(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap)
+
+    def energy(self, gap: jax.Array) -> jax.Array:
+        return jnp.zeros_like(gap)
+
+
 class Sum(Law):
     """Laws that act side by side on the same asperity.
 

@@ -7,13 +7,13 @@ from typing import ClassVar
 
 from .._jax import jax, jnp
 from .adhesive_zone import End, Radii, Zone, contact_end, of_radii, radii, slopes
-from .law import Law, Real, quantity
+from .law import OnlyBonded, Real, quantity
 
 RANGE_PER_SPACING = 9.0 * 3.0**0.5 / 16.0
 """Range h_0 per spacing: stress and work are then those of the 3-9 potential's peak."""
 
 
-class Maugis(Law):
+class Maugis(OnlyBonded):
     """Maugis-Dugdale contact of a paraboloid and a plane, Hertz included.
 
     Parameters
@@ -42,10 +42,6 @@ class Maugis(Law):
     spacing: Real = quantity()
 
     counts: ClassVar[frozenset[str]] = frozenset({"elastic", "adhesion"})
-
-    @property
-    def hysteretic(self) -> bool:
-        return True
 
     @property
     def elasticity(self) -> jax.Array:
@@ -83,16 +79,6 @@ class Maugis(Law):
     def _pull(self) -> jax.Array:
         """Unit of force [N]."""
         return pi * self.work_of_adhesion * self.radius
-
-    @property
-    def only_bonded(self) -> bool:
-        return True
-
-    def force(self, gap: jax.Array) -> jax.Array:
-        return jnp.zeros_like(gap)
-
-    def energy(self, gap: jax.Array) -> jax.Array:
-        return jnp.zeros_like(gap)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
         elastic, pull, _ = _state(-gap / self._depth, self.elasticity)

@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..dynamics import Body, Motion
-from ..dynamics.record import ENDS
-from ..errors import Outcome
+from ..errors import ENDS, Outcome
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from .first_contact import FirstContact, Passing, first_contact, passing_at

@@ -9,9 +9,8 @@ from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from asperity.errors import Outcome
+from asperity.errors import ENDS, Outcome
 from asperity.results.colours import colour
-from asperity.sweeps.study.columns import OUTCOMES
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +35,7 @@ BOUNDARY: Any = {"color": colour("contact"), "lw": 1.2}
 
 def failed(dataset: xarray.Dataset) -> np.ndarray:
     """Whether a case failed."""
-    found: np.ndarray = dataset["outcome"].values == OUTCOMES.index(Outcome.FAILED)
+    found: np.ndarray = dataset["outcome"].values == ENDS.index(Outcome.FAILED)
     return found
 
 

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from asperity.errors import InputError, OutputError
+from asperity.errors import ENDS, InputError, OutputError
 from asperity.sweeps.store.dataset import Results, dataset_of, open_results, reasons
-from asperity.sweeps.study.columns import OUTCOMES, Column
+from asperity.sweeps.study.columns import Column
 
 NOT_COMPUTED = "not_computed"
 """Outcome of a case that is not computed yet."""
 
-_WORDS = np.array([NOT_COMPUTED, *(outcome.value for outcome in OUTCOMES)], dtype=object)
+_WORDS = np.array([NOT_COMPUTED, *(outcome.value for outcome in ENDS)], dtype=object)
 
 
 def export(

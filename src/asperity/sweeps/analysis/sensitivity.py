@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from asperity.config.problems import did_you_mean
-from asperity.errors import InputError, Outcome, SimulationError
-from asperity.sweeps.study.columns import MEASURES, OUTCOMES, Column
+from asperity.errors import ENDS, InputError, Outcome, SimulationError
+from asperity.sweeps.study.columns import MEASURES, Column
 from asperity.sweeps.study.study import Study
 from asperity.units import shown
 
@@ -28,7 +28,7 @@ CONFIDENCE = 0.95
 _FEWEST, _MOST = 100, 999
 _WORK = 1 << 29
 _ROUNDING = 1e-13
-_FAILED = OUTCOMES.index(Outcome.FAILED)
+_FAILED = ENDS.index(Outcome.FAILED)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 from asperity.config import Case
 from asperity.config.resolve import resolve
 from asperity.dynamics.problem import Problem
-from asperity.errors import InputError, Outcome, SimulationError
+from asperity.errors import ENDS, InputError, Outcome, SimulationError
 from asperity.integration.clock import Clock
 from asperity.model import build
 from asperity.regimes.validity import AtDepth, check_surface
@@ -23,14 +23,14 @@ from asperity.sweeps.compute.building import Group, Values, built
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
-from asperity.sweeps.study.columns import OUTCOMES, REASON_SIZE
+from asperity.sweeps.study.columns import REASON_SIZE
 
 if TYPE_CHECKING:
     from asperity.sweeps.study.study import Study
 
 Columns = dict[str, np.ndarray]
 
-_FAILED = OUTCOMES.index(Outcome.FAILED)
+_FAILED = ENDS.index(Outcome.FAILED)
 
 
 class Effort(NamedTuple):
@@ -246,7 +246,7 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> li
         return None
     clock.look()  # a case that was cut short is not one that ended
     found = _read(result)
-    out["outcome"][row] = OUTCOMES.index(result.outcome)
+    out["outcome"][row] = ENDS.index(result.outcome)
     for column in study.columns:
         if column.along == "turn":
             turns = found[column.name][: out[column.name].shape[1]]

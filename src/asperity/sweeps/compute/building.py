@@ -12,7 +12,7 @@ import numpy as np
 from asperity._jax import jax, jnp
 from asperity.config import Case
 from asperity.config.resolve import resolve
-from asperity.contact import ElasticContact, RigidContact
+from asperity.contact import ElasticContact
 from asperity.contact.resolution import (
     FEW_OF_MANY,
     Resolution,
@@ -20,6 +20,7 @@ from asperity.contact.resolution import (
     one_of_few,
     resolution_of,
 )
+from asperity.contact.rough import RoughContact
 from asperity.dynamics import Limits
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError
@@ -223,7 +224,7 @@ def _raised(leaf: Any) -> Any:
 def _by_resolution(group: Group) -> list[Group]:
     """A group cut by how finely the curves are cut: as finely as each case asks for, and evenly."""
     contact = group.batch.contact
-    if not isinstance(contact, RigidContact | ElasticContact):
+    if not isinstance(contact, RoughContact):
         return [group]
     deforms = isinstance(contact, ElasticContact)
     interface = jax.tree_util.tree_map(
@@ -246,7 +247,7 @@ _lengths = Program(_lengths_of_each)
 
 def _coarser(group: Group) -> Group:
     contact = group.batch.contact
-    if not isinstance(contact, RigidContact | ElasticContact):
+    if not isinstance(contact, RoughContact):
         return group
     return _resolved(group, one_of_few(contact.resolved, FEW_OF_MANY))
 
@@ -260,7 +261,7 @@ def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:
 
 def _resolved(group: Group, kind: Resolution) -> Group:
     contact = group.batch.contact
-    assert isinstance(contact, RigidContact | ElasticContact)
+    assert isinstance(contact, RoughContact)
     contact = dataclasses.replace(contact, resolved=kind)
     return group._replace(batch=group.batch._replace(contact=contact))
 

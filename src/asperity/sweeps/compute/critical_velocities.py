@@ -10,8 +10,7 @@ from asperity._jax import jax, jnp
 from asperity.dynamics import Body, Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
 from asperity.dynamics.problem import CLEARANCE
-from asperity.dynamics.record import ENDS
-from asperity.errors import Outcome
+from asperity.errors import ENDS, Outcome
 from asperity.integration.batch_records import Batch, taken
 from asperity.integration.clock import Clock
 from asperity.integration.steps import FEW_CASES, Steps

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity._jax import jax
-from asperity.dynamics.record import ENDS
-from asperity.errors import Outcome, SimulationError
+from asperity.errors import ENDS, Outcome, SimulationError
 from asperity.integration.batch_motion import REFINEMENTS, BatchMotion
 from asperity.integration.batch_records import ImpactRows, slices, taken
 from asperity.integration.clock import Clock
@@ -24,7 +23,7 @@ class BatchSolution(NamedTuple):
     Attributes
     ----------
     outcome
-        Codes of `asperity.dynamics.record.ENDS`.
+        Codes of `asperity.errors.ENDS`.
     made
         Number of impacts.
     last_apex_time

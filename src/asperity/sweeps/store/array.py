@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.errors import InputError
+from asperity.errors import ENDS, InputError
 from asperity.sweeps.store.manifest import SCHEMA, refuse_newer
-from asperity.sweeps.study.columns import OUTCOMES, Column
+from asperity.sweeps.study.columns import Column
 
 if TYPE_CHECKING:
     from asperity.sweeps.study.study import Study
@@ -116,7 +116,7 @@ def metadata(study: Study) -> dict[str, bytes]:
 def _attributes(column: Column) -> dict[str, Any]:
     about: dict[str, Any] = {"unit": column.unit, "meaning": column.meaning}
     if column.name == "outcome":
-        about["codes"] = {outcome.value: code for code, outcome in enumerate(OUTCOMES)}
+        about["codes"] = {outcome.value: code for code, outcome in enumerate(ENDS)}
     return about
 
 

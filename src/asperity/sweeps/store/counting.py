@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.errors import Outcome
+from asperity.errors import ENDS, Outcome
 from asperity.sweeps.store.store import Store
-from asperity.sweeps.study.columns import OUTCOMES
 
 
 def outcomes(store: Store) -> dict[str, int]:
@@ -22,10 +21,10 @@ def outcomes(store: Store) -> dict[str, int]:
     InputError
         Where a chunk of the column is not what was written.
     """
-    counts = np.zeros(len(OUTCOMES), np.int64)
+    counts = np.zeros(len(ENDS), np.int64)
     for task in list(store.done):
-        counts += np.bincount(store.read(task, "outcome"), minlength=len(OUTCOMES))
-    return {outcome.value: int(n) for outcome, n in zip(OUTCOMES, counts, strict=True)}
+        counts += np.bincount(store.read(task, "outcome"), minlength=len(ENDS))
+    return {outcome.value: int(n) for outcome, n in zip(ENDS, counts, strict=True)}
 
 
 def first_failure(store: Store) -> tuple[int, str] | None:
@@ -37,7 +36,7 @@ def first_failure(store: Store) -> tuple[int, str] | None:
         As `outcomes`.
     """
     for task in sorted(store.done):
-        failed = store.read(task, "outcome") == OUTCOMES.index(Outcome.FAILED)
+        failed = store.read(task, "outcome") == ENDS.index(Outcome.FAILED)
         if failed.any():
             row = int(np.argmax(failed))
             text = store.read(task, "reason")[row].tobytes().rstrip(b"\0")

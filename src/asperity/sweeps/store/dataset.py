@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.config.problems import did_you_mean
-from asperity.errors import InputError, Outcome
+from asperity.errors import ENDS, InputError, Outcome
 from asperity.sweeps.store.store import REPAIR, Store
-from asperity.sweeps.study.columns import OUTCOMES, Column
+from asperity.sweeps.study.columns import Column
 from asperity.sweeps.study.study import Axis, Study, parse
 from asperity.units import shown
 
@@ -171,7 +171,7 @@ def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset
             "axes": [axis.key for axis in study.axes],
             "cases": study.size,
             "computed": int(np.count_nonzero(outcome >= 0)),
-            "failed": int(np.count_nonzero(outcome == OUTCOMES.index(Outcome.FAILED))),
+            "failed": int(np.count_nonzero(outcome == ENDS.index(Outcome.FAILED))),
             "study": study.canonical,
             "fingerprint": study.fingerprint,
         },
@@ -221,7 +221,7 @@ def _variable(
 
 
 _FLAGS = {
-    "outcome": ("not_computed", *(outcome.value for outcome in OUTCOMES)),
+    "outcome": ("not_computed", *(outcome.value for outcome in ENDS)),
     "captured": ("undecided", "rebounds", "captured"),
 }
 """Meanings of the codes -1, 0, 1, ... of a column."""

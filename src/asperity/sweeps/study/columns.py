@@ -10,19 +10,8 @@ import numpy as np
 from asperity.config.base_table import Table
 from asperity.config.problems import did_you_mean, tables_of
 from asperity.config.tables import CaseTables
-from asperity.errors import InputError, Outcome
+from asperity.errors import InputError
 from asperity.units import shown
-
-OUTCOMES: tuple[Outcome, ...] = (
-    Outcome.REST,
-    Outcome.OSCILLATING,
-    Outcome.ESCAPED,
-    Outcome.TIME_LIMIT,
-    Outcome.MAX_IMPACTS,
-    Outcome.FAILED,
-    Outcome.STOPPED,
-)
-"""How a case ended, in the order of the codes in the column ``outcome``."""
 
 REASON_SIZE = 160
 """Bytes kept of the reason why a case failed: UTF-8, ended by zeros."""
