@@ -13,10 +13,13 @@ MAPS = 15_000
 """Memory maps of a worker above which it drops what it has compiled; at 65530 Linux kills it."""
 
 
-def _compile_cache(worker: str) -> Path:
-    """A folder for compiled code that outlives the session; a worker does not share its own."""
+def _compile_cache() -> Path:
+    """A folder for compiled code that outlives the session, shared by all workers.
+
+    JAX does not read an entry that another worker has half written: it says so and compiles.
+    """
     try:
-        folder = platformdirs.user_cache_path("asperity") / "tests" / worker
+        folder = platformdirs.user_cache_path("asperity") / "tests"
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         folder = Path(tempfile.mkdtemp(prefix="asperity-tests-"))
@@ -26,15 +29,17 @@ def _compile_cache(worker: str) -> Path:
 # Before anything imports JAX, which reads these once. Programs that the tests start inherit them.
 _worker = os.environ.get("PYTEST_XDIST_WORKER", "alone")
 os.environ.setdefault("JAX_PLATFORMS", "cpu")
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(_compile_cache(_worker)))
+os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(_compile_cache()))
 os.environ.setdefault("MPLBACKEND", "Agg")
 # Most of a first run is compilation: what XLA would optimise takes longer than it saves here.
-_flags = ["--xla_backend_optimization_level=0", "--xla_cpu_use_fusion_emitters=false"]
+os.environ.setdefault(
+    "XLA_FLAGS",
+    "--xla_cpu_multi_thread_eigen=false --xla_backend_optimization_level=0 "
+    "--xla_cpu_use_fusion_emitters=false",
+)
 if _worker != "alone":
-    _flags.append("--xla_cpu_multi_thread_eigen=false")
     for _variable in ("NPROC", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(_variable, "1")
-os.environ.setdefault("XLA_FLAGS", " ".join(_flags))
 
 # Compiling takes the first example over any deadline; on CI the examples are always the same.
 hypothesis.settings.register_profile("here", deadline=None)
