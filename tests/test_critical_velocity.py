@@ -103,8 +103,8 @@ DRAGGED = {
 
 
 @pytest.mark.parametrize("drag", DRAGGED)
-def test_with_drag_too_few_first_impacts_tell_the_edge(monkeypatch, drag):
-    """The margin of the apex, or the energy left, tells it: halving would take forty."""
+def test_with_drag_too_few_first_impacts_find_the_edge(monkeypatch, drag):
+    """A root of the margin of the apex, or of the energy left; bisection would take forty."""
     file, change = DRAGGED[drag]
     tried, launch = [], Launcher.__call__
 

@@ -50,8 +50,8 @@ class ElasticContact(RoughContact):
         Number of rings (static); the next multiple of 8 is taken. The force converges with a high
         order in it.
     resolved
-        As there; of several pieces the last one is where the rings that
-        lag behind reach the branch.
+        As there; of several pieces the last one is where the rings that lag behind reach the
+        branch.
 
     Notes
     -----

@@ -45,8 +45,8 @@ class FirstImpacts(NamedTuple):
         """The same, with ``mass`` [kg], where capture was told by the force at the apex.
 
         That force ends at a millionth of the largest. Where hardly any energy is left or missing,
-        its sign decides in place of that. With drag outside contact no energy tells, but the
-        ``margin`` of the apex [m].
+        its sign decides in place of that. With drag outside contact the energy at the end of
+        contact is not known beforehand; the ``margin`` of the apex [m] stands for it.
         """
         if margin is not None:
             return cls(speed, captured, np.where((margin < 0.0) == captured, margin, np.nan))

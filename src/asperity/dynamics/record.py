@@ -156,8 +156,8 @@ class Impacts(NamedTuple):
     leaving
         The same energy were the body to leave the contact, whether or not it has enough: a body
         that is captured has less than its potential energy at the end of contact. With drag, less
-        what that took until the apex. NaN for motions stepped in time, which tell it of no body
-        that is captured.
+        what that took until the apex. NaN for motions stepped in time, where a captured body has
+        no such energy.
     force
         Contact force at closest approach [N].
     contacting, bonds

@@ -1,4 +1,4 @@
-"""The phase from one turning point to the next where menisci take time to form: a row of steps."""
+"""One phase of a motion in time, step by step, where menisci take time to form."""
 
 from __future__ import annotations
 

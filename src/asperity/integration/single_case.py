@@ -171,7 +171,8 @@ def _of_one(
     launched: bool = False,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
-    many = many and problem.delayed is None and problem.relaxation is None  # those have no such
+    # A motion in time solves its contact as it goes: it reads no scanning curve off a table.
+    many = many and problem.delayed is None and problem.relaxation is None
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many), clock,
