@@ -59,7 +59,7 @@ def turning_at(
             f"got {depth * 1e9:.6g} nm",
             key="depth",
         )
-    body = Body(mass, 0.0, release, 0.0)
+    body = Body(mass, 0.0, release, rebounds_from=problem.body.rebounds_from)
     for step in range(_STEPS):
         speed = np.sqrt(2.0 * _LEAST * _FACTOR**step / mass)
         table, _ = prepared(contact, dataclasses.replace(body, speed=speed))

@@ -80,11 +80,13 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
         If two laws contain the same force, or adhesion alone makes the body yield.
     """
     contact = _contact(inputs, resolved)
-    body = Body(inputs.mass, 0.0, contact.interaction_range + CLEARANCE)
+    clear = contact.interaction_range + CLEARANCE
+    edge = contact.pressure.end if isinstance(contact, PublishedContact) else None
+    body = Body(inputs.mass, 0.0, clear, rebounds_from=edge)
     if (let_go := inputs.release) is not None:
-        release = body.release if let_go.separation is None else let_go.separation
+        release = clear if let_go.separation is None else let_go.separation
         drags, forces = _drags(inputs), _forces(inputs)
-        body = Body(inputs.mass, let_go.gravity, release, let_go.speed, drags, forces)
+        body = Body(inputs.mass, let_go.gravity, release, let_go.speed, drags, forces, edge)
     delayed, relaxation = _delayed(inputs, contact), None
     if inputs.structure.viscoelastic:
         relaxation = Relaxation(contact, inputs.relaxed_modulus_ratio, inputs.relaxation_time)

@@ -140,7 +140,7 @@ def test_force_on_the_sphere_is_the_integral_over_the_conjunction():
 
 
 def integrated(made, gap, impacts=30, **tolerance):
-    body = Body(MASS, GRAVITY, gap)
+    body = Body(MASS, GRAVITY, gap, rebounds_from=made.pressure.end)
     motion = simulate(made, body, tolerance=Tolerance(max_impacts=impacts, **tolerance))
     return motion, measure(motion, body)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import abc
+import dataclasses
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import equinox as eqx
 
 from .._jax import jax, jnp
+from .resolution import Resolution
 
 Memory = Any
 """A pytree that a contact alone understands: its bonds after the last reversal."""
@@ -134,7 +136,14 @@ class Contact(eqx.Module):
 
     The *rigid separation* d [m] is the separation of the mean planes at the apex were
     nothing deformed in bulk. All methods take scalars and are batched by ``vmap``.
+
+    Attributes
+    ----------
+    resolved
+        How finely its curves are cut (static).
     """
+
+    resolved: Resolution = eqx.field(static=True, kw_only=True, default=Resolution(1))
 
     @property
     @abc.abstractmethod
@@ -146,23 +155,13 @@ class Contact(eqx.Module):
     def components(self) -> tuple[str, ...]:
         """Names of the forces in :attr:`State.parts`."""
 
-    @property
-    def reference(self) -> jax.Array | None:
-        """Separation [m] from which rebounds count; None for the static equilibrium."""
-        return None
-
-    @property
-    def error_floor(self) -> float:
-        """Relative error of its curves below which nothing is gained. Without values."""
-        return 0.0
-
-    @abc.abstractmethod
-    def refined(self, factor: int) -> Contact:
+    def refined(self, factor: int) -> Self:
         """The same contact with ``factor`` times as many panels on its curves."""
+        return dataclasses.replace(self, resolved=self.resolved.finer(factor))
 
-    @abc.abstractmethod
     def initial_memory(self) -> Memory:
-        """Memory of bodies that never touched."""
+        """Memory of bodies that never touched: the first of the :meth:`branches`."""
+        return self.branches()[0]
 
     @property
     def yields(self) -> bool:

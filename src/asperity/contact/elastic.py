@@ -82,9 +82,6 @@ class ElasticContact(RoughContact):
         """The same contact without bulk deformation."""
         return RigidContact(self.interface, self.shape, self.resolved)
 
-    def initial_memory(self) -> RingMemory:
-        return self.branches()[0]
-
     def branches(self) -> tuple[RingMemory, ...]:
         laws = len(self.mechanisms)
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from math import pi
 
-import equinox as eqx
 import numpy as np
 from numpy.polynomial import chebyshev
 
@@ -17,7 +15,6 @@ from .contact import Contact, Held, Potential, State
 from .profile import Sphere
 from .scanning_curve import first_out_of_reach
 
-_PANELS = 1  # between two kinks of the pressures
 _NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))
 _LADDER = 1.0 - 2.0 ** np.arange(-14.0, 21.0)  # of the edge: each depth twice the one before
 _FEW, _FEW_WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(3))
@@ -52,8 +49,8 @@ class PublishedContact(Contact):
     retraction_only
         1 where adhesion and menisci pull only while the bodies part: what the published
         decrements say, and no law that a bond could follow. 0 where they always pull.
-    count
-        Panels of the curves between two kinks (static).
+    resolved
+        Panels of the curves between two non-smooth points of the pressures (static).
 
     Notes
     -----
@@ -66,7 +63,6 @@ class PublishedContact(Contact):
     pressure: PublishedPressure
     shape: Sphere
     retraction_only: Real = quantity(1.0)
-    count: int = eqx.field(static=True, default=_PANELS)
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -75,17 +71,6 @@ class PublishedContact(Contact):
     @property
     def components(self) -> tuple[str, ...]:
         return ("elastic", *self.mechanisms)
-
-    @property
-    def reference(self) -> jax.Array:
-        """The edge of the conjunction."""
-        return self.pressure.end
-
-    def refined(self, factor: int) -> PublishedContact:
-        return dataclasses.replace(self, count=factor * self.count)
-
-    def initial_memory(self) -> jax.Array:
-        return jnp.zeros(())
 
     def branches(self) -> tuple[jax.Array, ...]:
         return jnp.zeros(()), jnp.ones(())
@@ -188,7 +173,7 @@ class PublishedContact(Contact):
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         marks = jnp.stack([low, *self.pressure.kinks, self.pressure.end])
         marks = jnp.sort(jnp.clip(marks, low, high))
-        steps = np.arange(self.count) / self.count
+        steps = np.arange(self.resolved.panels) / self.resolved.panels
         near = (marks[:-1, None] + jnp.diff(marks)[:, None] * steps).ravel()
         return jnp.concatenate([near, jnp.stack([marks[-1], high])])
 

@@ -37,13 +37,16 @@ class Resolution(NamedTuple):
         Even pieces of the quadratures that the places of one panel share.
     reversals
         Scanning curves that are solved for each direction, where they stand for all.
+    error_floor
+        Relative error of the curves below which more panels gain nothing.
     """
 
     panels: int
-    nodes: int
-    pieces: int
+    nodes: int = 16
+    pieces: int = 1
     shared: int = EVEN
     reversals: int = 10
+    error_floor: float = 0.0
 
     def finer(self, factor: int) -> Resolution:
         """So many times as fine."""
@@ -62,7 +65,7 @@ def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         finer = interface.panel_lengths.grain**-0.5
-        return Resolution(ceil(10 * finer), 16, ceil(2 * finer))
+        return Resolution(ceil(10 * finer), 16, ceil(2 * finer), error_floor=interface.error_floor)
     lengths = tuple(float(length) for length in _lengths(interface))
     return resolution_of(interface, lengths, deforms=deforms)
 
@@ -71,7 +74,7 @@ def resolution_of(
     interface: RoughPlanes, lengths: tuple[float, ...], *, deforms: bool
 ) -> Resolution:
     """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
-    panel_lengths = interface.panel_lengths
+    panel_lengths, floor = interface.panel_lengths, interface.error_floor
     share, kinked, interaction_range, bends = lengths
     nodes, pieces = panel_lengths.along(share)
     if bends > 1.5:
@@ -84,11 +87,13 @@ def resolution_of(
     if not deforms:
         # One more where a law bends (Maugis and Dugdale's), which else misses 1e-8 at first.
         panels = ceil(length / panel_lengths.panel) + (bends > 0.0)
-        return Resolution(panels, max(nodes, 8), pieces, _shared(interaction_range, panels))
+        shared = _shared(interaction_range, panels)
+        return Resolution(panels, max(nodes, 8), pieces, shared, error_floor=floor)
     # Rings that lag behind have a piece of their own, where what they hold counts for much.
     fills = fills_by_contact(interface.hysteretic)
     panels = ceil(length / (1.7 * panel_lengths.grain))
-    return Resolution(panels, 16 if fills else nodes, pieces + (fills or share > 0.1))
+    nodes, pieces = 16 if fills else nodes, pieces + (fills or share > 0.1)
+    return Resolution(panels, nodes, pieces, error_floor=floor)
 
 
 def fills_by_contact(bonds: Iterable[Law]) -> bool:
@@ -129,10 +134,12 @@ def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
 
     Where none is, one of powers of two.
     """
+    *numbers, floor = found
     for one in few:
-        if all(number <= most for number, most in zip(found, one, strict=True)):
-            return one
-    return Resolution(*(1 << (number - 1).bit_length() for number in found))
+        if all(number <= most for number, most in zip(numbers, one[:-1], strict=True)):
+            return one._replace(error_floor=floor)
+    powers = Resolution(*(1 << (number - 1).bit_length() for number in numbers))
+    return powers._replace(error_floor=floor)
 
 
 def _shared(interaction_range: float, panels: int) -> int:

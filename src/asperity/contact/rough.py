@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
-from typing import Self
-
-import equinox as eqx
-
 from .._jax import jax
 from ..interface.rough_planes import RoughPlanes
 from .contact import Contact
 from .profile import Sphere
-from .resolution import Resolution
 
 
 class RoughContact(Contact):
@@ -24,12 +18,11 @@ class RoughContact(Contact):
     shape
         The body.
     resolved
-        How finely its curves are cut (static); by default as its forces ask for.
+        As for every contact; by default as its forces ask for.
     """
 
     interface: RoughPlanes
     shape: Sphere
-    resolved: Resolution = eqx.field(static=True)
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
@@ -38,13 +31,6 @@ class RoughContact(Contact):
     @property
     def components(self) -> tuple[str, ...]:
         return self.interface.components
-
-    @property
-    def error_floor(self) -> float:
-        return self.interface.error_floor
-
-    def refined(self, factor: int) -> Self:
-        return dataclasses.replace(self, resolved=self.resolved.finer(factor))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()

@@ -8,7 +8,9 @@ import numpy as np
 
 from .._jax import jax, jnp
 
-_STEPS = 36  # panels on each side of a kink
+STEPS = 36
+"""Panels on each side of a non-smooth point."""
+
 _RATIO = 3.0  # of their lengths
 _NARROWEST = 1e-13  # of the separation: a thousand times its rounding
 
@@ -30,7 +32,7 @@ def pieces_to(
 
 
 def panels_around(
-    kinks: jax.Array, low: jax.Array, high: jax.Array, refinement: int, ends: tuple[Any, ...] = ()
+    kinks: jax.Array, low: jax.Array, high: jax.Array, count: int, ends: tuple[Any, ...] = ()
 ) -> jax.Array:
     """Ends of panels that narrow to each kink from both sides, between ``low`` and ``high`` [m].
 
@@ -40,8 +42,8 @@ def panels_around(
         Separations [m] at which a curve is not smooth, shape (kinks,); each is an end.
     low, high
         Outermost ends [m].
-    refinement
-        Factor on the number of panels.
+    count
+        Panels on each side of a kink: :data:`STEPS`, or a multiple.
     ends
         Further ends [m], kept as they are.
 
@@ -51,8 +53,8 @@ def panels_around(
     separations in a narrower one are rounded by more than its width, and its polynomial would be
     read far outside.
     """
-    powers = np.arange(0.0, _STEPS * refinement)
-    ladder = jnp.maximum(high, -low) * _RATIO ** (-powers / refinement)
+    powers = np.arange(0.0, count) / (count // STEPS)
+    ladder = jnp.maximum(high, -low) * _RATIO**-powers
     steps = jnp.concatenate([(kinks[:, None] + sign * ladder).ravel() for sign in (-1.0, 1.0)])
     outer = jnp.stack([low, high])
     inner = _apart(jnp.concatenate([kinks, *(end[None] for end in ends)]), outer)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from functools import reduce
 from itertools import product
 
@@ -12,7 +11,8 @@ import numpy as np
 from .._jax import jax, jnp
 from ..laws.law import Law, terms
 from .contact import Contact, Held, Potential, State, elastic_part
-from .scanning_curve import first_out_of_reach, panels_around
+from .resolution import Resolution
+from .scanning_curve import STEPS, first_out_of_reach, panels_around
 
 Flags = jax.Array
 
@@ -24,8 +24,8 @@ class SmoothContact(Contact):
     ----------
     law
         The law, or a sum of laws, with the radius of the body.
-    refinement
-        Factor on the number of panels of its curves (static).
+    resolved
+        Panels of its curves on each side of a non-smooth point (static).
 
     Notes
     -----
@@ -33,7 +33,7 @@ class SmoothContact(Contact):
     """
 
     law: Law
-    refinement: int = eqx.field(static=True, default=1)
+    resolved: Resolution = eqx.field(static=True, kw_only=True, default=Resolution(STEPS))
 
     @property
     def _hysteretic(self) -> tuple[Law, ...]:
@@ -47,12 +47,6 @@ class SmoothContact(Contact):
     def components(self) -> tuple[str, ...]:
         names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
         return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
-
-    def refined(self, factor: int) -> SmoothContact:
-        return dataclasses.replace(self, refinement=factor)
-
-    def initial_memory(self) -> Flags:
-        return jnp.zeros(len(self.mechanisms))
 
     def branches(self) -> tuple[Flags, ...]:
         combinations = product((0.0, 1.0), repeat=len(self.mechanisms))
@@ -123,7 +117,7 @@ class SmoothContact(Contact):
             for k in (*law.kinks, *self._ends(law))
         }
         kink = jnp.stack([jnp.zeros(()), *kinks.values()])
-        return panels_around(kink, low, high, self.refinement)
+        return panels_around(kink, low, high, self.resolved.panels)
 
     @staticmethod
     def _ends(law: Law) -> tuple[jax.Array | float, ...]:

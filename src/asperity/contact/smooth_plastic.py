@@ -14,7 +14,8 @@ from ..laws.jkr import Jkr
 from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
 from .contact import Contact, Held, Potential, State, elastic_part
-from .scanning_curve import first_out_of_reach, panels_around
+from .resolution import Resolution
+from .scanning_curve import STEPS, first_out_of_reach, panels_around
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""
@@ -32,8 +33,8 @@ class SmoothPlasticContact(Contact):
         The contact, with the radius of the body; it may adhere.
     law
         Laws that act beside it, none by default.
-    refinement
-        Factor on the number of panels of its curves (static).
+    resolved
+        Panels of its curves on each side of a non-smooth point (static).
     left
         Memory and separation [m] at the deepest point of the first impact, where it has had one.
 
@@ -66,7 +67,7 @@ class SmoothPlasticContact(Contact):
 
     contact: PlasticContact | AdhesiveThorntonNing
     law: Law = Sum(())
-    refinement: int = eqx.field(static=True, default=1)
+    resolved: Resolution = eqx.field(static=True, kw_only=True, default=Resolution(STEPS))
     left: tuple[Pressed, jax.Array] | None = None
 
     def __check_init__(self) -> None:
@@ -98,9 +99,6 @@ class SmoothPlasticContact(Contact):
     @property
     def yields(self) -> bool:
         return True
-
-    def refined(self, factor: int) -> SmoothPlasticContact:
-        return dataclasses.replace(self, refinement=factor)
 
     def initial_memory(self) -> Pressed:
         return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)
@@ -198,7 +196,7 @@ class SmoothPlasticContact(Contact):
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """All kinks, before and after the first impact, with panels that narrow to each."""
         turn = low if self.left is None else self.left[1] - _BELOW * jnp.abs(self.left[1])
-        return panels_around(self._kinks(), low, high, self.refinement, (turn,))
+        return panels_around(self._kinks(), low, high, self.resolved.panels, (turn,))
 
     @property
     def interaction_range(self) -> jax.Array:

@@ -56,10 +56,10 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
         table = _yielded_table(contact, body, low, high)
     else:
         table = tabulate(contact, low, high)
-    if contact.reference is None:
+    if body.rebounds_from is None:
         reference = find_reference(table, body.load, int(contact.yields))
     else:
-        reference = Reference(contact.reference, jnp.zeros(()), jnp.asarray(True))
+        reference = Reference(body.rebounds_from, jnp.zeros(()), jnp.asarray(True))
     if many and not contact.yields:
         table = solve_reversals(contact, body, table, reference)
     return table, reference

@@ -10,7 +10,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..contact.contact import Memory
 from ..errors import Tolerance
-from ..laws.law import Real, as_float64, quantity
+from ..laws.law import Real, as_float64, quantity, quantity_or_none
 from ..numerics.compilation import kept
 from .curve_table import Pieces, Table
 from .external_forces import Along, Drag, ExternalForce, Load
@@ -37,6 +37,8 @@ class Body(eqx.Module):
         What takes energy on its way, in the order of the ledger.
     forces
         What acts on it besides its weight, its contact and the drags.
+    rebounds_from
+        Separation [m] from which rebounds count; by default the static equilibrium.
     on_creep
         What a bulk under its contact takes by creep (static): losses of a motion that is stepped
         in time, after those of the drags.
@@ -48,6 +50,7 @@ class Body(eqx.Module):
     speed: Real = quantity(0.0)
     drags: tuple[Drag, ...] = ()
     forces: tuple[ExternalForce, ...] = ()
+    rebounds_from: Real | None = quantity_or_none()
     on_creep: tuple[str, ...] = eqx.field(static=True, default=())
 
     @property

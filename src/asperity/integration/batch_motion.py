@@ -144,7 +144,7 @@ class BatchMotion:
         """Whether the curves of each case hold; others wait for more panels, or have failed."""
         error, residual = np.asarray(checks.error), np.asarray(checks.residual)
         real, tolerance = places >= 0, self._tolerance[places]
-        fine = error <= np.maximum(tolerance, here.contact.error_floor)
+        fine = error <= np.maximum(tolerance, here.contact.resolved.error_floor)
         fails = last | (error > _GAIN * self._errors[places, 0])
         for slot in np.flatnonzero(real & ~fine & fails).tolist():
             self.failures[int(places[slot])] = SimulationError(

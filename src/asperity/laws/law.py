@@ -23,6 +23,13 @@ def quantity(default: float | None = None) -> Any:
     return eqx.field(converter=as_float64, default=default)
 
 
+def quantity_or_none() -> Any:
+    """The same where it may be absent, as it is by default."""
+    return eqx.field(
+        converter=lambda value: None if value is None else as_float64(value), default=None
+    )
+
+
 def as_float64(value: Any) -> jax.Array:
     """A float64 array of a number or an array."""
     if isinstance(value, int | float | np.ndarray):

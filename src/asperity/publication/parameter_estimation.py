@@ -278,7 +278,7 @@ def _motion_of(
             edge=edge,
             tension=contact.pressure.tension * factor,
         )
-        released = Body(body.mass, body.gravity, gap, body.speed)
+        released = Body(body.mass, body.gravity, gap, body.speed, rebounds_from=pressure.end)
         tolerance = Tolerance(rest=rest, max_impacts=_IMPACTS)  # type: ignore[arg-type]
         motion = simulate(replace(contact, pressure=pressure), released, tolerance=tolerance)
         found = measure(motion, released)

@@ -52,8 +52,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
         body = dataclasses.replace(batch.body, release=release[index], speed=speeds)
         rest, none = batch.limits.rest, np.full(index.size, np.inf)
         batch = batch._replace(body=body, limits=Limits(rest, none, np.ones(index.size, int)))  # type: ignore[arg-type]
-        allowed = np.full(index.size, max(_ERROR, batch.contact.error_floor))
-        launched = Group(np.arange(index.size), batch, allowed)
+        launched = Group(np.arange(index.size), batch, np.full(index.size, _ERROR))
         # A small study launches in calls of its cases' own width: those are compiled already.
         made = integrate_batch(launched, clock, checked=False, width=width)
         return _first_impacts(made, mass[index], body)
