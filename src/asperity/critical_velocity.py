@@ -13,12 +13,12 @@ from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
-from .integration import launch, prepared
-from .results.conversion import Solution, contact_end, measured
-from .results.first_contact import least_peak
+from .integration import launch
+from .results.conversion import Solution, measured
 from .results.summary import amount
 
-_ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
+LAUNCH_ERROR = 1e-6
+"""Relative error of the force curves: an impact on worse ones is not counted."""
 
 
 class Rebound(NamedTuple):
@@ -85,10 +85,14 @@ class Launcher:
         finer: tuple[int, ...] = (),
         stop: threading.Event | None = None,
     ) -> None:
-        body = dataclasses.replace(
-            problem.body, release=_launched_from(solution, problem, many=many)
-        )
-        self._problem = problem._replace(body=body, contact=solution.contact)
+        contact, body = solution.contact, solution.body or problem.body
+        outset = np.asarray(measured(solution, body).outset)
+        launched = launch_separation(
+            np.asarray(contact.interaction_range), outset, np.asarray(body.release),
+            yields=contact.yields,
+        )  # fmt: skip
+        body = dataclasses.replace(problem.body, release=launched)
+        self._problem = problem._replace(body=body, contact=contact)
         self._many, self._stop, self._refinements = many, stop, (1, *finer)
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
 
@@ -103,7 +107,7 @@ class Launcher:
         problem = self._problem._replace(body=body)
         try:
             solution = launch(
-                problem, self._limits, _ERROR, self._refinements, self._stop, many=self._many
+                problem, self._limits, LAUNCH_ERROR, self._refinements, self._stop, many=self._many
             )
         except SimulationError:
             return _UNKNOWN
@@ -153,25 +157,25 @@ class Launcher:
         return found
 
 
-def _launched_from(solution: Solution, problem: Problem, *, many: bool) -> float:
-    """A separation [m] just outside the end of contact of even the gentlest impact.
+def launch_separation(
+    interaction_range: np.ndarray, outset: np.ndarray, release: np.ndarray, *, yields: bool
+) -> np.ndarray:
+    """Separation [m] from which a body is launched, outside contact even at the gentlest impact.
 
-    It is where any force ends for a contact that yields, whose curves are those after one impact.
+    Parameters
+    ----------
+    interaction_range
+        Where any force ends [m].
+    outset
+        Where that of the gentlest impact does [m], by the curves of a motion.
+    release
+        Where that motion began [m]: its curves do not tell of what lies beyond.
+    yields
+        Whether the curves are those after one impact.
     """
-    interaction_range, body = (
-        float(solution.contact.interaction_range),
-        solution.body or problem.body,
-    )
-    if solution.contact.yields:
-        return interaction_range + CLEARANCE
-    measures = measured(solution, body)
-    outset = float(measures.outset)
-    if outset >= float(body.release):  # its curves do not tell of what lies beyond
-        further = dataclasses.replace(body, release=interaction_range + CLEARANCE)
-        force = abs(float(solution.motion.impacts.force[0]))
-        least = least_peak(body, measures.pull_off, force)
-        outset = contact_end(prepared(solution.contact, further, many=many)[0], float(least))
-    return min(interaction_range, outset) + CLEARANCE
+    ends = np.minimum(interaction_range, outset)
+    unknown = yields | ~(np.asarray(outset) < release)
+    return np.where(unknown, interaction_range, ends) + CLEARANCE
 
 
 def critical_measures(edges: Edges | None) -> dict[str, Any]:

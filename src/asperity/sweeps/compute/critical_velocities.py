@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 
 from asperity._jax import jax, jnp
+from asperity.critical_velocity import LAUNCH_ERROR, launch_separation
 from asperity.dynamics import Body, Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
-from asperity.dynamics.problem import CLEARANCE
 from asperity.errors import ENDS, Outcome
 from asperity.integration.batch_records import Batch, taken
 from asperity.integration.clock import Clock
@@ -18,7 +18,6 @@ from asperity.sweeps.compute.building import Group
 from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch
 
 _TOGETHER = 256  # cases whose impacts are launched in one go
-_ERROR = 1e-6  # of the force curves, relative: an impact on worse ones is not counted
 
 
 def critical_velocities(group: Group, solution: BatchSolution, clock: Clock) -> np.ndarray:
@@ -33,7 +32,7 @@ def critical_velocities(group: Group, solution: BatchSolution, clock: Clock) -> 
     """
     found = np.full(group.rows.size, np.nan)
     moved = np.flatnonzero(solution.made > 0)
-    takes = group.batch.contact.mechanisms or group.batch.body.damped
+    takes = group.batch.contact.mechanisms or group.batch.body.mechanisms
     for begin in range(0, moved.size if takes else 0, _TOGETHER):
         some = moved[begin : begin + _TOGETHER]
         found[some] = _of_some(group, solution, some, clock)
@@ -43,7 +42,11 @@ def critical_velocities(group: Group, solution: BatchSolution, clock: Clock) -> 
 def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clock) -> np.ndarray:
     cases: Batch = taken(group.batch, some)
     mass = np.broadcast_to(np.asarray(cases.body.mass), some.shape)
-    release = _launched_from(cases, solution.measures["outset"][some])
+    interaction_range = jax.vmap(lambda batch: jnp.asarray(batch.contact.interaction_range))(cases)
+    release = launch_separation(
+        np.asarray(interaction_range), solution.measures["outset"][some],
+        np.asarray(cases.body.release), yields=cases.contact.yields,
+    )  # fmt: skip
     count = group.rows.size
     width = Steps.of_batch(group.batch, count).width if count <= FEW_CASES else None
 
@@ -52,7 +55,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
         body = dataclasses.replace(batch.body, release=release[index], speed=speeds)
         rest, none = batch.limits.rest, np.full(index.size, np.inf)
         batch = batch._replace(body=body, limits=Limits(rest, none, np.ones(index.size, int)))  # type: ignore[arg-type]
-        launched = Group(np.arange(index.size), batch, np.full(index.size, _ERROR))
+        launched = Group(np.arange(index.size), batch, np.full(index.size, LAUNCH_ERROR))
         # A small study launches in calls of its cases' own width: those are compiled already.
         made = integrate_batch(launched, clock, checked=False, width=width)
         return _first_impacts(made, mass[index], body)
@@ -62,17 +65,6 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     lost = np.where(np.isfinite(leaving), solution.release[some] - leaving, lost)
     edges = capture_edges(launch, *speeds_about(past["maximum_kinetic"][some, 0], lost, mass))
     return np.array([each.speeds[0] if each.speeds else np.nan for each in edges])
-
-
-def _launched_from(cases: Batch, outset: np.ndarray) -> np.ndarray:
-    """As for one case, :mod:`asperity.critical_velocity`: just outside where forces end [m]."""
-    interaction_range = np.asarray(
-        jax.vmap(lambda batch: jnp.asarray(batch.contact.interaction_range))(cases)
-    )
-    if cases.contact.yields:
-        return interaction_range + CLEARANCE
-    known = outset < np.asarray(cases.body.release)
-    return np.where(known, np.minimum(interaction_range, outset), interaction_range) + CLEARANCE
 
 
 def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstImpacts:
