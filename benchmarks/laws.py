@@ -11,7 +11,7 @@ import equinox as eqx
 import numpy as np
 
 from asperity._jax import jax, jnp
-from asperity.contact import RigidContact, SmoothContact
+from asperity.contact import RigidContact, RigidPlasticContact, SmoothContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, simulate
 from asperity.dynamics.gas_film import SqueezeFilm
@@ -73,15 +73,12 @@ def _yielding() -> str:
     tip, heights, density = 50e-9, Gaussian(2e-9), 1e14
     beside = Dmt(tip, 0.2 * WORK) + Meniscus(tip, TENSION, 1.4, 0.5e-9)  # weak: all bounce
     contact = KogutEtsion(tip, MODULUS, 0.1 * MODULUS, 0.3)
-    planes = (
-        Interface(Hertz(tip, MODULUS) + beside, heights, density),
-        PlasticInterface(contact, beside, heights, density),
-    )
-    speeds = jnp.linspace(0.05, 0.1, 20)
-    elastic, plastic = (
-        _motions(RigidContact(plane, Sphere(20e-6)), 20e-6, speeds, impacts=20) for plane in planes
-    )
-    return f"{plastic / elastic:8.2f}"
+    elastic = Interface(Hertz(tip, MODULUS) + beside, heights, density)
+    plastic = PlasticInterface(contact, beside, heights, density)
+    sphere, speeds = Sphere(20e-6), jnp.linspace(0.05, 0.1, 20)
+    bodies = RigidContact(elastic, sphere), RigidPlasticContact(plastic, sphere)
+    before, after = (_motions(body, 20e-6, speeds, impacts=20) for body in bodies)
+    return f"{after / before:8.2f}"
 
 
 def _motions(

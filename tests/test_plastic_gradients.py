@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from asperity._jax import jax, jnp
-from asperity.contact import RigidContact
+from asperity.contact import RigidPlasticContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
@@ -34,7 +34,7 @@ def impact(logarithms):
     contact = KogutEtsion(TIP, E, hardness, 0.25)
     interface = PlasticInterface(contact, BESIDE, Gaussian(rms), DENSITY)
     body = Body(MASS, 9.81, 40e-9, speed)
-    motion = simulate(RigidContact(interface, Sphere(RADIUS)), body, tolerance=ONE)
+    motion = simulate(RigidPlasticContact(interface, Sphere(RADIUS)), body, tolerance=ONE)
     rows, measures = motion.impacts, measure(motion, body)
     return jnp.stack([measures.restitution[0], rows.closest_approach[0], rows.apex[0],
                       measures.contact_end, *rows.lost[0]])  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .contact import ElasticContact
+from .contact import ElasticContact, YieldingContact
 from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
@@ -89,7 +89,7 @@ class Launcher:
         outset = np.asarray(measured(solution, body).outset)
         launched = launch_separation(
             np.asarray(contact.interaction_range), outset, np.asarray(body.release),
-            yields=contact.yields,
+            yields=isinstance(contact, YieldingContact),
         )  # fmt: skip
         body = dataclasses.replace(problem.body, release=launched)
         self._problem = problem._replace(body=body, contact=contact)

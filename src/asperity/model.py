@@ -14,6 +14,7 @@ from .contact import (
     ElasticContact,
     PublishedContact,
     RigidContact,
+    RigidPlasticContact,
     SmoothContact,
     SmoothPlasticContact,
 )
@@ -105,7 +106,8 @@ def _contact(inputs: Inputs, resolved: Resolution | None) -> Contact:
         return _published(inputs, rough)
     interface, shape = _interface(inputs, rough), Sphere(inputs.radius)
     if inputs.structure.deformation == "rigid":
-        return RigidContact(interface, shape, resolved)
+        kind = RigidPlasticContact if interface.yields else RigidContact
+        return kind(interface, shape, resolved)
     return ElasticContact(interface, shape, inputs.modulus, inputs.tolerance.rings, resolved)
 
 

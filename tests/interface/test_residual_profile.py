@@ -9,7 +9,7 @@ import pytest
 import asperity.interface.residual_profile as tabulated
 import asperity.interface.virgin_loading as module
 from asperity._jax import jax, jnp
-from asperity.contact import RigidContact
+from asperity.contact import RigidPlasticContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, simulate
 from asperity.errors import Tolerance
@@ -151,7 +151,7 @@ def integrated():
 
     def integrate(interface):
         motion = simulate(
-            RigidContact(interface, Sphere(20e-6)), body, tolerance=Tolerance(max_impacts=3)
+            RigidPlasticContact(interface, Sphere(20e-6)), body, tolerance=Tolerance(max_impacts=3)
         )
         return (
             motion.impacts.lost,

@@ -163,26 +163,12 @@ class Contact(eqx.Module):
         """Memory of bodies that never touched: the first of the :meth:`branches`."""
         return self.branches()[0]
 
-    @property
-    def yields(self) -> bool:
-        """Whether its first impact leaves it changed for good. Known without values."""
-        return False
-
-    def left_by(self, memory: Memory, separation: jax.Array) -> Any:
-        """What a first impact leaves, that turned at a separation [m]; arrays for :meth:`after`."""
-        return ()
-
-    def after(self, left: Any) -> Contact:
-        """The contact as its first impact left it."""
-        return self
-
     @abc.abstractmethod
     def branches(self) -> tuple[Memory, ...]:
         """Memories of the major branches.
 
         On a smooth body all combinations of bonds. Else the first has no bonds and the last has
-        all. A contact that yields has that of its first approach alone, and the others once it
-        has had its first impact (:meth:`after`).
+        all.
         """
 
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
@@ -256,3 +242,19 @@ class Contact(eqx.Module):
 
         The force there is below 1e-6 of the largest pull.
         """
+
+
+class YieldingContact(Contact):
+    """A contact that its first impact leaves changed for good.
+
+    It has one of the :meth:`branches`, that of its first approach, and the others once it has had
+    its first impact (:meth:`after`).
+    """
+
+    @abc.abstractmethod
+    def left_by(self, memory: Memory, separation: jax.Array) -> Any:
+        """What a first impact leaves, that turned at a separation [m]; arrays for :meth:`after`."""
+
+    @abc.abstractmethod
+    def after(self, left: Any) -> Contact:
+        """The contact as its first impact left it."""

@@ -9,6 +9,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.compilation import kept
+from ..numerics.roots import fixed_point
 from .equilibrium import (
     RingEquilibrium,
     Rough,
@@ -137,22 +138,18 @@ def fitted(
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
     rings, fills = contact.rings, fills_by_contact(contact.interface.hysteretic)
 
-    def again(now: tuple[Any, ...]) -> tuple[Any, ...]:
-        size, ratio, rest, passes = now
+    def again(now: tuple[Any, ...]) -> tuple[Any, jax.Array]:
+        size, ratio, rest = now
         size = size * ratio
         rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, rings)
         end = place + profile_of(contact, size, rings)[-1]
         more = beyond(contact, size, end) if fills else 0.0
         asked = asked_size(rest, rings, more)
-        return size, jnp.where(free, asked, 1.0), rest, passes + 1
-
-    def unfit(now: tuple[Any, ...]) -> jax.Array:
-        off = jnp.logical_and(jnp.abs(now[1] - 1.0) > _FIT, now[-1] < _PASSES)
-        return jnp.logical_or(now[-1] == 0, off)
+        ratio = jnp.where(free, asked, 1.0)
+        return (size, ratio, rest), jnp.abs(ratio - 1.0)
 
     blank = RingEquilibrium(displacement, jnp.zeros_like(displacement[:-1]), jnp.zeros(()))
-    begin = size, jnp.ones(()), blank, 0
-    size, _, rest, _ = jax.lax.while_loop(unfit, again, begin)
+    (size, _, rest), _ = fixed_point(again, (size, jnp.ones(()), blank), _FIT, _PASSES)
     return size, rest
 
 

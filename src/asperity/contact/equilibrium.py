@@ -19,6 +19,7 @@ from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real
 from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
+from ..numerics.roots import fixed_point
 from .profile import Sphere
 
 _ENOUGH = 1e-12  # relative change left in the separation
@@ -122,10 +123,7 @@ def solve_equilibrium(
         safe + displacement, jnp.zeros_like(safe), one, one, jnp.zeros(()), jnp.asarray(0)
     )
 
-    def go_on(now: _Step) -> jax.Array:
-        return jnp.logical_not(now.enough) & (now.steps < _STEPS)
-
-    def step(now: _Step) -> _Step:
+    def step(now: _Step) -> tuple[_Step, jax.Array]:
         pressure, slope = pressed(contact, thresholds, now.h)
         right = now.h - safe - _displacement(contact, size, pressure, rings)
         move = nearly_solved(compliance(rings), size / contact.modulus * slope, right)
@@ -137,9 +135,10 @@ def solve_equilibrium(
         after = _Step(now.h - move, pressure, change, rate, off, now.steps + 1)
         lost = (after.steps == _RESTART) & ~after.enough
         begun = _Step(safe, pressure, one, one, off, after.steps)
-        return jax.tree_util.tree_map(lambda a, b: jnp.where(lost, a, b), begun, after)
+        after = jax.tree_util.tree_map(lambda a, b: jnp.where(lost, a, b), begun, after)
+        return after, jnp.where(after.enough, 0.0, 1.0)
 
-    end = jax.lax.while_loop(go_on, step, guess)
+    end, _ = fixed_point(step, guess, 0.0, _STEPS)
     return RingEquilibrium(end.h - safe, end.pressure[:-1], end.off)
 
 

@@ -64,17 +64,19 @@ def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     enough for a few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
-        finer = interface.panel_lengths.grain**-0.5
-        return Resolution(ceil(10 * finer), 16, ceil(2 * finer), error_floor=interface.error_floor)
-    lengths = tuple(float(length) for length in _lengths(interface))
-    return resolution_of(interface, lengths, deforms=deforms)
+        lengths = interface.panel_lengths
+        finer = lengths.grain**-0.5
+        return Resolution(ceil(10 * finer), 16, ceil(2 * finer), error_floor=lengths.error_floor)
+    in_rms = tuple(float(length) for length in _lengths(interface))
+    return resolution_of(interface, in_rms, deforms=deforms)
 
 
 def resolution_of(
     interface: RoughPlanes, lengths: tuple[float, ...], *, deforms: bool
 ) -> Resolution:
     """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
-    panel_lengths, floor = interface.panel_lengths, interface.error_floor
+    panel_lengths = interface.panel_lengths
+    floor = panel_lengths.error_floor
     share, kinked, interaction_range, bends = lengths
     nodes, pieces = panel_lengths.along(share)
     if bends > 1.5:

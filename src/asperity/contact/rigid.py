@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from math import pi
 from typing import Any
 
@@ -25,8 +24,6 @@ from .resolution import LINEAR, Resolution, resolution
 from .rough import RoughContact
 from .scanning_curve import first_out_of_reach, piece_points, pieces_to
 
-Left = tuple[Thresholds, jax.Array, Any]
-
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
 
@@ -38,9 +35,6 @@ class RigidContact(RoughContact):
     ----------
     interface, shape, resolved
         As for :class:`~asperity.contact.rough.RoughContact`.
-    left
-        Memory and separation [m] at the deepest point of the first impact, where asperities
-        that yield have had one, and what it left of them.
 
     Notes
     -----
@@ -49,18 +43,11 @@ class RigidContact(RoughContact):
     which for Gaussian heights raises the order of each height integral by one.
     """
 
-    left: Left | None
-
     def __init__(
-        self,
-        interface: RoughPlanes,
-        shape: Sphere,
-        resolved: Resolution | None = None,
-        left: Left | None = None,
+        self, interface: RoughPlanes, shape: Sphere, resolved: Resolution | None = None
     ) -> None:
         self.interface = interface
         self.shape = shape
-        self.left = left
         self.resolved = resolved or resolution(interface, deforms=False)
 
     @property
@@ -72,34 +59,9 @@ class RigidContact(RoughContact):
         """Panels beyond the interaction range. Without values."""
         return _FAR if self.interface.only_bonded else _FAR_TAIL
 
-    def initial_memory(self) -> Thresholds:
-        return self.interface.initial_memory()
-
-    @property
-    def yields(self) -> bool:
-        return self.interface.yields
-
-    def left_by(self, memory: Thresholds, separation: jax.Array) -> Left:
-        return memory, separation, self.interface.flattened(memory, 1)
-
-    def after(self, left: Left) -> RigidContact:
-        return dataclasses.replace(self, left=left, interface=self.interface.as_flattened(left[2]))
-
     def branches(self) -> tuple[Thresholds, ...]:
         laws = len(self.mechanisms)
-        if not self.yields:
-            return two_branches(laws, lambda threshold: (jnp.asarray(threshold),) * laws)
-        if self.left is None:
-            return (self.initial_memory(),)
-        memory, branch = self.left[0], self.interface.branch_memory
-        unloading = (False, True) if self.interface.hysteretic else (False,)
-        return tuple(branch(memory, apart) for apart in unloading)
-
-    def branch_of(self, memory: Thresholds, unloading: jax.Array) -> jax.Array:
-        if not self.yields:
-            return super().branch_of(memory, unloading)
-        apart = jnp.where(unloading, min(len(self.interface.hysteretic), 1), 0)
-        return jnp.where(self.interface.has_yielded(memory), 1 + apart, 0)
+        return two_branches(laws, lambda threshold: (jnp.asarray(threshold),) * laws)
 
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
         return self._state(separation, self.interface.measure(separation, memory, integrated=1))
@@ -121,8 +83,6 @@ class RigidContact(RoughContact):
 
     def _means(self, near: Near, places: jax.Array, memory: Thresholds) -> Means:
         """At rows of places near one another, on a branch or on the way to it."""
-        if self.yields and self.left is None:
-            return self.interface.first_approach(places, 1)
         return self.interface.measure(places, memory, 1, near)
 
     def _state(self, separation: jax.Array, means: Means) -> State:
@@ -149,8 +109,8 @@ class RigidContact(RoughContact):
         self, memory: Thresholds, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> ScanningCurve | None:
         """Every bond of a law that is held reaches the branch at the same separation."""
-        if not self.interface.hysteretic or (self.yields and self.left is None):
-            return None  # a first approach comes from no reversal
+        if not self.interface.hysteretic:
+            return None
         ends = self.interface.rejoining(memory, unloading)
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
@@ -159,13 +119,9 @@ class RigidContact(RoughContact):
         return ScanningCurve(enter, leave, self._states(near, places, memory))
 
     def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
-        """Ends of pieces on the way; they narrow towards where asperities were pressed flat."""
-        if self.left is None:
-            steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
-            return start + (end - start) * steps
-        low, high = jnp.minimum(start, end), jnp.maximum(start, end)
-        panels = self.left[1] + self.interface.unloading_panels
-        return jnp.append(jnp.clip(panels, low, high), end)
+        """Ends of pieces on the way from a reversal."""
+        steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
+        return start + (end - start) * steps
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
@@ -177,23 +133,7 @@ class RigidContact(RoughContact):
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
-        ends = rough_panels(self, low, high, self.resolved.panels)
-        return ends if self.left is None else self.around_turn(ends, self.left[1])
-
-    def around_turn(self, ends: jax.Array, turn: jax.Array) -> jax.Array:
-        """Ends of panels, with more above the deepest point, where asperities spring back.
-
-        And above where bonds of those that were hardly pressed form or break.
-        """
-        bends = [jnp.asarray(law.breaking_gap, float) for law in self.interface.hysteretic]
-        starts = turn + jnp.stack([jnp.zeros(()), *bends])
-        # Not at the turn itself, where rounding would make a body turn that has just turned, and
-        # where a panel so narrow would have no derivatives but those of rounding.
-        below = turn - 1e-9 * self.interface.scale.rms
-        panels = self.interface.unloading_panels
-        marks = jnp.concatenate([(starts[:, None] + panels).ravel(), starts[1:], below[None]])
-        marks = jnp.where(jnp.abs(marks - turn) <= turn - below, below, marks)
-        return jnp.sort(jnp.concatenate([ends, jnp.clip(marks, ends[0], ends[-1])]))
+        return rough_panels(self, low, high, self.resolved.panels)
 
     @property
     def interaction_range(self) -> jax.Array:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from .._jax import jax
+from ..errors import InputError
 from ..interface.rough_planes import RoughPlanes
-from .contact import Contact
+from .contact import Contact, YieldingContact
 from .profile import Sphere
 
 
@@ -23,6 +24,12 @@ class RoughContact(Contact):
 
     interface: RoughPlanes
     shape: Sphere
+
+    def __check_init__(self) -> None:
+        if self.interface.yields and not isinstance(self, YieldingContact):
+            raise InputError(
+                f"asperities that yield need a RigidPlasticContact; got {type(self).__name__}"
+            )
 
     @property
     def mechanisms(self) -> tuple[str, ...]:

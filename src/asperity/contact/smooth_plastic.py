@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..laws.jkr import Jkr
 from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .contact import Contact, Held, Potential, State, elastic_part
+from .contact import Held, Potential, State, YieldingContact, elastic_part
 from .resolution import Resolution
 from .scanning_curve import STEPS, first_out_of_reach, panels_around
 
@@ -24,7 +24,7 @@ Pressed = tuple[jax.Array, jax.Array]
 """Lowest separation so far [m], inf before the first impact, and a flag for each bond."""
 
 
-class SmoothPlasticContact(Contact):
+class SmoothPlasticContact(YieldingContact):
     """A smooth body on a smooth plane, elastic-plastic, with other laws beside its contact.
 
     Parameters
@@ -95,10 +95,6 @@ class SmoothPlasticContact(Contact):
     def components(self) -> tuple[str, ...]:
         names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
         return ("elastic", *sorted(names.union(self._adhesion)))
-
-    @property
-    def yields(self) -> bool:
-        return True
 
     def initial_memory(self) -> Pressed:
         return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)

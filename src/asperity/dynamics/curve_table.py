@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
-from ..contact.contact import Contact, Memory, State
+from ..contact.contact import Contact, Memory, State, YieldingContact
 from ..numerics.compilation import kept
 from ..numerics.polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, from_points, local
 
@@ -172,7 +172,9 @@ def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
     return _tabulated(contact, low, high, lambda ends, places, values: values)
 
 
-def tabulate_again(contact: Contact, before: Table, memory: Memory, turn: jax.Array) -> Table:
+def tabulate_again(
+    contact: YieldingContact, before: Table, memory: Memory, turn: jax.Array
+) -> Table:
     """Solve a contact that yields as its first impact leaves it.
 
     Parameters

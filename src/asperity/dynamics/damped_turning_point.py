@@ -7,7 +7,7 @@ from typing import Any
 import equinox as eqx
 
 from .._jax import jax, jnp
-from ..numerics.roots import root_between
+from ..numerics.roots import fixed_point, root_between
 from .drag import DampedPiece, move_on
 from .record import Body
 
@@ -27,12 +27,8 @@ def turning_place(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Arr
     ahead = piece.ahead
     close = 4e-15 * jnp.maximum(jnp.abs(piece.enter), jnp.abs(piece.leave))
 
-    def go_on(carry: Any) -> jax.Array:
-        inside, outside, _, count = carry
-        return (jnp.abs(outside - inside) > close) & (count < _SEARCH)
-
     def step(carry: Any) -> Any:
-        inside, outside, place, count = carry
+        inside, outside, place = carry
         moved = move_on(body, piece, kinetic, place)
         alive = moved.passed
         inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
@@ -49,11 +45,12 @@ def turning_place(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Arr
         target = target - 0.05 * ahead * close  # before it by a hair: rounding may end it there
         part = jnp.where(alive, _NEARLY, 0.5)  # it moves on nearly to the end, or there by halves
         target = jnp.where(turns, target, inside + part * (outside - inside))
-        return inside, jnp.where(there, inside, outside), target, count + 1
+        outside = jnp.where(there, inside, outside)
+        return (inside, outside, target), jnp.abs(outside - inside)
 
     middle = 0.5 * (piece.enter + piece.leave)
-    found: jax.Array = jax.lax.while_loop(go_on, step, (piece.enter, piece.leave, middle, 0))[0]
-    return found
+    (inside, _, _), _ = fixed_point(step, (piece.enter, piece.leave, middle), close, _SEARCH)
+    return inside
 
 
 @turning_place.def_jvp

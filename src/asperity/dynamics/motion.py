@@ -7,7 +7,7 @@ from typing import NamedTuple, cast
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
-from ..contact.contact import Contact, Held
+from ..contact.contact import Contact, Held, YieldingContact
 from ..errors import Tolerance
 from .curve_table import (
     CONTACTING,
@@ -52,20 +52,21 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     high = jax.lax.stop_gradient(top + 1e-6 * (top - low))
     # A release so deep that the table would be empty is refused elsewhere; keep it finite here.
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
-    if contact.yields:
+    yields = isinstance(contact, YieldingContact)
+    if isinstance(contact, YieldingContact):
         table = _yielded_table(contact, body, low, high)
     else:
         table = tabulate(contact, low, high)
     if body.rebounds_from is None:
-        reference = find_reference(table, body.load, int(contact.yields))
+        reference = find_reference(table, body.load, int(yields))
     else:
         reference = Reference(body.rebounds_from, jnp.zeros(()), jnp.asarray(True))
-    if many and not contact.yields:
+    if many and not yields:
         table = solve_reversals(contact, body, table, reference)
     return table, reference
 
 
-def _yielded_table(contact: Contact, body: Body, low: jax.Array, high: jax.Array) -> Table:
+def _yielded_table(contact: YieldingContact, body: Body, low: jax.Array, high: jax.Array) -> Table:
     """The curves of a contact that yields, before its first impact and as that leaves it.
 
     Nothing that follows goes deeper than the first impact: it has lost energy since.
@@ -274,7 +275,7 @@ def _impact(
         at_rest=jnp.any(phases.at_rest),
         stopped=fall.stopped | rise.stopped,
         # Flattened tips may pull at once by more than what they press.
-        stuck=jnp.logical_and(contact.yields, risen <= LEAST_RISE * fallen),
+        stuck=jnp.logical_and(isinstance(contact, YieldingContact), risen <= LEAST_RISE * fallen),
         escaped=jnp.logical_not(rise.turn.found),
         time=rise.time,
         height=height,

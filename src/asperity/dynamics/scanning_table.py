@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
-from ..contact.contact import Contact, Held, Memory
+from ..contact.contact import Contact, Held, Memory, YieldingContact
 from ..numerics.compilation import kept
 from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local
 from .curve_table import (
@@ -213,8 +213,9 @@ def inner_pieces(
 def _solved(
     contact: Contact, table: Table, memory: Memory, start: jax.Array, unloading: jax.Array
 ) -> Pieces:
-    now = contact.after(table.left) if table.left else contact
-    curve = now.scanning_curve(memory, start, unloading, (table.ends[0], table.ends[-1]))
+    if table.left and isinstance(contact, YieldingContact):
+        contact = contact.after(table.left)
+    curve = contact.scanning_curve(memory, start, unloading, (table.ends[0], table.ends[-1]))
     if curve is None:
         none = jnp.zeros(0)
         return Pieces(none, none, none, none, jnp.zeros((0, *table.values.shape[2:])))

@@ -46,10 +46,6 @@ class Interface(RoughPlanes):
     def panel_lengths(self) -> PanelLengths:
         return self.heights.panel_lengths
 
-    @property
-    def error_floor(self) -> float:
-        return self.heights.error_floor
-
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         return tuple(separation - gap for gap in self.bond_gaps(separation, memory))
 

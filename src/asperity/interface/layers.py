@@ -63,10 +63,6 @@ class Layers(RoughPlanes):
         return reduce(PanelLengths.and_of, [part.panel_lengths for part in self.parts])
 
     @property
-    def error_floor(self) -> float:
-        return max(part.error_floor for part in self.parts)
-
-    @property
     def interaction_range(self) -> jax.Array:
         return reduce(jnp.maximum, [part.interaction_range for part in self.parts])
 

@@ -104,10 +104,6 @@ class PlasticInterface(RoughPlanes):
         return self.heights.panel_lengths
 
     @property
-    def error_floor(self) -> float:
-        return self.heights.error_floor
-
-    @property
     def mechanisms(self) -> tuple[str, ...]:
         return (PLASTIC, *super().mechanisms)
 

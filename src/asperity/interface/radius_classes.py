@@ -84,10 +84,6 @@ class RadiusClasses(RoughPlanes):
         return self.stacked.panel_lengths
 
     @property
-    def error_floor(self) -> float:
-        return self.stacked.error_floor
-
-    @property
     def interaction_range(self) -> jax.Array:
         return jnp.max(jax.vmap(lambda part: part.interaction_range)(self.stacked))
 

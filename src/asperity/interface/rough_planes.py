@@ -97,11 +97,6 @@ class RoughPlanes(eqx.Module):
         """How finely its curves are cut. Without values."""
 
     @property
-    @abc.abstractmethod
-    def error_floor(self) -> float:
-        """Relative error of curves below which nothing is gained. Without values."""
-
-    @property
     def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which no law pulls by more than 1e-6 of its largest pull."""
         return reduce(jnp.maximum, [law.interaction_range for law in self.laws])

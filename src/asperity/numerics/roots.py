@@ -65,7 +65,7 @@ def root_between(
 def fixed_point(
     step: Callable[[Any], tuple[Any, jax.Array]],
     start: Any,
-    close: float,
+    close: jax.Array | float,
     steps: jax.Array | int,
 ) -> tuple[Any, jax.Array]:
     """What a step leaves as it is, and by how much the last one changed it.

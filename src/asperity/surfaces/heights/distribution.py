@@ -22,9 +22,6 @@ class Heights(eqx.Module):
     rigid paraboloid T_1.
     """
 
-    error_floor: ClassVar[float] = 0.0
-    """Relative error of curves below which nothing is gained: of what is known of the heights."""
-
     cuts: ClassVar[int] = 1
     """Into how many each piece of a quadrature over Gaussian heights is cut."""
 

@@ -15,7 +15,7 @@ from ...numerics.height_integrals import order_ratio
 from ...numerics.polynomials import quintic
 from ...numerics.splines import kernel_rule, kernels
 from .distribution import Heights
-from .panel_length import PanelLengths, fineness_of
+from .panel_length import MEASURED_FLOOR, PanelLengths, fineness_of
 
 SIZES = (0.0, 0.5, 1.0)
 """Powers of the tip radius by which means are weighted."""
@@ -26,7 +26,7 @@ _KEPT = (-1.0, 0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5)
 _NARROW = 0.4
 """Distance of the nodes, in rms times the number of heights to the power -1/5."""
 
-_FINE = PanelLengths(0.45, (0.05, 0.1, 0.45, 0.6))
+_FINE = PanelLengths(0.45, (0.05, 0.1, 0.45, 0.6), MEASURED_FLOOR)
 """What most measured heights need."""
 
 _MARGIN = 4  # nodes above the highest and below the lowest
@@ -79,7 +79,6 @@ class Sampled(Heights):
     ``spread`` is given.
     """
 
-    error_floor: ClassVar[float] = 1e-3
     cuts: ClassVar[int] = 5
 
     share: jax.Array

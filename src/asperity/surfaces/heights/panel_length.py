@@ -18,6 +18,9 @@ PANEL_NODES = 16
 SCANNING_NODES = (6, 8, 12, 16)
 """Nodes of a piece of the way from a reversal to the major branch, one of these."""
 
+MEASURED_FLOOR = 1e-3
+"""Relative error of curves of measured heights below which nothing is gained."""
+
 _PANEL = 2.2  # rms heights
 _SCANNING = (0.1, 0.5, 2.0, 4.5)
 _SCANNING_OF_MEASURED = (0.05, 0.1, 2.0, 4.5)  # many may be as high as the highest
@@ -37,10 +40,13 @@ class PanelLengths(NamedTuple):
         Of a panel.
     scanning
         Of a piece of a scanning curve, for each of :data:`SCANNING_NODES`.
+    error_floor
+        Relative error of the curves below which nothing is gained: of what is known of the heights.
     """
 
     panel: float = _PANEL
     scanning: tuple[float, ...] = _SCANNING
+    error_floor: float = 0.0
 
     @property
     def grain(self) -> float:
@@ -56,7 +62,11 @@ class PanelLengths(NamedTuple):
     def and_of(self, other: PanelLengths) -> PanelLengths:
         """What both ask for."""
         scanning = zip(self.scanning, other.scanning, strict=True)
-        return PanelLengths(min(self.panel, other.panel), tuple(min(pair) for pair in scanning))
+        return PanelLengths(
+            min(self.panel, other.panel),
+            tuple(min(pair) for pair in scanning),
+            max(self.error_floor, other.error_floor),
+        )
 
 
 def fineness_of(share: np.ndarray, rms: float) -> PanelLengths:
@@ -92,6 +102,7 @@ def fineness_of(share: np.ndarray, rms: float) -> PanelLengths:
     return PanelLengths(
         longest(PANEL_NODES, _PANEL, _CLOSE),
         tuple(longest(nodes, most, _CLOSE_ON_SCANNING) for nodes, most in scanning),
+        MEASURED_FLOOR,
     )
 
 

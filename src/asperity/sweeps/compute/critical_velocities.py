@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 
 from asperity._jax import jax, jnp
+from asperity.contact import YieldingContact
 from asperity.critical_velocity import LAUNCH_ERROR, launch_separation
 from asperity.dynamics import Body, Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
@@ -45,7 +46,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     interaction_range = jax.vmap(lambda batch: jnp.asarray(batch.contact.interaction_range))(cases)
     release = launch_separation(
         np.asarray(interaction_range), solution.measures["outset"][some],
-        np.asarray(cases.body.release), yields=cases.contact.yields,
+        np.asarray(cases.body.release), yields=isinstance(cases.contact, YieldingContact),
     )  # fmt: skip
     count = group.rows.size
     width = Steps.of_batch(group.batch, count).width if count <= FEW_CASES else None
