@@ -18,6 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import jax
 import jax.numpy as jnp
+import jaxlib.version
 import scipy.linalg  # noqa: F401
 import threadpoolctl
 
@@ -30,7 +31,9 @@ for _library in threadpoolctl.ThreadpoolController().lib_controllers:
         _library.set_num_threads(1)
 
 if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
-    _cache = Path(platformdirs.user_cache_dir("asperity", appauthor=False)) / "jax"
+    # What another version of jaxlib compiled can end the process that reads it.
+    _cache = Path(platformdirs.user_cache_dir("asperity", appauthor=False))
+    _cache /= f"jaxlib-{jaxlib.version.__version__}"
     jax.config.update("jax_compilation_cache_dir", str(_cache))
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
 jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)

@@ -37,7 +37,7 @@ from asperity.cli.arguments import (
     Version,
     VersionJson,
 )
-from asperity.cli.checking import doctor
+from asperity.cli.doctor import doctor
 from asperity.cli.measuring import add_surfaces_to
 from asperity.cli.studying import add_to
 from asperity.cli.terminal import Commands

@@ -89,3 +89,26 @@ def requirements() -> list[str]:
         return requires("asperity") or []
     except PackageNotFoundError:
         return []
+
+
+def unmet(lines: list[str] | None = None) -> list[str]:
+    """Requirements that are not met, a line each; those of an extra count where it is installed.
+
+    Parameters
+    ----------
+    lines : list of str, optional
+        Requirements in the form of a package's metadata; this package's unless given.
+    """
+    from packaging.requirements import Requirement
+
+    found = []
+    for wanted in map(Requirement, requirements() if lines is None else lines):
+        optional = "extra" in str(wanted.marker or "")
+        if wanted.marker is not None and not optional and not wanted.marker.evaluate():
+            continue  # of another system or Python
+        number = version_of(wanted.name)
+        if number is None and not optional:
+            found.append(f"{wanted.name}{wanted.specifier} is not installed")
+        elif number is not None and not wanted.specifier.contains(number, prereleases=True):
+            found.append(f"{wanted.name}{wanted.specifier} is wanted; {number} is installed")
+    return found

@@ -1,0 +1,86 @@
+"""The compile cache: code that JAX compiled, and traced programs of this package beside it."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from asperity.errors import OutputError
+
+_CODE = re.compile(r".+-[0-9a-f]{64}-(cache|atime)")
+_PROGRAM = re.compile(r"[0-9a-f]{64}\.(jax|\d+\.\d+)")
+_TRIAL = """
+from asperity._jax import jax, jnp
+from asperity.cli.compiling import compilation
+jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+compilation()
+jax.jit(lambda x: jnp.sin(x @ x))(jnp.zeros((3, 3))).block_until_ready()
+print(compilation().asked - compilation().read)
+"""
+
+
+def folder() -> Path | None:
+    """Folder of the cache; None where it is off."""
+    from asperity._jax import jax
+
+    named = jax.config.jax_compilation_cache_dir  # type: ignore[attr-defined]
+    return Path(named) if named else None
+
+
+def size_of(place: Path) -> tuple[int, int]:
+    """Pieces of code and traced programs that a folder keeps, and their size [bytes]."""
+    sizes = {file: file.stat().st_size for file in _kept(place) if file.exists()}
+    return sum(not file.name.endswith("-atime") for file in sizes), sum(sizes.values())
+
+
+def room_for(place: Path) -> int:
+    """Room on the disk of a folder [bytes], whether it is there yet or not."""
+    there = next(each for each in (place, *place.parents) if each.exists())
+    return shutil.disk_usage(there).free
+
+
+def fault_of(place: Path) -> str | None:
+    """Why a start does not find in a folder what one before compiled; None where it does.
+
+    A small program is compiled in two processes, one after the other. On some processors JAX
+    writes its cache and refuses, without a word, to read it.
+    """
+    env = {**os.environ, "JAX_COMPILATION_CACHE_DIR": str(place)}
+    for _ in range(2):
+        ran = subprocess.run(
+            [sys.executable, "-c", _TRIAL], env=env, capture_output=True, text=True, check=False
+        )
+        if ran.stdout.strip() == "0":
+            return None
+    said = [line for line in ran.stderr.splitlines() if "rror" in line]
+    return said[-1].rpartition("Error: ")[2] if said else "what was written is not read again"
+
+
+def empty(place: Path) -> tuple[int, int]:
+    """Remove what a cache keeps, and nothing else; number of entries, and their size [bytes].
+
+    Raises
+    ------
+    OutputError
+        Where a file cannot be removed.
+    """
+    before = size_of(place)
+    for file in _kept(place):
+        try:
+            file.unlink(missing_ok=True)
+        except OSError as error:
+            reason = error.strerror or error
+            raise OutputError(f"{file}: cannot be removed: {reason}", path=str(file)) from None
+    return before
+
+
+def _kept(place: Path) -> Iterator[Path]:
+    """Files of the cache; what else is in the folder is somebody's own."""
+    for where, named in ((place, _CODE), (place / "programs", _PROGRAM)):
+        if where.is_dir() and os.access(where, os.R_OK | os.X_OK):
+            yield from (file for file in sorted(where.iterdir()) if named.fullmatch(file.name))
