@@ -17,7 +17,6 @@ from asperity.cli.arguments import (
     Depth,
     Folder,
     Force,
-    InstallCompletion,
     Json,
     Load,
     Materials,
@@ -26,7 +25,6 @@ from asperity.cli.arguments import (
     Published,
     Quiet,
     Refit,
-    ShowCompletion,
     Size,
     SpeedPoints,
     Speeds,
@@ -48,7 +46,6 @@ app = typer.Typer(
     help="Impact of a small body on a rough surface: bounce or stick, and where the energy goes.",
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    add_completion=False,
     no_args_is_help=True,
 )
 
@@ -58,13 +55,11 @@ def asperity(
     context: typer.Context,
     version: Version = False,
     as_json: VersionJson = False,
-    show_completion: ShowCompletion = None,
-    install_completion: InstallCompletion = None,
 ) -> None:
     """Impact of a small body on a rough surface: bounce or stick, and where the energy goes."""
     from asperity.cli.program_options import answer
 
-    answer(context, version, as_json, show_completion, install_completion)
+    answer(context, version, as_json)
 
 
 @app.command()

@@ -111,26 +111,6 @@ Version = Annotated[
     bool, typer.Option("--version", help="Print the version, and those of the stack.")
 ]
 VersionJson = Annotated[bool, typer.Option("--json", help="With --version: one JSON object.")]
-ShowCompletion = Annotated[
-    str | None,
-    typer.Option(
-        shell_completion.SHOW,
-        metavar="[SHELL]",
-        help="Print the script that completes words in bash, zsh or fish.",
-        show_default=False,
-        autocompletion=shell_completion.one_of(*shell_completion.SHELLS),
-    ),
-]
-InstallCompletion = Annotated[
-    str | None,
-    typer.Option(
-        shell_completion.INSTALL,
-        metavar="[SHELL]",
-        help="Install it for this user.",
-        show_default=False,
-        autocompletion=shell_completion.one_of(*shell_completion.SHELLS),
-    ),
-]
 
 
 def optional(

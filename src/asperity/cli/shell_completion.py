@@ -1,4 +1,4 @@
-"""Completion in a shell: its script, and what can stand where a value is typed.
+"""Completion in a shell: what can stand where a value is typed.
 
 Imports the standard library and typer alone: a shell asks at every press of the key.
 """
@@ -12,94 +12,14 @@ from pathlib import Path
 
 import typer
 
-from asperity.errors import InputError, OutputError
-
-SHELLS = ("bash", "zsh", "fish")
-"""Shells that have a script."""
-
-SHOW, INSTALL = "--show-completion", "--install-completion"
-
-ASKED = "_ASPERITY_COMPLETE"
-"""Variable of the environment in which a shell asks for completions."""
-
 RECORDS = (".nc", ".nc4", ".cdf")
 STORE = ".zarr"
 
-_DETECT = ""  # stands for the shell that the command runs in
 _PLAIN = re.compile(r"[\w./+,@%-]+")  # a shell would split or expand any other name
 _CASES = Path(__file__).parents[1] / "config" / "cases"
 
 Complete = Callable[[str], list[str]]
 """What can follow the beginning of a word."""
-
-
-def with_shell(arguments: Sequence[str]) -> list[str]:
-    """Arguments in which an option for completion always has a value.
-
-    The shell's name may be left out, which the parser of options cannot express.
-    """
-    given: list[str] = []
-    for position, argument in enumerate(arguments):
-        given.append(argument)
-        following = arguments[position + 1 : position + 2]
-        if argument in (SHOW, INSTALL) and (not following or following[0].startswith("-")):
-            given.append(_DETECT)
-    return given
-
-
-def print_script(context: typer.Context, shell: str) -> None:
-    """Print what makes a shell complete the program's arguments, and end.
-
-    Raises
-    ------
-    InputError
-        Where there is no script for this shell.
-    """
-    from typer.completion import show_callback
-
-    show_callback(context, None, _known(shell, SHOW))  # type: ignore[arg-type]
-
-
-def install_script(context: typer.Context, shell: str) -> None:
-    """Put the script where the shell reads it, and end.
-
-    Raises
-    ------
-    InputError
-        Where there is no script for this shell.
-    OutputError
-        Where it cannot be written.
-    """
-    from typer.completion import install_callback
-
-    name = _known(shell, INSTALL)
-    try:
-        install_callback(context, None, name)  # type: ignore[arg-type]
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        raise OutputError(f"{where}cannot be written: {error.strerror or error}") from None
-
-
-def _known(shell: str, option: str) -> str:
-    """The name of a shell that has a script; the one in use where none is given."""
-    name = _used(option) if shell == _DETECT else shell
-    if name not in SHELLS:
-        *rest, last = SHELLS
-        raise InputError(f"`{option}` must be {', '.join(rest)} or {last}; got {name!r}")
-    return name
-
-
-def _used(option: str) -> str:
-    import shellingham  # a requirement of typer, without types
-
-    try:
-        name: str = shellingham.detect_shell()[0]
-    except (shellingham.ShellDetectionFailure, OSError):
-        raise InputError(
-            f"`{option}` must name the shell, {' '.join(SHELLS)}, where it cannot be told; "
-            "got nothing"
-        ) from None
-    return name
 
 
 def case(incomplete: str) -> list[str]:

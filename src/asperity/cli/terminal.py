@@ -15,7 +15,6 @@ from typing import Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
-from asperity.cli.shell_completion import ASKED, with_shell
 from asperity.errors import (
     EXIT_INPUT,
     EXIT_INTERRUPTED,
@@ -43,11 +42,6 @@ class Terminated(KeyboardInterrupt):
 
 class Commands(TyperGroup):
     """The commands, with the project's errors as one line and an exit code."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the program's own options."""
-        parsed: list[str] = super().parse_args(ctx, with_shell(args))
-        return parsed
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that the arguments name."""
@@ -156,10 +150,6 @@ def tell(text: str) -> None:
 
 def prepare() -> None:
     """Set up signals, streams and warnings for a program of its own."""
-    if ASKED in os.environ:
-        from typer.completion import completion_init  # type: ignore[attr-defined]
-
-        completion_init()
     signal.signal(signal.SIGTERM, raise_stop)
     for stream in (sys.stdout, sys.stderr):
         if stream is not None and hasattr(stream, "reconfigure"):
@@ -183,8 +173,9 @@ def leave(command: Any) -> NoReturn:
         code = end.code if isinstance(end.code, int) else 1
     except KeyboardInterrupt as stop:
         code = exit_code_of(stop)
-    except OSError as error:  # the command line's own text, such as its help
-        code = _fail(f"standard output: cannot be written: {error.strerror or error}", EXIT_OUTPUT)
+    except OSError as error:  # typer's own text, such as help, or its script of completion
+        where = error.filename or "standard output"
+        code = _fail(f"{where}: cannot be written: {error.strerror or error}", EXIT_OUTPUT)
         _abandon_stdout()
     if code in (EXIT_INTERRUPTED, EXIT_TERMINATED):
         os._exit(code)
