@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from asperity.sweeps.study.blocks import Blocks
 from asperity.sweeps.study.columns import REASON_SIZE, Column, columns
 
 
@@ -35,6 +36,9 @@ class FakeStudy:
     keep_impacts: int = 2
 
     warnings: tuple[str, ...] = ()
+    dims: tuple[str, ...] = ("case",)
+    axes: tuple[Any, ...] = ()
+    sample: None = None
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -44,11 +48,19 @@ class FakeStudy:
         return {"impact": self.keep_impacts, "byte": REASON_SIZE}[along]
 
     @property
+    def shape(self) -> tuple[int]:
+        return (self.size,)
+
+    @property
+    def blocks(self) -> Blocks:
+        return Blocks(self.shape, (self.task_size,))
+
+    @property
     def tasks(self) -> int:
-        return -(-self.size // self.task_size)
+        return self.blocks.count
 
     def task(self, number: int) -> range:
-        return range(number * self.task_size, min(self.size, (number + 1) * self.task_size))
+        return self.blocks.cases(number)
 
     @property
     def canonical(self) -> str:

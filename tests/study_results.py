@@ -7,6 +7,7 @@ import numpy as np
 
 from asperity.errors import ENDS, Outcome
 from asperity.sweeps.store.store import Store
+from asperity.sweeps.store.variables import drawn
 from asperity.sweeps.study.study import Study, parse
 
 REST, FAILED = ENDS.index(Outcome.REST), ENDS.index(Outcome.FAILED)
@@ -85,6 +86,7 @@ def stored(
     study = parse(text)
     store = Store.create(folder / "study.zarr", study)
     for number in range(study.tasks if tasks is None else tasks):
-        store.write(number, columns_of(study, study.task(number), failed))
+        cases = study.task(number)
+        store.write(number, columns_of(study, cases, failed) | drawn(study, cases))
     store.finish()
     return store.path

@@ -25,6 +25,7 @@ from asperity.cli.terminal import WIDTH, say, tell, wrapped
 from asperity.cli.working import _bar_on
 from asperity.config import builtin
 from asperity.sweeps.store.store import Store
+from asperity.sweeps.store.variables import drawn
 from asperity.sweeps.study.study import parse
 from fake_solve import solver
 from study_results import GRID, SAMPLE, SPEEDS, columns_of
@@ -66,7 +67,8 @@ def store(name: str, text: str, failed: frozenset[int] = frozenset()) -> str:
     study = parse(text)
     made = Store.create(Path(name), study)
     for task in range(study.tasks):
-        made.write(task, columns_of(study, study.task(task), failed))
+        cases = study.task(task)
+        made.write(task, columns_of(study, cases, failed) | drawn(study, cases))
     made.close()
     return name
 

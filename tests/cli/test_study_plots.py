@@ -110,10 +110,27 @@ def test_cases_not_computed_are_counted_and_empty(tmp_path: Path):
     assert study.tasks > 1
     found = open_study(stored(tmp_path, text, tasks=1))
     assert found.attrs["cases"] == study.size
-    assert found.attrs["computed"] == study.task_size
-    rest = found["restitution"].values.reshape(study.size)[study.task_size :]
+    done = len(study.task(0))
+    assert found.attrs["computed"] == done
+    rest = found["restitution"].values.reshape(study.size)[done:]
     assert np.all(np.isnan(rest))
-    assert np.all(found["captured"].values.ravel()[study.task_size :] == -1)
+    assert np.all(found["captured"].values.ravel()[done:] == -1)
+
+
+@pytest.mark.parametrize("name", ["grid", "many", "sample"])
+def test_xarray_alone_opens_a_store_with_coordinates_and_units(stores: dict[str, Path], name: str):
+    found, whole = xarray.open_zarr(stores[name], chunks=None), open_study(stores[name])
+    assert set(found.coords) == set(whole.coords)
+    for key in (*whole.coords, *whole.data_vars):
+        assert found[key].dims == whole[key].dims
+        assert found[key].attrs.get("units") == whole[key].attrs.get("units")
+        assert found[key].attrs["long_name"] == whole[key].attrs["long_name"]
+        values = found[key].values
+        if whole[key].dtype == object and "flag_meanings" in found[key].attrs:
+            values = np.array(found[key].attrs["flag_meanings"].split())[values]
+        np.testing.assert_array_equal(values.astype(whole[key].dtype), whole[key].values)
+    for key in ("outcome", "captured"):
+        assert found[key].attrs["flag_meanings"] == whole[key].attrs["flag_meanings"]
 
 
 def test_an_unknown_column_is_refused_with_the_one_meant(stores: dict[str, Path]):
@@ -132,7 +149,7 @@ def drop_array(store: Path) -> None:
 
 def make_newer(store: Path) -> None:
     about = json.loads((store / "zarr.json").read_text())
-    about["attributes"]["schema"] = 3
+    about["attributes"]["schema"] = 4
     (store / "zarr.json").write_text(json.dumps(about))
 
 
@@ -141,7 +158,7 @@ def make_newer(store: Path) -> None:
     [
         (damage_chunk, "restitution.*--repair"),
         (drop_array, "restitution.*--repair"),
-        (make_newer, "schema.*got 3"),
+        (make_newer, "schema.*got 4"),
     ],
 )
 def test_a_harmed_store_is_refused_with_what_to_do(

@@ -64,13 +64,14 @@ def test_a_chunk_has_the_bytes_that_zarr_writes(path: Path, tmp_path: Path):
 
 def test_a_store_describes_itself(path: Path):
     group = zarr.open_group(path, mode="r")
-    assert group.attrs["schema"] == 2
+    assert group.attrs["schema"] == 3
     assert group.attrs["study"] == STUDY.canonical
     assert group.attrs["fingerprint"] == STUDY.fingerprint
     assert group["restitution"].metadata.dimension_names == ("case", "impact")
-    assert group["time_to_rest"].attrs["unit"] == "s"
-    codes = group["outcome"].attrs["codes"]
-    assert [codes[outcome.value] for outcome in ENDS] == list(range(len(ENDS)))
+    assert group["time_to_rest"].attrs["units"] == "s"
+    told = group["outcome"].attrs
+    meanings = dict(zip(told["flag_meanings"].split(), told["flag_values"], strict=True))
+    assert [meanings[outcome.value] for outcome in ENDS] == list(range(len(ENDS)))
 
 
 def test_a_store_gives_back_its_columns(path: Path):
@@ -216,12 +217,12 @@ def change(file: Path, **values: object) -> None:
         file.write_text("".join([json.dumps(json.loads(first) | values) + "\n", *rest]))
 
 
-def test_a_newer_schema_is_refused(path: Path):
+def test_another_schema_is_refused(path: Path):
     change(manifest_of(path), schema=4)
-    with pytest.raises(InputError, match="`schema` must be 2; got 4 - a newer asperity"):
+    with pytest.raises(InputError, match="`schema` must be 3; got 4 - a newer asperity"):
         Store.open(path)
-    change(path / "zarr.json", schema=3)
-    with pytest.raises(InputError, match="`schema` must be 2; got 3 - a newer asperity"):
+    change(path / "zarr.json", schema=2)
+    with pytest.raises(InputError, match="`schema` must be 3; got 2 - an earlier asperity"):
         Store.open(path)
 
 

@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 from asperity.config import builtin, load
 from asperity.config.resolve import resolve
 from asperity.errors import InputError
+from asperity.sweeps.study.blocks import Blocks
 from asperity.sweeps.study.columns import DEFAULT_KEEP, REASON_SIZE
+from asperity.sweeps.study.structure import task_size
 from asperity.sweeps.study.study import parse, read
 from study_texts import GRID, HUMIDITY, RMS, sample, study
 
@@ -217,13 +219,27 @@ def test_quick_case_is_the_case_of_its_file(data):
 
 def test_tasks_hold_every_case_once_in_order():
     found = study(f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 20_001}}')
-    assert found.task_size == 4096
+    assert task_size(found) == 4096
+    assert [len(found.task(i)) for i in range(found.tasks)] == [4001, 4001, 4001, 4001, 3997]
     cases = itertools.chain.from_iterable(found.task(i) for i in range(found.tasks))
     assert list(cases) == list(range(20_001))
-    assert len(found.task(found.tasks - 1)) == 20_001 - 4 * 4096
     for number in (-1, found.tasks):
         with pytest.raises(IndexError):
             found.task(number)
+
+
+@given(st.lists(st.integers(1, 30), min_size=1, max_size=4), st.integers(1, 500))
+def test_a_block_is_a_part_of_the_grid_whose_cases_follow_each_other(shape, most):
+    blocks, numbers = Blocks.of(tuple(shape), most), np.arange(math.prod(shape)).reshape(shape)
+    assert blocks.largest <= most
+    begun = 0
+    for task in range(blocks.count):
+        sides = zip(blocks.index(task), blocks.block, blocks.extent(task), strict=True)
+        part = numbers[tuple(slice(at * side, at * side + size) for at, side, size in sides)]
+        assert part.ravel().tolist() == list(blocks.cases(task))
+        assert blocks.cases(task).start == begun
+        begun = blocks.cases(task).stop
+    assert begun == numbers.size
 
 
 ROUGH = 'base = "published-exact"'
@@ -255,7 +271,7 @@ ROUGH = 'base = "published-exact"'
     ],
 )  # fmt: skip
 def test_task_has_as_many_cases_as_their_slowest_kind_allows(line, head, size):
-    assert study(line, head).task_size == size
+    assert task_size(study(line, head)) == size
 
 
 def test_smooth_body_is_quick_on_a_half_space(tmp_path):
@@ -264,7 +280,7 @@ def test_smooth_body_is_quick_on_a_half_space(tmp_path):
     (tmp_path / "map.toml").write_text(
         'base = "drop.toml"\n[axes]\n"impact.speed" = {values=["1 m/s", "2 m/s"]}'
     )
-    assert read(str(tmp_path / "map.toml")).task_size == 4096
+    assert task_size(read(str(tmp_path / "map.toml"))) == 4096
 
 
 def test_columns_and_widths_are_what_the_study_keeps():

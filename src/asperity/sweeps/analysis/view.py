@@ -12,7 +12,7 @@ import numpy as np
 from asperity.config.problems import did_you_mean
 from asperity.errors import InputError
 from asperity.results.summary import amount
-from asperity.sweeps.store.dataset import CASE
+from asperity.sweeps.study.definition import CASE
 from asperity.units import quantity, shown
 
 if TYPE_CHECKING:

@@ -101,8 +101,9 @@ def evaluate(
     """
     count = next(iter(values.values())).shape[0]
     parts = []
-    for begin in range(0, count, study.task_size):
-        some = {key: array[begin : begin + study.task_size] for key, array in values.items()}
+    most = study.blocks.largest
+    for begin in range(0, count, most):
+        some = {key: array[begin : begin + most] for key, array in values.items()}
         columns, effort = _computed(study, some, Clock())
         parts.append(columns)
         if progress is not None:

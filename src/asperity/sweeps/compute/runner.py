@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from asperity.sweeps.store.variables import drawn
+
 if TYPE_CHECKING:
     from asperity.sweeps.compute.batch import Effort
     from asperity.sweeps.compute.study_warnings import Warned
@@ -188,7 +190,7 @@ def fill(
         if missing:
             with contextlib.closing(generator_of(runner(study, missing, stop))) as answers:
                 for task, columns, effort in answers:
-                    store.write(task, columns)
+                    store.write(task, columns | drawn(study, study.task(task)))
                     tally = tally.plus(effort, time.monotonic() - began)
                     if progress is not None:
                         progress(task, effort, tally)

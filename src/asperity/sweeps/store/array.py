@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.errors import ENDS, InputError
+from asperity.errors import InputError
 from asperity.sweeps.store.manifest import SCHEMA, refuse_newer
+from asperity.sweeps.store.variables import attributes, axis_column, coordinates
+from asperity.sweeps.study.blocks import Blocks
 from asperity.sweeps.study.columns import Column
 
 if TYPE_CHECKING:
@@ -28,57 +31,47 @@ class Array:
 
     Parameters
     ----------
-    shape : tuple of int
-        Cases, and values a case where there are several.
-    task_size : int
-        Cases of a chunk.
+    blocks : Blocks
+        The cases, and how they are cut into chunks.
+    width : tuple of int
+        Number of values of a case where there are several; else empty.
     dtype : numpy.dtype
         Little-endian.
     fill : float or int
         What stands where nothing was computed.
     """
 
-    shape: tuple[int, ...]
-    task_size: int
+    blocks: Blocks
+    width: tuple[int, ...]
     dtype: np.dtype
     fill: float | int
 
-    @property
-    def size(self) -> int:
-        """Number of cases."""
-        return self.shape[0]
-
     def key(self, task: int) -> str:
         """Name of a task's chunk."""
-        return ".".join(["c", str(task), *("0" for _ in self.shape[1:])])
-
-    def cases(self, task: int) -> int:
-        """Cases of a task; the last may have fewer."""
-        return min(self.task_size, self.size - task * self.task_size)
+        return ".".join(map(str, ["c", *self.blocks.index(task), *(0 for _ in self.width)]))
 
     def chunk(self, task: int, values: np.ndarray) -> np.ndarray:
-        """Values as they lie in a chunk, the last one filled up.
+        """Values as they lie in a chunk, one at an end filled up.
 
         Raises
         ------
         ValueError
             Where their type or shape is another.
         """
-        shape = (self.cases(task), *self.shape[1:])
+        extent = self.blocks.extent(task)
+        shape = (len(self.blocks.cases(task)), *self.width)
         if values.shape != shape or values.dtype != self.dtype:
             raise ValueError(
                 f"values must be {self.dtype} of shape {shape}; got {values.dtype}, {values.shape}"
             )
-        if shape[0] == self.task_size:
-            return np.ascontiguousarray(values, dtype=self.dtype)
-        whole = np.full((self.task_size, *self.shape[1:]), self.fill, self.dtype)
-        whole[: shape[0]] = values
+        whole = np.full((*self.blocks.block, *self.width), self.fill, self.dtype)
+        whole[tuple(map(slice, extent))] = values.reshape(*extent, *self.width)
         return whole
 
     def values(self, task: int, content: bytes) -> np.ndarray:
         """Values of a task from its chunk, shape (cases[, width])."""
-        whole = np.frombuffer(content, self.dtype).reshape(self.task_size, *self.shape[1:])
-        return whole[: self.cases(task)]
+        whole = np.frombuffer(content, self.dtype).reshape(*self.blocks.block, *self.width)
+        return whole[tuple(map(slice, self.blocks.extent(task)))].reshape(-1, *self.width)
 
 
 class Group(NamedTuple):
@@ -90,34 +83,48 @@ class Group(NamedTuple):
 
 
 def metadata(study: Study) -> dict[str, bytes]:
-    """The metadata files of a study's store, by name; they follow from the study alone."""
+    """Metadata of a study's store, and the values of a grid's axes, by file; by the study alone."""
     import zarr
     from zarr.codecs import ZstdCodec
 
     files: dict[str, Any] = {}
-    attributes = {"schema": SCHEMA, "study": study.canonical, "fingerprint": study.fingerprint}
-    group = zarr.create_group(zarr.storage.MemoryStore(files), attributes=attributes, zarr_format=3)
-    for column in study.columns:
+    options: dict[str, Any] = {
+        "compressors": ZstdCodec(level=LEVEL, checksum=True),
+        "chunk_key_encoding": {"name": "default", "separator": "."},
+    }
+    about = {"schema": SCHEMA, "study": study.canonical, "fingerprint": study.fingerprint}
+    if study.sample is not None:
+        about["coordinates"] = " ".join(axis.key for axis in study.axes)
+    memory = zarr.storage.MemoryStore(files)
+    group = zarr.create_group(memory, attributes=about, zarr_format=3)
+    for column in stored(study):
         along = (study.width(column.along),) if column.along else ()
         group.create_array(
             column.name,
-            shape=(study.size, *along),
-            chunks=(study.task_size, *along),
+            shape=(*study.shape, *along),
+            chunks=(*study.blocks.block, *along),
             dtype=column.dtype,
             fill_value=column.fill,
-            compressors=ZstdCodec(level=LEVEL, checksum=True),
-            dimension_names=("case", column.along) if along else ("case",),
-            chunk_key_encoding={"name": "default", "separator": "."},
-            attributes=_attributes(column),
+            dimension_names=(*study.dims, *((column.along,) if along else ())),
+            attributes=attributes(column, study.axes),
+            **options,
         )
+    if study.sample is None:
+        for key, (dims, values, told) in coordinates(study).items():
+            text = values.dtype == object
+            made = group.create_array(
+                key,
+                shape=values.shape,
+                dtype="string" if text else values.dtype,
+                dimension_names=dims,
+                attributes=told,
+                **options,
+            )
+            made[:] = values.astype(str).astype(object) if text else values
+    with warnings.catch_warnings():  # xarray looks for it, and zarr warns that others may not
+        warnings.filterwarnings("ignore", message="Consolidated metadata")
+        zarr.consolidate_metadata(memory)
     return {name: content.to_bytes() for name, content in files.items()}
-
-
-def _attributes(column: Column) -> dict[str, Any]:
-    about: dict[str, Any] = {"unit": column.unit, "meaning": column.meaning}
-    if column.name == "outcome":
-        about["codes"] = {outcome.value: code for code, outcome in enumerate(ENDS)}
-    return about
 
 
 def read_group(path: Path) -> Group:
@@ -143,19 +150,26 @@ def read_group(path: Path) -> Group:
             f"{path}: must be the store of a sweep; it is another zarr group", file=str(path)
         )
     refuse_newer(path, about["schema"])
-    folders = sorted(file.parent.name for file in path.glob(f"*/{METADATA}"))
-    arrays = {name: read_array(path / name / METADATA) for name in folders}
-    if "outcome" not in arrays or len({(a.size, a.task_size) for a in arrays.values()}) > 1:
+    dims, arrays = _dims(path / "outcome" / METADATA), {}
+    for file in sorted(path.glob(f"*/{METADATA}")):
+        if (name := file.parent.name) not in dims:  # the values of an axis
+            arrays[name] = read_array(file, len(dims))
+    if len({array.blocks for array in arrays.values()}) > 1:
         raise InputError(
-            f"{path}: must have arrays of one length, `outcome` among them; "
-            f"got {', '.join(arrays) or 'none'}",
-            file=str(path),
+            f"{path}: must have arrays of one shape; got {', '.join(arrays)}", file=str(path)
         )
     return Group(str(about["fingerprint"]), str(about["study"]), arrays)
 
 
-def read_array(file: Path) -> Array:
+def read_array(file: Path, dims: int | None = None) -> Array:
     """What an array's metadata say.
+
+    Parameters
+    ----------
+    file : Path
+        Its metadata.
+    dims : int, optional
+        Number of dimensions of the cases, all of them unless given.
 
     Raises
     ------
@@ -168,34 +182,50 @@ def read_array(file: Path) -> Array:
         chunk = tuple(int(n) for n in about["chunk_grid"]["configuration"]["chunk_shape"])
         dtype = np.dtype(about["data_type"]).newbyteorder("<")
         fill = about["fill_value"]
-        if not shape or shape[0] < 1 or chunk[0] < 1 or chunk[1:] != shape[1:]:
+        if not shape or len(chunk) != len(shape) or min(*shape, *chunk) < 1:
             raise ValueError(f"shape {shape} in chunks of {chunk}")
-        return Array(shape, chunk[0], dtype, np.nan if fill == "NaN" else fill)
+        blocks = Blocks(shape[:dims], chunk[:dims])
+        width = () if dims is None else shape[dims:]
+        return Array(blocks, width, dtype, np.nan if fill == "NaN" else fill)
     except (KeyError, TypeError, ValueError) as error:
-        raise torn(file, str(error)) from None
+        raise corrupt(file, str(error)) from None
+
+
+def stored(study: Study) -> tuple[Column, ...]:
+    """The columns of a store: those of the study, and the values of the axes of a sample."""
+    return (*study.columns, *(map(axis_column, study.axes) if study.sample is not None else ()))
+
+
+def _dims(file: Path) -> tuple[str, ...]:
+    """Names of the dimensions of a column without any of its own."""
+    try:
+        return tuple(map(str, _json(file)["dimension_names"]))
+    except (KeyError, TypeError) as error:
+        raise corrupt(file, str(error)) from None
 
 
 def _json(file: Path) -> dict[str, Any]:
     try:
         about = json.loads(file.read_bytes())
     except OSError as error:
-        raise torn(file, error.strerror or str(error)) from error
+        raise corrupt(file, error.strerror or str(error)) from error
     except ValueError as error:
-        raise torn(file, str(error)) from None
+        raise corrupt(file, str(error)) from None
     if not isinstance(about, dict):
-        raise torn(file, "no table")
+        raise corrupt(file, "no table")
     return about
 
 
 def same(file: Path, content: bytes) -> bool:
-    """Whether a metadata file says what it should, in whatever layout."""
+    """Whether a file says what it should; metadata in whatever layout."""
     try:
-        return bool(json.loads(file.read_bytes()) == json.loads(content))
+        found = file.read_bytes()
+        return found == content or bool(json.loads(found) == json.loads(content))
     except (OSError, ValueError):
         return False
 
 
-def torn(file: Path, reason: str) -> InputError:
+def corrupt(file: Path, reason: str) -> InputError:
     """What to say of metadata that cannot be read."""
     return InputError(
         f"{file}: cannot be read: {reason} - `asperity sweep STUDY --repair` writes it again",

@@ -40,5 +40,5 @@ def first_failure(store: Store) -> tuple[int, str] | None:
         if failed.any():
             row = int(np.argmax(failed))
             text = store.read(task, "reason")[row].tobytes().rstrip(b"\0")
-            return task * store.task_size + row, text.decode(errors="replace")
+            return store.blocks.cases(task)[row], text.decode(errors="replace")
     return None

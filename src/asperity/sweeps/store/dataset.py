@@ -6,22 +6,20 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from asperity.config.problems import did_you_mean
 from asperity.errors import ENDS, InputError, Outcome
 from asperity.sweeps.store.store import REPAIR, Store
+from asperity.sweeps.store.variables import Variable, attributes, coordinates
 from asperity.sweeps.study.columns import Column
-from asperity.sweeps.study.study import Axis, Study, parse
+from asperity.sweeps.study.study import Study, parse
 from asperity.units import shown
 
 if TYPE_CHECKING:
     import xarray
-
-CASE = "case"
-"""Dimension of the cases of a sample; a grid has its axes' keys instead."""
 
 
 @dataclass(frozen=True)
@@ -155,16 +153,14 @@ def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset
     import xarray
 
     columns = {column.name: column for column in study.columns}
-    coordinates = _coordinates(study)
-    dimensions = tuple(axis.key for axis in study.axes) if study.sample is None else (CASE,)
     variables = {
-        name: _variable(columns[name], column, dimensions, study.shape)
+        name: _variable(columns[name], column, study.dims, study.shape)
         for name, column in values.items()
     }
     outcome = values["outcome"]
     return xarray.Dataset(
         variables,
-        coordinates,
+        coordinates(study),
         {
             "title": f"{study.base_name}: {study.size} cases",
             "base": study.base_name,
@@ -185,43 +181,15 @@ def reasons(texts: np.ndarray) -> np.ndarray:
     return np.array([text.decode("utf-8", "ignore") for text in joined.tolist()], dtype=object)
 
 
-def _coordinates(study: Study) -> dict[str, Any]:
-    """The axes' values: one of a grid along its own dimension, those of a sample along `CASE`."""
-    if study.sample is None:
-        return {
-            axis.key: ((axis.key,), axis.at(np.arange(axis.size)), _about(axis))
-            for axis in study.axes
-        }
-    drawn = study.values(0, study.size)
-    return {axis.key: ((CASE,), drawn[axis.key], _about(axis)) for axis in study.axes}
-
-
-def _about(axis: Axis) -> dict[str, str]:
-    """Unit, name and scale of an axis."""
-    unit = {"units": axis.unit} if axis.unit else {}
-    return {**unit, "long_name": axis.label, "scale": axis.scale}
-
-
 def _variable(
     column: Column, values: np.ndarray, dimensions: tuple[str, ...], shape: tuple[int, ...]
-) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+) -> Variable:
     """A column along the dimensions of the study."""
-    about: dict[str, Any] = {"long_name": column.meaning}
-    if column.unit:
-        about["units"] = column.unit
+    about = attributes(column)
+    if "flag_values" in about:
+        about["flag_values"] = np.array(about["flag_values"], column.dtype)
     if column.along == "byte":
         return dimensions, reasons(values).reshape(shape), about
-    if column.name in _FLAGS:
-        names = _FLAGS[column.name]
-        codes = np.arange(-1, len(names) - 1, dtype=column.dtype)
-        about |= {"flag_values": codes, "flag_meanings": " ".join(names)}
     if column.along:
         return (*dimensions, column.along), values.reshape(*shape, -1), about
     return dimensions, values.reshape(shape), about
-
-
-_FLAGS = {
-    "outcome": ("not_computed", *(outcome.value for outcome in ENDS)),
-    "captured": ("undecided", "rebounds", "captured"),
-}
-"""Meanings of the codes -1, 0, 1, ... of a column."""

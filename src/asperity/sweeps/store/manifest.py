@@ -23,7 +23,7 @@ try:
 except ImportError:  # not a POSIX system: nothing keeps a second writer out
     fcntl = None  # type: ignore[assignment]
 
-SCHEMA = 2
+SCHEMA = 3
 """Version of stores and manifests that this program writes."""
 
 
@@ -181,7 +181,7 @@ def _header(path: Path, line: bytes) -> str:
 
 
 def refuse_newer(path: Path, schema: object) -> None:
-    """Refuse a store of a schema that this program does not know.
+    """Refuse a store of another schema than this program's.
 
     Raises
     ------
@@ -189,8 +189,10 @@ def refuse_newer(path: Path, schema: object) -> None:
         With the schema that was found.
     """
     if schema != SCHEMA:
-        newer = isinstance(schema, int) and schema > SCHEMA
-        hint = " - a newer asperity wrote it" * newer
+        hint = ""
+        if isinstance(schema, int):
+            age = "a newer" if schema > SCHEMA else "an earlier"
+            hint = f" - {age} asperity wrote it"
         raise InputError(
             f"{path}: `schema` must be {SCHEMA}; got {shown(schema)}{hint}", file=str(path)
         )

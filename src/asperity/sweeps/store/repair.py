@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.errors import InputError
-from asperity.sweeps.store.array import metadata, read_array, read_group, same
+from asperity.sweeps.store.array import METADATA, metadata, read_array, read_group, same, stored
 from asperity.sweeps.store.manifest import Manifest
 from asperity.sweeps.store.store import manifest_of, other_study, refuse_other_cut
 from asperity.sweeps.store.whole_files import beside, clear, put, told
@@ -37,8 +37,8 @@ def mend(path: str | Path, study: Study) -> list[str]:
     if known.fingerprint != study.fingerprint:
         raise other_study(path)
     files = metadata(study)
-    for name in files:
-        _refuse_other_cut(path / name, study)
+    for column in stored(study):
+        _refuse_other_cut(path / column.name / METADATA, study)
     wrong = {name: content for name, content in files.items() if not same(path / name, content)}
     try:
         if manifest is not None:
@@ -56,7 +56,7 @@ def mend(path: str | Path, study: Study) -> list[str]:
 def _refuse_other_cut(file: Path, study: Study) -> None:
     """Refuse to write metadata over those of chunks of another size."""
     try:
-        array = read_array(file)
+        array = read_array(file, len(study.shape))
     except InputError:
         return
     refuse_other_cut(file, array, study)

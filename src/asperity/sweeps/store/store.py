@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 import shutil
 from collections.abc import Collection, Iterable, Mapping, Set
 from pathlib import Path
@@ -18,7 +19,15 @@ import numpy as np
 from numcodecs.zstd import Zstd  # type: ignore[import-untyped]
 
 from asperity.errors import InputError
-from asperity.sweeps.store.array import LEVEL, METADATA, Array, metadata, read_group, torn
+from asperity.sweeps.store.array import (
+    LEVEL,
+    METADATA,
+    Array,
+    corrupt,
+    metadata,
+    read_group,
+    stored,
+)
 from asperity.sweeps.store.manifest import Manifest
 from asperity.sweeps.store.whole_files import beside, clear, put, put_all, settle, told
 
@@ -52,9 +61,8 @@ class Store:
         self.text = text
         self.manifest = manifest
         self._codec = Zstd(level=LEVEL, checksum=True)
-        first = next(iter(self.arrays.values()))
-        self.size, self.task_size = first.size, first.task_size
-        self.tasks = -(-self.size // self.task_size)
+        self.blocks = next(iter(self.arrays.values())).blocks
+        self.size, self.tasks = math.prod(self.blocks.shape), self.blocks.count
 
     @classmethod
     def create(cls, path: str | Path, study: Study) -> Store:
@@ -78,8 +86,11 @@ class Store:
         InputError, OutputError
             As `create`.
         """
-        names = [METADATA, *(f"{name}/{METADATA}" for name in other.arrays)]
-        files = {name: (other.path / name).read_bytes() for name in names}
+        axes = [file for file in other.path.glob("*/*") if file.parent.name not in other.arrays]
+        names = [other.path / METADATA, *(other.path / name / METADATA for name in other.arrays)]
+        files = {
+            file.relative_to(other.path).as_posix(): file.read_bytes() for file in names + axes
+        }
         return cls._make(Path(path), files, other.fingerprint)
 
     @classmethod
@@ -141,9 +152,9 @@ class Store:
                 f"{file}: must be the manifest of {path}; it is another's", file=str(file)
             )
         known = {name for chunks in manifest.chunks.values() for name in chunks}
-        for name in known | {column.name for column in (study.columns if study else ())}:
+        for name in known | {column.name for column in (stored(study) if study else ())}:
             if name not in group.arrays:
-                raise torn(path / name / METADATA, "No such file")
+                raise corrupt(path / name / METADATA, "No such file")
         if writable and there:
             manifest.hold()
         elif writable:
@@ -163,9 +174,7 @@ class Store:
     @property
     def cases_done(self) -> int:
         """Number of cases in finished tasks."""
-        last = self.tasks - 1
-        short = self.tasks * self.task_size - self.size if last in self.done else 0
-        return len(self.done) * self.task_size - short
+        return sum(len(self.blocks.cases(task)) for task in self.done)
 
     def write(self, task: int, columns: Mapping[str, np.ndarray]) -> None:
         """Keep the results of a task.
@@ -283,10 +292,10 @@ class Store:
             As `read`.
         """
         array = self.arrays[name]
-        whole = np.full(array.shape, array.fill, array.dtype)
+        whole = np.full((self.size, *array.width), array.fill, array.dtype)
         for task in self.done:
-            start = task * self.task_size
-            whole[start : start + self.task_size] = self.read(task, name)
+            cases = self.blocks.cases(task)
+            whole[cases.start : cases.stop] = self.read(task, name)
         return whole
 
     def forget(self, tasks: Collection[int]) -> None:
@@ -332,16 +341,17 @@ def other_study(path: Path) -> InputError:
 
 
 def refuse_other_cut(path: Path, array: Array, study: Study) -> None:
-    """Refuse a store whose chunks are not of the size of this program's tasks.
+    """Refuse a store whose chunks are not this program's tasks.
 
     Raises
     ------
     InputError
-        With both sizes.
+        With the cases of a task of both.
     """
-    if array.task_size != study.task_size:
+    if array.blocks != study.blocks:
+        ours, theirs = (f"{each.largest}" for each in (study.blocks, array.blocks))
         raise InputError(
-            f"{path}: must be cut into tasks of {study.task_size} cases; got {array.task_size} - "
+            f"{path}: must be cut into tasks of {ours} cases; got {theirs} - "
             "another version of asperity wrote it",
             file=str(path),
         )

@@ -12,6 +12,9 @@ from asperity.sweeps.study.axes import Axis
 from asperity.sweeps.study.columns import Column
 from asperity.sweeps.study.samples import Sample
 
+CASE = "case"
+"""Dimension of the cases of a sample; a grid has its axes' keys instead."""
+
 
 @dataclass(frozen=True)
 class StudyDefinition:
@@ -36,6 +39,11 @@ class StudyDefinition:
         if self.sample is not None:
             return (self.sample.size,)
         return tuple(axis.size for axis in self.axes)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the dimensions of its results: the axes' keys, or "case" of a sample."""
+        return (CASE,) if self.sample is not None else tuple(axis.key for axis in self.axes)
 
     @functools.cached_property
     def size(self) -> int:

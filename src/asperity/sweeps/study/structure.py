@@ -20,7 +20,7 @@ ELASTIC = 64
 
 
 def task_size(study: StudyDefinition) -> int:
-    """Number of cases of a task: by the slowest kind of case that the study can hold."""
+    """Cases of a task at most: by the slowest kind of case that the study can hold."""
     rough = _has(study, "roughness")
     bulk = "half-space" in _values(study, "counterface", "deformation")
     if rough and bulk and study.base.publication is None:

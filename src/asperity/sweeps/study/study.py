@@ -25,6 +25,7 @@ from asperity.sweeps.study import (
 )
 from asperity.sweeps.study.axes import Axis
 from asperity.sweeps.study.axis_text import axis_of
+from asperity.sweeps.study.blocks import Blocks
 from asperity.sweeps.study.case_variants import Change, changed, parts
 from asperity.sweeps.study.corners import corners_of
 from asperity.sweeps.study.definition import StudyDefinition
@@ -70,27 +71,24 @@ class Study(StudyDefinition):
         raise ValueError(f"no column has the dimension {along!r}")
 
     @functools.cached_property
-    def task_size(self) -> int:
-        """Number of cases of a task, set by the study alone."""
-        return structure.task_size(self)
+    def blocks(self) -> Blocks:
+        """How its cases are cut into tasks, set by the study alone."""
+        return Blocks.of(self.shape, structure.task_size(self))
 
     @property
     def tasks(self) -> int:
         """Number of tasks."""
-        return -(-self.size // self.task_size)
+        return self.blocks.count
 
     def task(self, number: int) -> range:
-        """Numbers of the cases of a task; the last task may be shorter.
+        """Numbers of the cases of a task.
 
         Raises
         ------
         IndexError
             Where there is no such task.
         """
-        if not 0 <= number < self.tasks:
-            raise IndexError(f"a study of {self.tasks} tasks has no task {number}")
-        start = number * self.task_size
-        return range(start, min(start + self.task_size, self.size))
+        return self.blocks.cases(number)
 
     def grid_index(self, start: int, stop: int) -> tuple[np.ndarray, ...]:
         """Number of each axis' value on the grid, for cases `start` to `stop` - 1."""
