@@ -1,6 +1,13 @@
 """Configuration of the documentation; no page needs the network to be built."""
 
+import sys
 from importlib.metadata import version as _installed_version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tools.compiling import prepare
+
+prepare()  # what the pages start inherits it
 
 project = "asperity"
 author = "The asperity authors"

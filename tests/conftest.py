@@ -2,36 +2,19 @@
 
 import gc
 import os
-import tempfile
 from pathlib import Path
 
 import hypothesis
-import platformdirs
 import pytest
+from tools.compiling import prepare
 
 MAPS = 15_000
 """Memory maps of a worker above which it drops what it has compiled; at 65530 Linux kills it."""
 
 
-def _compile_cache() -> Path:
-    """A folder for compiled code that outlives the session, shared by all workers.
-
-    JAX does not read an entry that another worker has half written: it says so and compiles.
-    """
-    try:
-        folder = platformdirs.user_cache_path("asperity") / "tests"
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="asperity-tests-"))
-    return folder
-
-
 # Before anything imports JAX, which reads these once. Programs that the tests start inherit them.
+prepare()
 _worker = os.environ.get("PYTEST_XDIST_WORKER", "alone")
-os.environ.setdefault("JAX_PLATFORMS", "cpu")
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(_compile_cache()))
-os.environ.setdefault("MPLBACKEND", "Agg")
-os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false")
 if _worker != "alone":
     for _variable in ("NPROC", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(_variable, "1")

@@ -88,7 +88,7 @@ def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms,
             "numerics.max_impacts": 3,
         }
     )
-    assert asperity.solve(case).ledger["energy_balance_error"] < 1e-6
+    assert asperity.solve(case, critical=False).ledger["energy_balance_error"] < 1e-6
 
 
 @pytest.mark.long
@@ -108,7 +108,7 @@ def test_a_ledger_closes_where_liquid_fills_a_surface_that_creeps():
             "numerics.max_impacts": 1,
         }
     )
-    assert asperity.solve(case).ledger["energy_balance_error"] < 1e-6
+    assert asperity.solve(case, critical=False).ledger["energy_balance_error"] < 1e-6
 
 
 def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():

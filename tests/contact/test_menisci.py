@@ -269,7 +269,7 @@ def test_the_loss_of_an_impact_is_the_area_between_the_branches(name, monkeypatc
     case = CASE.replace(
         {"counterface.deformation": "rigid", "numerics.max_impacts": 1, **AREAS[name]}
     )
-    result, drawn = asperity.solve(case), asperity.curve(case)
+    result, drawn = asperity.solve(case, critical=False), asperity.curve(case)
     lost = sum(result.ledger["lost"].values())
     assert lost > 0.0
     # The bonds that hold at the apex were not broken: the curve goes on until all are.

@@ -90,14 +90,16 @@ def test_a_stiff_half_space_is_the_rigid_body(case, time):
     ids=["wet", "filling", "beside JKR"],
 )
 def test_the_ledger_closes(case, changes):
-    result = asperity.solve(case.replace({**changes, "capillary.formation_time": "2 us"}))
+    result = asperity.solve(
+        case.replace({**changes, "capillary.formation_time": "2 us"}), critical=False
+    )
     assert result.ledger["energy_balance_error"] < 2e-7
     assert result.outcome is Outcome.MAX_IMPACTS
     assert all(value > 0.0 for value in result.ledger["lost"].values())
 
 
 def test_a_wait_longer_than_the_contact_is_told(case):
-    result = asperity.solve(case.replace({"capillary.formation_time": "1 ms"}))
+    result = asperity.solve(case.replace({"capillary.formation_time": "1 ms"}), critical=False)
     assert any("menisci take 0.001 s to form" in line for line in result.warnings)
     assert result.ledger["energy_balance_error"] < 1e-7
 

@@ -48,7 +48,9 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_time_and_losses_never_go_back(name):
     example, changes = CASES[name]
-    result = asperity.solve(load_file(EXAMPLES / f"{example}.toml").replace(changes))
+    result = asperity.solve(
+        load_file(EXAMPLES / f"{example}.toml").replace(changes), critical=False
+    )
     assert np.min(np.diff(result.time)) >= 0.0
     energy = np.max(result.energies["kinetic"])
     for key, lost in result.energies.items():
@@ -67,7 +69,7 @@ def test_time_and_losses_never_go_back(name):
 
 def test_a_fall_lasts_as_long_as_its_speeds_say():
     """Between samples that are close the speed changes evenly: dt = 2 dd / (v + v')."""
-    result = asperity.solve(load_file(EXAMPLES / "glass-bead.toml"))
+    result = asperity.solve(load_file(EXAMPLES / "glass-bead.toml"), critical=False)
     first, then = result.events["apex_time"][0], result.events["closest_approach_time"][1]
     inside = (result.time >= first * (1.0 - 1e-12)) & (result.time <= then * (1.0 + 1e-12))
     fall = np.flatnonzero(inside)

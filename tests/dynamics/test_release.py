@@ -68,7 +68,7 @@ def pull_far_out(separation, radius, *, rough):
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 def test_a_launched_body_starts_out_of_the_tail_of_bradleys_law(rough, gravity):
     case = load("schema = 1\n" + text("bradley", rough=rough, gravity=gravity))
-    result = asperity.solve(case)
+    result = asperity.solve(case, critical=False)
     released, body = result.separation[0], build(resolve(case)).body
     peak = max(abs(result.forces["contact"]))
     limit = max(1e-3 * float(body.weight), 1e-6 * peak)
@@ -91,7 +91,9 @@ def test_studies_release_a_launched_body_where_a_single_run_does():
     speeds = np.array([0.1, 0.2, 0.4])
     columns = evaluate(study, {"impact.speed": speeds})
     assert np.all(np.isfinite(columns["impact_speed"]))
-    one = asperity.solve(load("schema = 1\n" + text("bradley", rough=True, gravity=9.81)))
+    one = asperity.solve(
+        load("schema = 1\n" + text("bradley", rough=True, gravity=9.81)), critical=False
+    )
     first = np.ravel(columns["restitution"][0])[0]
     assert first == pytest.approx(one.measures["restitution"][0], rel=1e-9)
     assert columns["impact_speed"][0] == pytest.approx(one.measures["impact_speed"], rel=1e-6)

@@ -71,7 +71,9 @@ def stopping_gap(speed: float, slip: float, start: float = RELEASE) -> float:
 @pytest.mark.parametrize("changes", [{}, ROUGH], ids=["smooth", "rough"])
 @pytest.mark.parametrize("speed", [1e-3, 10e-3])
 def test_a_film_without_slip_stops_a_body_at_the_gap_of_the_closed_form(changes, speed):
-    result = asperity.solve(load(SMOOTH).replace({**changes, "impact.speed": f"{speed} m/s"}))
+    result = asperity.solve(
+        load(SMOOTH).replace({**changes, "impact.speed": f"{speed} m/s"}), critical=False
+    )
     expected = RELEASE * math.exp(-MASS * speed / (6.0 * math.pi * VISCOSITY * RADIUS**2))
     assert result.outcome is Outcome.STOPPED
     assert result.outcome.ok
@@ -94,7 +96,7 @@ def test_a_film_without_slip_stops_a_body_at_the_gap_of_the_closed_form(changes,
 def test_with_slip_adhesion_and_roughness_the_film_stops_the_body_by_its_momentum():
     """The rough JKR case of 10 mm/s in air was no answer, but an error."""
     changes = {**ROUGH, "adhesion": JKR, "gas.slip_length": "75 nm"}
-    result = asperity.solve(load(SMOOTH).replace(changes))
+    result = asperity.solve(load(SMOOTH).replace(changes), critical=False)
     assert result.outcome is Outcome.STOPPED
     assert result.events["closest_approach_separation"][0] == pytest.approx(
         stopping_gap(10e-3, 75e-9), rel=1e-8
@@ -103,7 +105,7 @@ def test_with_slip_adhesion_and_roughness_the_film_stops_the_body_by_its_momentu
 
 def test_menisci_on_their_way_change_nothing_for_a_body_that_never_comes_near():
     """The same stepped in time, by another method."""
-    result = asperity.solve(load(SMOOTH).replace({**ROUGH, "capillary": WATER}))
+    result = asperity.solve(load(SMOOTH).replace({**ROUGH, "capillary": WATER}), critical=False)
     assert result.outcome is Outcome.STOPPED
     assert result.events["closest_approach_separation"][0] == pytest.approx(
         stopping_gap(10e-3, 0.0), rel=1e-6
@@ -112,7 +114,7 @@ def test_menisci_on_their_way_change_nothing_for_a_body_that_never_comes_near():
 
 def test_a_body_that_bounces_is_stopped_on_its_way_out():
     """From the speed with which it leaves 3 nm behind, where no contact force is left."""
-    result = asperity.solve(load(SMOOTH).replace({"impact.speed": "100 mm/s"}))
+    result = asperity.solve(load(SMOOTH).replace({"impact.speed": "100 mm/s"}), critical=False)
     assert result.outcome is Outcome.STOPPED
     (apex,) = result.events["apex_separation"]
     out = np.argmin(result.separation) + np.searchsorted(
@@ -127,4 +129,4 @@ def test_a_body_that_bounces_is_stopped_on_its_way_out():
 
 def test_with_gravity_the_body_creeps_on_until_it_rests():
     case = load(SMOOTH).replace({"impact.speed": "1 mm/s", "impact.gravity": "9.81 m/s^2"})
-    assert asperity.solve(case).outcome is Outcome.REST
+    assert asperity.solve(case, critical=False).outcome is Outcome.REST

@@ -53,7 +53,7 @@ MAKERS = {
 def test_a_case_that_yields_is_drawn_with_the_force_of_its_law():
     case = load(YIELDS)
     law = build(resolve(case)).contact.contact
-    made, drawn = asperity.solve(case), asperity.curve(case)
+    made, drawn = asperity.solve(case, critical=False), asperity.curve(case)
     pushed = made.time <= made.time[np.argmin(made.separation)]
     for separation, force in (
         (made.separation[pushed], made.forces["elastic"][pushed]),

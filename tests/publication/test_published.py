@@ -287,7 +287,7 @@ def test_a_published_case_reads_back_from_its_own_text(case):
 
 
 def test_the_built_in_case_rests_and_says_what_it_assumes(case):
-    result = asperity.solve(case)
+    result = asperity.solve(case, critical=False)
     assert result.outcome is Outcome.REST
     assert any("[publication] follows a paper" in line for line in result.warnings)
     assert any("Kelvin radius is infinite" in line for line in result.warnings)
@@ -304,12 +304,12 @@ def test_the_built_in_case_rests_and_says_what_it_assumes(case):
     ],
 )
 def test_every_variant_closes_its_ledger(case, changes):
-    result = asperity.solve(case.replace({**changes, "numerics.max_impacts": 5}))
+    result = asperity.solve(case.replace({**changes, "numerics.max_impacts": 5}), critical=False)
     assert result.ledger["energy_balance_error"] < 1e-6
 
 
 def test_the_curve_of_the_published_case_loses_what_the_first_impact_loses(case):
-    curve, result = asperity.curve(case), asperity.solve(case)
+    curve, result = asperity.curve(case), asperity.solve(case, critical=False)
     measures = result.measures
     lost = measures["power_loss"][0] * measures["rebound_period"][0]
     # From the deepest point to far apart, all that the pulls take.

@@ -99,7 +99,7 @@ def test_a_metal_bead_shot_at_a_ceramic_says_that_yielding_was_not_judged():
     """Issued by `run` and `regime` alike, once."""
     smooth = between("metal", "ceramic").split("deformation")[0]
     case = load(smooth + f'[impact]\nspeed = "3000 m/s"\n{OWN}[numerics]\nmax_impacts = 1\n')
-    for found in (asperity.solve(case), solver.assess(case)):
+    for found in (asperity.solve(case, critical=False), solver.assess(case)):
         assert sum("yielding not judged" in line for line in found.warnings) == 1
 
 

@@ -49,7 +49,7 @@ def decrement(heights):
 
 def test_its_motion_converges_to_ours_with_grid_and_step(method, case):
     """64 x 64 at 0.1 us, then three and four times as fine: three rebounds and their times."""
-    result = asperity.solve(case)
+    result = asperity.solve(case, critical=False)
     ours = np.array(result.measures["rebound_height"][:3])
     coarse, _ = rebounds(method, case, points=64)
     fine, times = rebounds(method, case, 3, points=192, step=2.5e-8)
@@ -65,7 +65,7 @@ def test_its_motion_converges_to_ours_with_grid_and_step(method, case):
 def test_with_the_printed_polynomials_too(method, case):
     """At the inputs with which those meet the tables."""
     printed = PRINTED.within(case).replace({"publication.polynomials": "printed"})
-    ours = asperity.solve(printed).measures["log_decrement"][0]
+    ours = asperity.solve(printed, critical=False).measures["log_decrement"][0]
     functions = {"f0": method.PRINTED_F0, "f32": method.PRINTED_F32}
     fine, _ = rebounds(method, printed, points=192, step=2.5e-8, **functions)
     assert decrement(fine) == pytest.approx(ours, rel=1e-3)
@@ -76,7 +76,7 @@ def test_with_those_and_an_edge_at_3_both_stick_at_the_first_impact(method, case
     model = method.of_problem(build(resolve(case)), deforms=False, **printed)
     apexes, _ = method.integrate(model, 1)
     assert apexes[0] < model.edge * model.rms
-    ours = asperity.solve(case.replace({"publication.polynomials": "printed"}))
+    ours = asperity.solve(case.replace({"publication.polynomials": "printed"}), critical=False)
     assert ours.measures["log_decrement"] == [None]
     assert ours.measures["captured"]
 
