@@ -229,9 +229,19 @@ def test_emptying_removes_what_the_cache_keeps_and_nothing_else(quick: Path):
     assert found == {"folder": str(quick), "removed": 0, "bytes": 0}
 
 
+def test_the_folders_of_other_versions_are_emptied_too(monkeypatch: pytest.MonkeyPatch, tmp_path):
+    monkeypatch.setattr(compile_cache, "folder", lambda: tmp_path / "jaxlib-2")
+    kept = [file for name in ("jaxlib-1", "jaxlib-2", "other") for file in filled(tmp_path / name)]
+    assert compile_cache.every_folder(tmp_path / "jaxlib-2") == [tmp_path / "jaxlib-2"]
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
+    assert strict(call("doctor", "--empty-cache", "--json").stdout)["removed"] == 4
+    assert {file.parts[len(tmp_path.parts)] for file in kept if file.exists()} == {"other"}
+
+
 def test_another_start_reads_what_one_compiled_and_all_of_it_can_be_removed(tmp_path: Path):
     """Real entries of JAX, not names made up here."""
     assert compile_cache.fault_of(tmp_path) is None
+    assert not any("trial" in file.name for file in tmp_path.iterdir())
     entries, _ = compile_cache.empty(tmp_path)
     assert entries > 0
     assert list(tmp_path.rglob("*-cache")) == []

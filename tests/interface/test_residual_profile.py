@@ -9,10 +9,10 @@ import pytest
 import asperity.interface.residual_profile as tabulated
 import asperity.interface.virgin_loading as module
 from asperity._jax import jax, jnp
-from asperity.contact import RigidPlasticContact
+from asperity.contact import ElasticContact, RigidContact, RigidPlasticContact
 from asperity.contact.profile import Sphere
 from asperity.dynamics import Body, simulate
-from asperity.errors import Tolerance
+from asperity.errors import InputError, Tolerance
 from asperity.interface.interface import Interface
 from asperity.interface.layers import Layers
 from asperity.interface.plastic_interface import PlasticInterface
@@ -190,3 +190,10 @@ def test_liquid_on_the_surface_lies_beside_what_was_flattened():
     first = eqx.filter_jit(layers.first_approach)(place, 1)
     for name in exact._fields:
         assert worst(getattr(first, name), getattr(fresh, name), 1e-3) < 1e-7, name
+
+
+@pytest.mark.parametrize("kind", [RigidContact, ElasticContact])
+def test_a_contact_that_does_not_yield_refuses_asperities_that_do(kind):
+    more = {"modulus": 1e10} if kind is ElasticContact else {}
+    with pytest.raises(InputError, match=f"need a RigidPlasticContact; got {kind.__name__}"):
+        kind(asperities("dmt", 0.1), Sphere(20e-6), **more)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import secrets
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,9 @@ from pathlib import Path
 
 from asperity.errors import OutputError
 
+OWN = "jaxlib-"
+"""Beginning of the name of the user's own folder."""
+
 _CODE = re.compile(r".+-[0-9a-f]{64}-(cache|atime)")
 _PROGRAM = re.compile(r"[0-9a-f]{64}\.(jax|\d+\.\d+)")
 _TRIAL = """
@@ -19,7 +23,9 @@ from asperity._jax import jax, jnp
 from asperity.cli.compiling import compilation
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
 compilation()
-jax.jit(lambda x: jnp.sin(x @ x))(jnp.zeros((3, 3))).block_until_ready()
+def asperity_trial(x):
+    return jnp.sin(x @ x) + {token}
+jax.jit(asperity_trial)(jnp.zeros((3, 3))).block_until_ready()
 print(compilation().asked - compilation().read)
 """
 
@@ -30,6 +36,12 @@ def folder() -> Path | None:
 
     named = jax.config.jax_compilation_cache_dir  # type: ignore[attr-defined]
     return Path(named) if named else None
+
+
+def every_folder(place: Path) -> list[Path]:
+    """A folder, and where it is the user's own those of other versions of jaxlib beside it."""
+    own = place.name.startswith(OWN) and "JAX_COMPILATION_CACHE_DIR" not in os.environ
+    return sorted({place, *(place.parent.glob(f"{OWN}*") if own else ())})
 
 
 def size_of(place: Path) -> tuple[int, int]:
@@ -47,16 +59,17 @@ def room_for(place: Path) -> int:
 def fault_of(place: Path) -> str | None:
     """Why a start does not find in a folder what one before compiled; None where it does.
 
-    A small program is compiled in two processes, one after the other. On some processors JAX
-    writes its cache and refuses, without a word, to read it.
+    A small program, another one each time, is compiled in two processes, one after the other. On
+    some processors JAX writes its cache and refuses, without a word, to read it.
     """
     env = {**os.environ, "JAX_COMPILATION_CACHE_DIR": str(place)}
+    program = [sys.executable, "-c", _TRIAL.format(token=secrets.randbits(32))]
     for _ in range(2):
-        ran = subprocess.run(
-            [sys.executable, "-c", _TRIAL], env=env, capture_output=True, text=True, check=False
-        )
-        if ran.stdout.strip() == "0":
-            return None
+        ran = subprocess.run(program, env=env, capture_output=True, text=True, check=False)
+    for file in place.glob("jit_asperity_trial-*") if place.is_dir() else ():
+        file.unlink(missing_ok=True)
+    if ran.stdout.strip() == "0":
+        return None
     said = [line for line in ran.stderr.splitlines() if "rror" in line]
     return said[-1].rpartition("Error: ")[2] if said else "what was written is not read again"
 

@@ -60,7 +60,8 @@ def doctor(
     if empty_cache:
         if (place := compile_cache.folder()) is None:
             raise InputError("`--empty-cache` must have a compile cache to empty; it is off")
-        entries, size = compile_cache.empty(place)
+        removed = [compile_cache.empty(each) for each in compile_cache.every_folder(place)]
+        entries, size = map(sum, zip(*removed, strict=True))
         reporter.answer(
             lambda: f"removed {entries} entries, {_bytes(size)}, from\n  {place}",
             lambda: {"folder": str(place), "removed": entries, "bytes": size},
