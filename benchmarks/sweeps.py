@@ -82,7 +82,7 @@ def _scipy(study: Study) -> float:
 
     columns, _ = compute(study, 0)
     took = 0.0
-    for number in (0, study.task_size - 1):
+    for number in (0, len(study.task(0)) - 1):
         method = published_method.of_problem(
             build(resolve(study.case(number))), points=64, deforms=False
         )
