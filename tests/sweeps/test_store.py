@@ -8,6 +8,7 @@ import shutil
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,12 @@ from asperity.errors import ENDS, InputError, OutputError
 from asperity.sweeps.compute.runner import Tally, fill
 from asperity.sweeps.store.array import metadata
 from asperity.sweeps.store.counting import first_failure, outcomes
+from asperity.sweeps.store.manifest import manifest_of
 from asperity.sweeps.store.merge import Shard, join, shard, whole
 from asperity.sweeps.store.repair import mend, remove
-from asperity.sweeps.store.store import Store, manifest_of
+from asperity.sweeps.store.store import Store
+from asperity.sweeps.store.variables import attributes, axis_column, drawn
+from asperity.sweeps.study.axes import Axis
 from fake_study import FakeStudy, backwards, compute, expected, in_order
 from store_files import contents, flip
 
@@ -440,3 +444,14 @@ def test_a_shard_is_named_i_of_n():
 def test_a_store_of_other_names_needs_an_output():
     with pytest.raises(InputError, match="`--output` must be given"):
         whole(Path("part.zarr"))
+
+
+def test_words_of_a_sample_are_codes_however_many_they_are():
+    words = tuple(f"word {number}" for number in range(300))
+    axis = Axis("body.material", "", "material", False, False, words, 0.0, 0.0, 0, "linear")
+    values = {"body.material": np.array(words, object)}
+    sampled: Any = SimpleNamespace(sample=1, axes=(axis,), values=lambda *_: values)
+    codes = drawn(sampled, range(300))["body.material"]
+    assert codes.tolist() == list(range(300))
+    meanings = attributes(axis_column(axis), (axis,))["flag_meanings"].split()
+    assert [meanings[code] for code in codes] == [word.replace(" ", "_") for word in words]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import secrets
@@ -46,8 +47,12 @@ def every_folder(place: Path) -> list[Path]:
 
 def size_of(place: Path) -> tuple[int, int]:
     """Pieces of code and traced programs that a folder keeps, and their size [bytes]."""
-    sizes = {file: file.stat().st_size for file in _kept(place) if file.exists()}
-    return sum(not file.name.endswith("-atime") for file in sizes), sum(sizes.values())
+    entries = size = 0
+    for file in _kept(place):
+        with contextlib.suppress(FileNotFoundError):  # removed meanwhile by another process
+            size += file.stat().st_size
+            entries += not file.name.endswith("-atime")
+    return entries, size
 
 
 def room_for(place: Path) -> int:

@@ -115,6 +115,7 @@ def metadata(study: Study) -> dict[str, bytes]:
             made = group.create_array(
                 key,
                 shape=values.shape,
+                chunks=values.shape,
                 dtype="string" if text else values.dtype,
                 dimension_names=dims,
                 attributes=told,
@@ -231,3 +232,29 @@ def corrupt(file: Path, reason: str) -> InputError:
         f"{file}: cannot be read: {reason} - `asperity sweep STUDY --repair` writes it again",
         file=str(file),
     )
+
+
+def other_study(path: Path) -> InputError:
+    """What to say of the store of another study."""
+    return InputError(
+        f"{path}: must be the store of this study; it is that of another, or of an earlier text "
+        "of it",
+        file=str(path),
+    )
+
+
+def refuse_other_cut(path: Path, array: Array, study: Study) -> None:
+    """Refuse a store whose chunks are not this program's tasks.
+
+    Raises
+    ------
+    InputError
+        With the cases of a task of both.
+    """
+    if array.blocks != study.blocks:
+        ours, theirs = (f"{each.largest}" for each in (study.blocks, array.blocks))
+        raise InputError(
+            f"{path}: must be cut into tasks of {ours} cases; got {theirs} - "
+            "another version of asperity wrote it",
+            file=str(path),
+        )

@@ -158,6 +158,11 @@ class Manifest:
             yield _line(task, self.chunks[task])
 
 
+def manifest_of(path: Path) -> Path:
+    """The file that says what of a store is finished."""
+    return beside(path, ".manifest")
+
+
 def _line(task: int, chunks: dict[str, str]) -> bytes:
     return _compact({"task": task, "chunks": chunks})
 

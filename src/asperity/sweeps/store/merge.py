@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from asperity.errors import InputError
+from asperity.sweeps.store.manifest import manifest_of
 from asperity.sweeps.store.repair import remove
-from asperity.sweeps.store.store import Store, manifest_of
+from asperity.sweeps.store.store import Store
 from asperity.sweeps.store.whole_files import beside, settle, told
 from asperity.units import shown
 

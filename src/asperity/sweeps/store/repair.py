@@ -6,9 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.errors import InputError
-from asperity.sweeps.store.array import METADATA, metadata, read_array, read_group, same, stored
-from asperity.sweeps.store.manifest import Manifest
-from asperity.sweeps.store.store import manifest_of, other_study, refuse_other_cut
+from asperity.sweeps.store.array import (
+    METADATA,
+    metadata,
+    other_study,
+    read_array,
+    read_group,
+    refuse_other_cut,
+    same,
+    stored,
+)
+from asperity.sweeps.store.manifest import Manifest, manifest_of
 from asperity.sweeps.store.whole_files import beside, clear, put, told
 
 if TYPE_CHECKING:

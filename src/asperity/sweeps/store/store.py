@@ -25,10 +25,12 @@ from asperity.sweeps.store.array import (
     Array,
     corrupt,
     metadata,
+    other_study,
     read_group,
+    refuse_other_cut,
     stored,
 )
-from asperity.sweeps.store.manifest import Manifest
+from asperity.sweeps.store.manifest import Manifest, manifest_of
 from asperity.sweeps.store.whole_files import beside, clear, put, put_all, settle, told
 
 if TYPE_CHECKING:
@@ -324,34 +326,3 @@ class Store:
         self.manifest.end()
         with contextlib.suppress(OSError):
             beside(self.path, ".part").unlink(missing_ok=True)
-
-
-def manifest_of(path: Path) -> Path:
-    """The file that says what of a store is finished."""
-    return beside(path, ".manifest")
-
-
-def other_study(path: Path) -> InputError:
-    """What to say of the store of another study."""
-    return InputError(
-        f"{path}: must be the store of this study; it is that of another, or of an earlier text "
-        "of it",
-        file=str(path),
-    )
-
-
-def refuse_other_cut(path: Path, array: Array, study: Study) -> None:
-    """Refuse a store whose chunks are not this program's tasks.
-
-    Raises
-    ------
-    InputError
-        With the cases of a task of both.
-    """
-    if array.blocks != study.blocks:
-        ours, theirs = (f"{each.largest}" for each in (study.blocks, array.blocks))
-        raise InputError(
-            f"{path}: must be cut into tasks of {ours} cases; got {theirs} - "
-            "another version of asperity wrote it",
-            file=str(path),
-        )

@@ -39,7 +39,7 @@ def _about(axis: Axis) -> dict[str, str]:
 def axis_column(axis: Axis) -> Column:
     """The values of an axis as a column; text and switches by their number in the list."""
     kind = "int64" if axis.whole else "float64"
-    return Column(axis.key, kind if axis.numeric else "int8", axis.unit, axis.label)
+    return Column(axis.key, kind if axis.numeric else "int32", axis.unit, axis.label)
 
 
 def drawn(study: Study, cases: range) -> dict[str, np.ndarray]:

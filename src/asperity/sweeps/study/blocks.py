@@ -41,7 +41,7 @@ class Blocks:
         return math.prod(self.block)
 
     def index(self, number: int) -> tuple[int, ...]:
-        """Place of a block among all, along each dimension.
+        """Index of a block among all, along each dimension.
 
         Raises
         ------
