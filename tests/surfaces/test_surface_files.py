@@ -242,18 +242,7 @@ def test_a_channel_of_volts_is_no_surface(tmp_path):
         read_topography(path, channel="Potential")
 
 
-def test_a_missing_extra_says_what_to_install(tmp_path, monkeypatch):
-    path = gwyddion_file(tmp_path, Height="m")
-    monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", None)
-    with pytest.raises(InputError) as caught:
-        read_topography(path)
-    assert str(caught.value).startswith(
-        f"{path}: needs SurfaceTopography to be read; install it with: "
-        'pip install "asperity[topography]"'
-    )
-
-
-def test_native_formats_need_no_extra(tmp_path, monkeypatch):
+def test_text_is_read_without_the_library(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "SurfaceTopography.IO", None)
     assert_is_the_map(read_topography(written(tmp_path, "a.csv", HEADER + MATRIX)))
 

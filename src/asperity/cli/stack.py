@@ -24,6 +24,7 @@ STACK = (
     "zarr",
     "distributed",
     "matplotlib",
+    "SurfaceTopography",
 )
 """Packages whose versions a result may depend on."""
 

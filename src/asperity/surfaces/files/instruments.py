@@ -1,9 +1,8 @@
-"""Heights from the formats of instruments, through SurfaceTopography (the extra `topography`)."""
+"""Heights from the formats of instruments, through SurfaceTopography."""
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import io
 import logging
 import warnings
@@ -17,8 +16,8 @@ from ...units import shown
 from .content import MOST_PIXELS, cut_short, refusal, suffix_of
 from .header import agreed_size, agreed_unit, in_metres
 
-NATIVE = ".npy .csv .txt .dat .xyz .nc"
-"""Endings that need no extra, each also packed as .gz."""
+_OURS = ".npy .csv .txt .dat .xyz .nc"
+"""Endings that the program reads itself, each also packed as .gz."""
 
 _BY_ENDING = ("nms", "hgt")
 """Formats without a mark of their own, which fit many a file: taken by their ending alone."""
@@ -72,12 +71,14 @@ def scan_of(
     Raises
     ------
     InputError
-        Where the library is missing or cannot read the file, the channel is no map of heights, or
-        size or unit are stated neither by the file nor by the caller, or by both differently.
+        Where the library cannot read the file, the channel is no map of heights, or size or unit
+        are stated neither by the file nor by the caller, or by both differently.
     """
     with warnings.catch_warnings(record=True) as told, _silenced("igor2"):
         warnings.simplefilter("always")
-        library = _library(file)
+        # Here, since it takes a second and a half to import, and warns that it has no MPI.
+        import SurfaceTopography.IO as library
+
         try:
             return _read(library, content, file, size, unit, channel)._replace(notes=_notes(told))
         except (InputError, KeyboardInterrupt):
@@ -97,17 +98,6 @@ def _silenced(name: str) -> Iterator[None]:
     finally:
         logger.removeHandler(still)
         logger.propagate = before
-
-
-def _library(file: str) -> Any:
-    try:
-        return importlib.import_module("SurfaceTopography.IO")
-    except ImportError:
-        raise refusal(
-            file,
-            "needs SurfaceTopography to be read; install it with: "
-            f'pip install "asperity[topography]" (without it: {NATIVE})',
-        ) from None
 
 
 def _read(
@@ -208,7 +198,7 @@ def _unreadable(file: str, error: Exception) -> InputError:
 def _unknown(file: str) -> InputError:
     return refusal(
         file,
-        f"must be whole and in a known format ({NATIVE}, or one that SurfaceTopography reads); got "
+        f"must be whole and in a known format ({_OURS}, or one that SurfaceTopography reads); got "
         "neither; export it again, as .csv if need be",
     )
 

@@ -8,7 +8,7 @@ Formats
 ``.dat``       the same where it is text, else an instrument's file
 ``.xyz``       points x y z in any order on a regular grid; places without one are missing
 ``.nc``        netCDF: one variable of two dimensions with `units`, coordinates with `units`
-others         through SurfaceTopography, the extra ``topography``
+others         through SurfaceTopography
 =============  =====================================================================
 
 Each may be packed as ``.gz``.
