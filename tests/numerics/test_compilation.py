@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import threading
 from typing import NamedTuple
 
 import equinox as eqx
@@ -9,6 +11,7 @@ import jax
 import pytest
 
 from asperity._jax import jnp
+from asperity.integration.clock import Clock
 from asperity.laws import Hertz
 from asperity.numerics import compilation
 from asperity.numerics.compilation import Program, kept
@@ -134,3 +137,43 @@ def test_a_long_session_keeps_only_the_kinds_used_last_in_memory(folder, monkeyp
         assert long_lived(LAW, X, factor).twice.tolist() == [0.0, factor, 2.0 * factor]
         assert len(long_lived._held) <= 2
     assert traced == [2, 3, 4]  # what was dropped was found on disk
+
+
+def held_back(monkeypatch):
+    """The compiler is not through until what is returned is set."""
+    through, made = threading.Event(), compilation._Held.make
+
+    def make(self, lowered):
+        through.wait()
+        made(self, lowered)
+
+    monkeypatch.setattr(compilation._Held, "make", make)
+    return through
+
+
+def test_who_waits_for_the_compiler_is_told_of_what_and_how_long(folder, monkeypatch):
+    through, reports = held_back(monkeypatch), []
+    monkeypatch.setattr(compilation, "COMPILES", 1e6)  # of a program that is traced at once
+
+    def report(fraction, text):
+        reports.append(text)
+        through.set()
+
+    program = Program(double)
+    assert program.time_left(LAW, X, 2) > 100.0
+    call = Clock(report=report).ready(0.1, "the impacts", program, LAW, X, 2)
+    assert re.fullmatch(r"compilation of the impacts, some \d+ s", reports[0])
+    assert call().twice.tolist() == [0.0, 2.0, 4.0]
+    assert program.time_left(LAW, X, 2) == 0.0
+    Clock(report=report).ready(0.1, "the impacts", program, LAW, X, 2)
+    assert reports[1] == "compilation"
+
+
+def test_a_program_that_was_kept_is_not_waited_for_long(folder, monkeypatch):
+    answer()
+    monkeypatch.setattr(compilation, "COMPILES", 1e6)
+    through = held_back(monkeypatch)
+    program = Program(double)
+    assert program.time_left(LAW, X, 2) == 0.0
+    through.set()
+    assert program(LAW, X, 2).twice.tolist() == [0.0, 2.0, 4.0]

@@ -590,6 +590,10 @@ def test_what_is_old_is_dimmed_while_something_new_is_computed(page):
     ("told", "words"),
     [
         (COMPILATION, "Compiling for the first time"),
+        (
+            f"{COMPILATION} of the impacts, some 5 s",
+            "Compiling for the first time with these models: the impacts, some 5 s",
+        ),
         ("impact 12", "Computing the motion, impact 12"),
         ("motion", "Computing the motion"),
         ("force curves", "Computing the force curves"),

@@ -152,7 +152,7 @@ def _importing(progress: Progress | None) -> Progress:
     imports = threading.Thread(target=_import_ahead, daemon=True)
 
     def tell(fraction: float, text: str) -> None:
-        if text == COMPILATION and imports.ident is None:
+        if text.startswith(COMPILATION) and imports.ident is None:
             imports.start()
         if progress is not None:
             progress(fraction, text)

@@ -84,6 +84,17 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     )
 
 
+def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
+    """Compile in a thread what draws a motion that is given by its shapes."""
+
+    def some(leaf: jax.Array) -> jax.ShapeDtypeStruct:
+        return jax.ShapeDtypeStruct((_BATCH, *leaf.shape[1:]), leaf.dtype)
+
+    rows = jax.tree_util.tree_map(some, impacts)
+    unloading = jax.ShapeDtypeStruct((), bool)
+    _draw.ahead(body, table, rows.fall, rows.closest_approach_time, unloading, _places(table))
+
+
 def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
     """Times [s] without steps back by rounding; larger ones stay, for they are errors.
 

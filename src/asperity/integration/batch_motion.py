@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..dynamics.record import IN_MOTION
 from ..dynamics.release import TRIES, farther, negligible_force
 from ..errors import InputError, SimulationError
 from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows, is_array, slices, taken
-from .clock import COMPILATION, Clock
+from .clock import Clock
 from .steps import Steps
 
 REFINEMENTS = (1, 2, 4, 8)
@@ -40,6 +40,10 @@ class Slice(NamedTuple):
         return int(np.sum(self.places >= 0))
 
 
+def _nothing(begun: Begun, rows: ImpactRows) -> None:
+    """What a batch compiles beside its own steps."""
+
+
 class BatchMotion:
     """The motions of cases of one structure.
 
@@ -59,6 +63,8 @@ class BatchMotion:
         Whether the cases must be released outside contact.
     launched
         Whether speeds alone are given: the release lies as far out as the forces ask for.
+    compiling
+        Called with the shapes of what comes out while that is compiled.
 
     Attributes
     ----------
@@ -80,13 +86,14 @@ class BatchMotion:
         refinements: tuple[int, ...] = REFINEMENTS,
         checked: bool = True,
         launched: bool = False,
+        compiling: Callable[[Begun, ImpactRows], None] = _nothing,
     ) -> None:
         self.batch, self.steps, self.clock = batch, steps, clock
         self.made = np.zeros(tolerance.size, int)
         self.factors = np.ones(tolerance.size, int)
         self.failures: dict[int, Exception] = {}
         self._tolerance, self._refinements = tolerance, refinements
-        self._checked, self._launched = checked, launched
+        self._checked, self._launched, self._compiling = checked, launched, compiling
         self._waiting = np.arange(tolerance.size)  # for curves that are fine enough
         self._errors = np.full((tolerance.size, 2), np.inf)  # of its last curves but one, its last
         self._tries = np.zeros(tolerance.size, int)
@@ -131,9 +138,8 @@ class BatchMotion:
         clock.look()
         clock.report(0.02, "tracing")
         if moving and self._checked:  # what is launched runs programs that are compiled already
-            steps.compile_ahead(here)
-        clock.report(0.04, COMPILATION)
-        call = steps.curves.ready(here, steps.tabulated)
+            self._compiling(*steps.compile_ahead(here))
+        call = clock.ready(0.04, "the force curves", steps.curves, here, steps.tabulated)
         clock.report(0.06, "force curves")
         answer: tuple[Begun, Checks] = clock.timed(call)
         return answer
@@ -221,10 +227,11 @@ class BatchMotion:
             if here.size <= steps.width // 2 and not patient:
                 return here
             clock.look()
-            if not self._rows:
-                clock.report(0.08, COMPILATION)
-            call = steps.impacts.ready(here.batch, here.begun, here.first, steps.together)
-            if not self._rows:
+            what = here.batch, here.begun, here.first, steps.together
+            if self._rows:
+                call = steps.impacts.ready(*what)
+            else:
+                call = clock.ready(0.08, "the impacts", steps.impacts, *what)
                 clock.report(0.1, "motion")
             progress, first, rows = clock.timed(call)
             here = here._replace(begun=here.begun._replace(progress=progress), first=first)

@@ -121,6 +121,13 @@ def unbatched(tree: Any) -> Any:
     return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf).reshape(np.shape(leaf)[1:]), tree)
 
 
+def unbatched_shapes(tree: Any) -> Any:
+    """The shapes of what a batch of one has of its one case."""
+    return jax.tree_util.tree_map(
+        lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), tree
+    )
+
+
 def slices(places: np.ndarray, width: int) -> Iterator[np.ndarray]:
     """The places, so many at a time; the last are filled up with -1."""
     for begin in range(0, places.size, width):

@@ -43,6 +43,16 @@ class Clock:
         self.useful = 0
         self.all = 0
 
+    def ready(
+        self, fraction: float, name: str, program: Program[..., Any], *args: Any
+    ) -> Callable[[], Any]:
+        """A call, once all is compiled that it needs; whoever waits is told what and how long."""
+        left = program.time_left(*args)
+        self.report(
+            fraction, f"{COMPILATION} of {name}, some {left:.0f} s" if left > 0.5 else COMPILATION
+        )
+        return program.ready(*args)
+
     def run(self, program: Program[..., Any], *args: Any) -> Any:
         """The answer of a compiled call."""
         self.look()

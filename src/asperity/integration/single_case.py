@@ -18,9 +18,9 @@ from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
-from ..results.conversion import Solution
+from ..results.conversion import Solution, compile_ahead
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
-from .batch_records import Batch, unbatched
+from .batch_records import Batch, Begun, ImpactRows, unbatched, unbatched_shapes
 from .clock import Clock, Report, Stopped, silently
 from .steps import Steps
 
@@ -48,6 +48,7 @@ def integrate(
     stop: threading.Event | None = None,
     *,
     many: bool = False,
+    drawn: bool = True,
 ) -> Solution:
     """The motion of what was built from a case.
 
@@ -62,6 +63,8 @@ def integrate(
     many
         Whether the scanning curves are tabulated first: that compiles longer, and pays where
         many cases follow.
+    drawn
+        Whether the motion is measured and drawn afterwards: that is compiled meanwhile.
 
     Raises
     ------
@@ -74,6 +77,7 @@ def integrate(
     motion = _of_one(
         problem, Limits.of(tolerance), tolerance.relative, Clock(stop, report), many=many,
         checked=problem.inputs.release is not None, launched=problem.inputs.chosen_release,
+        drawn=drawn,
     )  # fmt: skip
     try:
         return _solution(problem, motion)
@@ -106,7 +110,7 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
     def within(fraction: float, text: str) -> None:
         report(min(fraction, 0.3), "first impact" if text == "motion" else text)
 
-    solution = integrate(problem, within)
+    solution = integrate(problem, within, drawn=False)
     return solution.contact, solution.motion
 
 
@@ -169,14 +173,21 @@ def _of_one(
     refinements: tuple[int, ...] = REFINEMENTS,
     checked: bool,
     launched: bool = False,
+    drawn: bool = False,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
+
+    def compiling(begun: Begun, rows: ImpactRows) -> None:
+        if drawn:
+            begun, rows = unbatched_shapes((begun, rows))
+            compile_ahead(_moved(begun, rows), body)
+
     # A motion in time solves its contact as it goes: it reads no scanning curve off a table.
     many = many and problem.delayed is None and problem.relaxation is None
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many), clock,
-        refinements=refinements, checked=checked, launched=launched,
+        refinements=refinements, checked=checked, launched=launched, compiling=compiling,
     )  # fmt: skip
 
 
@@ -194,10 +205,13 @@ def _solution(problem: Problem, motion: BatchMotion) -> Solution:
     ends, rows = motion.ends(), motion.history(-(-made // count) * count)
     if ends is None or rows is None:
         raise SimulationError(_STOPPED)
-    begun, impacts = unbatched(ends[0]), unbatched(rows.impacts)
-    moved = Motion(impacts, begun.progress, begun.table, begun.reference, begun.origin)
-    outcome = outcome or ENDS[int(begun.progress.outcome)]
+    moved = _moved(unbatched(ends[0]), unbatched(rows))
+    outcome = outcome or ENDS[int(moved.end.outcome)]
     return Solution(moved, _contact(problem, motion), outcome, body=_body(problem, motion))
+
+
+def _moved(ends: Begun, rows: ImpactRows) -> Motion:
+    return Motion(rows.impacts, ends.progress, ends.table, ends.reference, ends.origin)
 
 
 def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:

@@ -15,7 +15,7 @@ from ..contact import Contact, ElasticContact, RigidContact
 from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts, prepare, start
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
-from ..numerics.compilation import AT_ONCE, QUICKLY, Program
+from ..numerics.compilation import AT_ONCE, QUICKLY, Options, Program
 from ..results.first_contact import FirstContact, first_contact, passing_at
 from ..results.measures import Measures, measure
 from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows
@@ -26,9 +26,6 @@ FEW_CASES = 64
 _NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
 _IMPACTS = 16  # of a compiled call of a batch
 _CHUNK, _QUICK = 20, 100  # of one case: short enough for Ctrl-C, where all is quick
-
-Options = dict[str, bool | int]
-"""Options of XLA."""
 
 _FAST: Options = {"xla_cpu_multi_thread_eigen": False}
 """XLA's own choices, a third faster than what compiles quickly; a thread for each task, no more."""
@@ -150,10 +147,11 @@ class Steps(NamedTuple):
             *(_OF_ONE_ON_HALF_SPACE if few else _OF_ONE), 1, _impacts_together(contact, body), many
         )
 
-    def compile_ahead(self, batch: Batch) -> None:
-        """Compile for a batch of the width of a call in a thread, where that is not done."""
+    def compile_ahead(self, batch: Batch) -> tuple[Begun, ImpactRows]:
+        """Compile for a batch of the width of a call in threads; the shapes of what comes out."""
         begun, _checks = self.curves.ahead(batch, self.tabulated)
-        self.impacts.ahead(batch, begun, self.before, self.together)
+        _progress, _first, rows = self.impacts.ahead(batch, begun, self.before, self.together)
+        return begun, rows
 
     @property
     def before(self) -> FirstImpact | None:

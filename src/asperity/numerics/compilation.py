@@ -15,7 +15,7 @@ import os
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import Future
 from functools import cache
 from pathlib import Path
@@ -43,14 +43,21 @@ Each takes some 250 of the 65530 memory maps that Linux gives a process; one tha
 them dies. What is dropped is read from disk again.
 """
 
-QUICKLY: dict[str, bool | int] = {
+COMPILES = 2.0
+"""Times the tracing of a program that compiling takes: 1.9 to 4 for a case on two cores."""
+
+Options = dict[str, bool | int | str]
+"""Options of XLA."""
+
+QUICKLY: Options = {
+    "xla_disable_hlo_passes": "while-loop-invariant-code-motion",
     "xla_cpu_use_fusion_emitters": False,
     "xla_backend_optimization_level": 1,
     "xla_cpu_parallel_codegen_split_count": 4,
 }
-"""Options of XLA for half the time to compile; a single motion runs as fast."""
+"""Options of XLA for a third of the time to compile; a single motion runs as fast."""
 
-AT_ONCE: dict[str, bool | int] = {**QUICKLY, "xla_backend_optimization_level": 0}
+AT_ONCE: Options = {**QUICKLY, "xla_backend_optimization_level": 0}
 """Options for a third less still, for what takes longer to compile than to run many times."""
 
 
@@ -79,7 +86,7 @@ class Program(Generic[P, Answer]):
     def __init__(
         self,
         function: Callable[P, Answer],
-        options: Mapping[str, bool | int] = QUICKLY,
+        options: Options = QUICKLY,
     ) -> None:
         self._function = function
         self._options = dict(options)
@@ -95,6 +102,15 @@ class Program(Generic[P, Answer]):
         compiled = self._of(fixed, arrays, aside=False).compiled.result()
         return lambda: compiled(arrays)
 
+    def time_left(self, *args: Any) -> float:
+        """About how long [s] such arguments wait for the compiler; 0 where it is through.
+
+        It is compiled in a thread meanwhile. What was traced before is likely to be in JAX's
+        cache too, and counts as compiled.
+        """
+        held = self._of(*_split((args, {})), aside=True)
+        return 0.0 if held.compiled.done() else max(held.due - time.perf_counter(), 0.0)
+
     def ahead(self, *args: Any) -> Any:
         """Trace for such arguments and compile in a thread; the shapes of the answer.
 
@@ -108,7 +124,9 @@ class Program(Generic[P, Answer]):
             held = self._held.get(key)
             if held is None:
                 shapes = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in arrays]
-                held = self._held[key] = _Held(self._lowered(fixed, shapes, str(key)))
+                begun = time.perf_counter()
+                lowered, traced = self._lowered(fixed, shapes, str(key))
+                held = self._held[key] = _Held(lowered, begun if traced else None)
                 if len(self._held) > HELD:
                     self._held.popitem(last=False)
             self._held.move_to_end(key)
@@ -122,8 +140,8 @@ class Program(Generic[P, Answer]):
                 held.make(lowered)
         return held
 
-    def _lowered(self, fixed: Any, shapes: list[Any], key: str) -> Any:
-        """The program for XLA: read from disk, or traced and written there."""
+    def _lowered(self, fixed: Any, shapes: list[Any], key: str) -> tuple[Any, bool]:
+        """The program for XLA, read from disk or traced and written there; whether traced."""
 
         def function(arrays: list[Any]) -> Answer:
             args, kwargs = _join(fixed, arrays)
@@ -133,7 +151,7 @@ class Program(Generic[P, Answer]):
         folder = _folder()
         ours = self._function.__module__.startswith(_OURS) and _all_ours(fixed[0])
         if folder is None or not ours:
-            return traced.lower(shapes)
+            return traced.lower(shapes), True
         name = f"{self._function.__module__}.{self._function.__qualname__} {key}"
         file = folder / f"{hashlib.sha256((_ground() + name).encode()).hexdigest()}.jax"
         begun = time.perf_counter()
@@ -143,7 +161,8 @@ class Program(Generic[P, Answer]):
             exported = jax.export.export(traced)(shapes)
             _write(file, exported.serialize())
         jax.monitoring.record_event_duration_secs(told, time.perf_counter() - begun)
-        return jax.jit(exported.call, compiler_options=self._options).lower(shapes)
+        lowered = jax.jit(exported.call, compiler_options=self._options).lower(shapes)
+        return lowered, told == TRACED
 
 
 _compiling: list[threading.Thread] = []
@@ -157,10 +176,20 @@ def _finish() -> None:
 
 
 class _Held:
-    """One compiled form of a program."""
+    """One compiled form of a program.
 
-    def __init__(self, lowered: Any) -> None:
+    Parameters
+    ----------
+    lowered
+        The program for XLA.
+    begun
+        When its tracing began [s]; None where it was kept.
+    """
+
+    def __init__(self, lowered: Any, begun: float | None) -> None:
         self.lowered = lowered
+        now = time.perf_counter()
+        self.due = now if begun is None else now + COMPILES * (now - begun)
         self.shapes = jax.tree_util.tree_map(
             lambda leaf: jax.ShapeDtypeStruct(leaf.shape, leaf.dtype), lowered.out_info
         )

@@ -9,7 +9,7 @@ import numpy as np
 from .._jax import jax
 from ..config import Case
 from ..contact import Contact
-from ..dynamics import Body, Motion
+from ..dynamics import Body, Motion, time_series
 from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from ..dynamics.problem import Problem
 from ..dynamics.quasi_static import losses
@@ -57,6 +57,17 @@ class Solution(NamedTuple):
 def contact_end(table: Table, peak: float) -> float:
     """The end of a contact whose largest force is ``peak`` [N]: a separation [m]."""
     return float(_end_of_contact(table, as_float64(peak)))
+
+
+def compile_ahead(motion: Motion, body: Body) -> None:
+    """Compile in threads what measures and draws a motion that is given by its shapes."""
+
+    def rows(leaf: Any) -> Any:
+        return jax.ShapeDtypeStruct((_ROWS, *leaf.shape[1:]), leaf.dtype)
+
+    impacts = jax.tree_util.tree_map(rows, motion.impacts)
+    _measure.ahead(motion._replace(impacts=impacts), body, None, None)
+    time_series.compile_ahead(body, motion.table, impacts)
 
 
 def measured(solution: Solution, body: Body) -> Measures:

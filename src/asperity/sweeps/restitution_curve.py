@@ -227,7 +227,7 @@ def restitution_curve(
     _, report = case.launch, progress or silently
     inputs = resolve(case).one_impact()
     problem, limits = build(inputs), Limits.of(inputs.tolerance)
-    solution = integrate(problem, report, stop)
+    solution = integrate(problem, report, stop, drawn=False)
     about = assessment_of(name, problem, solution.contact, solution.motion)
     measures = measured(solution, problem.body)
     own = float(measures.impact_speed)  # none where gas stops the body before

@@ -10,6 +10,7 @@ const WAITS = [
   [/^asking/, "Asking the program"],
   [/^loading/, "Loading the program, once after its start"],
   [/^tracing/, "Preparing these models for the first time: some seconds"],
+  [/^compilation of (.*)/, "Compiling for the first time with these models: "],
   [/^compilation/, "Compiling for the first time with these models: some seconds"],
   [/^force curves/, "Computing the force curves"],
   [/^impact (\d+)/, "Computing the motion, impact "],
