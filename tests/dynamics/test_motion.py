@@ -285,9 +285,16 @@ def test_gravity_and_hertz_set_the_time_of_a_long_fall():
 
 def test_limits_end_a_motion_and_are_named():
     contact = rough(HERTZ + BY_CONTACT)
-    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=2))
-    assert outcome(motion) is Outcome.MAX_IMPACTS
-    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=3, time_limit=1e-6))
-    assert outcome(motion) is Outcome.TIME_LIMIT
-    motion, _ = integrate(contact, DROP, Tolerance(max_impacts=3, rest=2.0))
-    assert outcome(motion) is Outcome.REST
+
+    @jax.jit
+    def ended(rest, time_limit):
+        tolerance = Tolerance(rest=rest, time_limit=time_limit, max_impacts=3)
+        return simulate(contact, DROP, tolerance=tolerance).end.outcome
+
+    usual = Tolerance()
+    for limits, named in (
+        ((usual.rest, usual.time_limit), Outcome.MAX_IMPACTS),
+        ((usual.rest, 1e-6), Outcome.TIME_LIMIT),
+        ((2.0, usual.time_limit), Outcome.REST),
+    ):
+        assert ENDS[int(ended(*limits))] is named

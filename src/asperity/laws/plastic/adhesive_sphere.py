@@ -14,6 +14,18 @@ from ..law import Real, quantity
 _NODES, _WEIGHTS = (np.asarray(values) for values in np.polynomial.legendre.leggauss(8))
 
 
+@jax.jit
+def _cubic_root(pressure: jax.Array, pull: jax.Array) -> jax.Array:
+    """The root u > 0 of u^3 - pressure u - pull = 0.
+
+    Newton from above on a function that is convex there.
+    """
+    u = jnp.sqrt(pressure) + jnp.cbrt(pull)
+    for _ in range(8):
+        u = u - (u * (u * u - pressure) - pull) / (3.0 * u * u - pressure)
+    return u
+
+
 class AdhesiveThorntonNing(eqx.Module):
     """Adhesive elastic-plastic contact of a paraboloid and a plane.
 
@@ -86,6 +98,7 @@ class AdhesiveThorntonNing(eqx.Module):
         elastic = self._virgin.bonded_energy(-jnp.minimum(overlap, self.yield_overlap))
         return elastic + self._plastic_work(overlap)
 
+    @jax.jit  # here and below: traced once, however often it is asked
     def tip_radius(self, deepest: jax.Array) -> jax.Array:
         """Tip radius [m] of the contact that unloads from the deepest overlap."""
         root = self._root(deepest)
@@ -94,6 +107,7 @@ class AdhesiveThorntonNing(eqx.Module):
         flattened = 4.0 * self.modulus * root**6 / (3.0 * hertz)
         return jnp.where(deepest > self.yield_overlap, flattened, self.radius)
 
+    @jax.jit
     def residual(self, deepest: jax.Array) -> jax.Array:
         """Overlap [m] at which the flattened, undeformed tip just touches the plane."""
         curvature = 1.0 / self.radius - 1.0 / self.tip_radius(deepest)
@@ -147,16 +161,10 @@ class AdhesiveThorntonNing(eqx.Module):
 
     @property
     def _yield_root(self) -> jax.Array:
-        """Root u of the contact radius at yield: rise u^3 - p_y u - suction = 0, one root > 0.
+        """Root u of the contact radius at yield: rise u^3 - p_y u - suction = 0, one root > 0."""
+        return _cubic_root(self.yield_pressure / self._rise, self._suction / self._rise)
 
-        Newton from above on a function that is convex there.
-        """
-        pressure, pull = self.yield_pressure / self._rise, self._suction / self._rise
-        u = jnp.sqrt(pressure) + jnp.cbrt(pull)
-        for _ in range(8):
-            u = u - (u * (u * u - pressure) - pull) / (3.0 * u * u - pressure)
-        return u
-
+    @jax.jit
     def _root(self, overlap: jax.Array) -> jax.Array:
         """Root of the contact radius [m^0.5] at an overlap, at yield's below it."""
         beyond = jnp.maximum(overlap, self.yield_overlap)
