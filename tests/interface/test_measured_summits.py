@@ -274,17 +274,24 @@ def test_tabulated_branches_are_the_quadratures_from_far_below_the_heights_to_th
             assert off.max() < (1e-6 if integrated else 1e-5)
 
 
+@eqx.filter_jit
+def fall(surface, places, memory):
+    """The pressure, and the slope of the paraboloid's force."""
+    force = lambda places: surface.pressure(places, memory, 1)  # noqa: E731
+    return surface.pressure(places, memory), jax.jvp(force, (places,), (1 + 0 * places,))[1]
+
+
+measured_at = eqx.filter_jit(lambda surface, *given: surface.measure(*given))
+
+
 def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(two_ways):
     """p = -dF/dh at fixed gaps of the bonds, and a work of approach that is the energy."""
     surface, _ = two_ways
     places = jnp.asarray(SIGMA * np.linspace(-20.0, 3.0, 24))
     for unloading in (surface.initial_memory(), surface.saturated_memory()):
-        slope = jax.jvp(
-            lambda h, m=unloading: surface.pressure(h, m, 1), (places,), (1 + 0 * places,)
-        )
-        pressure = surface.pressure(places, unloading)
+        pressure, slope = fall(surface, places, unloading)
         largest = float(jnp.max(jnp.abs(pressure)))
-        np.testing.assert_allclose(-slope[1], pressure, rtol=1e-5, atol=1e-7 * largest)
+        np.testing.assert_allclose(-slope, pressure, rtol=1e-5, atol=1e-7 * largest)
     np.testing.assert_array_equal(
         surface.work_of_approach(places), surface.energy(places, surface.initial_memory())
     )
@@ -303,14 +310,14 @@ def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, u
     exact = _all_means(surface, places, memory, 1)
 
     def off(nodes):
-        ours = surface.measure(places, memory, 1, Near(level=False, nodes=nodes))
+        ours = measured_at(surface, places, memory, 1, Near(level=False, nodes=nodes))
         pairs = ((ours.parts, exact.parts), (ours.energy, exact.energy))
         return [float(jnp.max(jnp.abs(a - b)) / jnp.max(jnp.abs(b))) for a, b in pairs]
 
     few, many = off(8), off(24)
     assert max(few) < 1e-4
     assert max(many) < 5e-6
-    counted = surface.measure(places, memory, 1, Near(level=False, nodes=8))
+    counted = measured_at(surface, places, memory, 1, Near(level=False, nodes=8))
     np.testing.assert_allclose(counted.bonds, exact.bonds, rtol=1e-12)
 
 
@@ -326,10 +333,11 @@ def test_bonds_that_stretch_over_many_rms_heights_are_read_in_pieces():
     end = float(max(surface.rejoining(memory, jnp.asarray(True))))
     places = jnp.linspace(start, end, 101)[None]
     near = Near(level=False, nodes=resolved.nodes * resolved.pieces)
-    ours, exact = surface.measure(places, memory, 1, near), plain.measure(places, memory, 1)
+    ours = measured_at(surface, places, memory, 1, near)
+    exact = measured_at(plain, places, memory, 1)
     for one, other in ((ours.parts, exact.parts), (ours.energy, exact.energy)):
         np.testing.assert_allclose(one, other, rtol=0.0, atol=5e-6 * np.max(np.abs(other)))
-    alone, largest = surface.measure(places, memory, 1), np.max(np.abs(exact.parts))
+    alone, largest = measured_at(surface, places, memory, 1), np.max(np.abs(exact.parts))
     np.testing.assert_allclose(alone.parts, exact.parts, rtol=0.0, atol=1e-6 * largest)
 
 

@@ -25,11 +25,19 @@ LAW = Hertz(BETA, E) + Dmt(BETA, W) + Meniscus(BETA, 0.0728, radians(73.0), 1.05
 CONTACT = RigidContact(Interface(LAW, Gaussian(SIGMA), N), Sphere(RADIUS))
 
 
+@eqx.filter_jit
+def moved(contact, rest):
+    """Four impacts, or as many as it takes to rest, and their measures."""
+    motion = simulate(contact, BODY, tolerance=Tolerance(rest=rest, max_impacts=4))
+    return motion, measure(motion, BODY)
+
+
+REST = jnp.asarray(Tolerance().rest)
+
+
 @pytest.fixture(scope="module")
 def integrated():
-    run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=4)))
-    motion = run(CONTACT, BODY)
-    return motion, measure(motion, BODY)
+    return moved(CONTACT, REST)
 
 
 def test_impact_speed_is_that_of_free_fall_to_where_forces_begin(integrated):
@@ -106,9 +114,7 @@ def test_published_power_loss_is_the_work_of_attraction_on_the_way_out():
     """Of DMT asperities: their whole adhesive energy at the deepest point, in closed form."""
     law = Hertz(BETA, E) + Dmt(BETA, W)
     contact = RigidContact(Interface(law, Gaussian(SIGMA), N), Sphere(RADIUS))
-    run = eqx.filter_jit(lambda c, b: simulate(c, b, tolerance=Tolerance(max_impacts=1)))
-    motion = run(contact, BODY)
-    found = measure(motion, BODY)
+    motion, found = moved(contact, REST)
     deepest = float(motion.impacts.closest_approach[0]) / SIGMA
     area = 2.0 * pi * RADIUS * SIGMA * 2.0 * pi * BETA * W * N * SIGMA
     work = area * float(height_integral(2.0, deepest)) / 2.0
@@ -125,9 +131,7 @@ def test_what_does_not_apply_is_not_a_number(integrated):
 
 
 def test_a_body_that_rests_has_a_time_to_rest():
-    run = eqx.filter_jit(lambda c, b, t: simulate(c, b, tolerance=t))
-    motion = run(CONTACT, BODY, Tolerance(max_impacts=3, rest=2.0))
-    found = measure(motion, BODY)
+    motion, found = moved(CONTACT, jnp.asarray(2.0))
     assert float(found.time_to_rest) == float(motion.impacts.apex_time[0])
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev
 
-from asperity._jax import jnp
+from asperity._jax import jax, jnp
 from asperity.surfaces.heights import Gaussian, Sampled, spread_of
 from asperity.surfaces.heights.panel_length import SCANNING_NODES, PanelLengths, fineness_of
 
@@ -26,6 +26,11 @@ def sampled(request):
     return Sampled(heights, np.ones(heights.size), 1.0)
 
 
+@jax.jit
+def first_moment(heights, places):
+    return heights.tail(2, places)
+
+
 def largest_error(heights, length, nodes):
     """Of polynomials on pieces of the load of one force an asperity, over it at the mean."""
     rms = float(heights.rms)
@@ -35,11 +40,11 @@ def largest_error(heights, length, nodes):
 
     def load(x):
         return np.asarray(
-            heights.tail(2, jnp.asarray(ends[:, None] + 0.5 * length * rms * (x + 1)))
+            first_moment(heights, jnp.asarray(ends[:, None] + 0.5 * length * rms * (x + 1)))
         )
 
     read = chebyshev.chebval(looks, chebyshev.chebfit(points, load(points).T, nodes - 1))
-    return np.max(np.abs(read - load(looks))) / float(heights.tail(2, jnp.asarray(0.0)))
+    return np.max(np.abs(read - load(looks))) / float(first_moment(heights, jnp.asarray(0.0)))
 
 
 def test_pieces_of_the_stated_lengths_read_the_curves_to_the_stated_error(sampled):
