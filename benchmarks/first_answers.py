@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import statistics
 import subprocess
 import sys
@@ -17,11 +16,12 @@ import tempfile
 import time
 import tomllib
 import urllib.request
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 from asperity.config.case_file import builtin_text
+
+from .web import served
 
 HERE = Path(__file__).parents[1]
 ROUNDS = 2
@@ -111,7 +111,7 @@ def _page(
     def seconds(build: Path, folder: Path) -> float:
         tables = tomllib.loads(builtin_text("glass-bead"))
         begun = time.perf_counter()
-        with _served(build, folder) as address:
+        with served("glass-bead", _environment(build, folder)) as address:
             _ask(address, tables)
             if deformation:
                 tables["counterface"]["deformation"] = deformation
@@ -123,18 +123,6 @@ def _page(
             return time.perf_counter() - begun
 
     return seconds
-
-
-@contextmanager
-def _served(build: Path, folder: Path) -> Iterator[str]:
-    command = [sys.executable, "-m", "asperity", "web", "glass-bead", "--port", "0", "--json"]
-    given = _environment(build, folder)
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=given) as server:
-        assert server.stdout is not None
-        try:
-            yield json.loads(server.stdout.readline())["address"]
-        finally:
-            server.send_signal(signal.SIGINT)
 
 
 def _ask(address: str, tables: dict[str, object]) -> None:

@@ -40,13 +40,13 @@ def rows() -> Iterator[Row]:
         cold = {**os.environ, "JAX_COMPILATION_CACHE_DIR": f"{folder}/cache"}
         for what in ("the page's first answer, nothing compiled yet", "the page's first answer"):
             begun = time.perf_counter()
-            with _served("published-exact", cold) as address:
+            with served("published-exact", cold) as address:
                 _opened(browser, address)
                 yield what, f"{time.perf_counter() - begun:.1f} s", "8 s"
         for kind, goals in (("rigid", "100, 250 ms"), ("half-space", "500 ms")):
             case = Path(folder) / f"{kind}.toml"
             case.write_text(builtin_text("published-exact").replace('"half-space"', f'"{kind}"'))
-            with _served(str(case), cold) as address:
+            with served(str(case), cold) as address:
                 found = _latencies(browser, address)
             slow = quantiles(found, n=20)[-1]
             what = f"published-exact, {kind}: slider to new curves, median and 95 %"
@@ -55,7 +55,7 @@ def rows() -> Iterator[Row]:
 
 
 @contextmanager
-def _served(case: str, environment: dict[str, str]) -> Iterator[str]:
+def served(case: str, environment: dict[str, str]) -> Iterator[str]:
     command = [sys.executable, "-m", "asperity", "web", case, "--port", "0", "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as server:
         assert server.stdout is not None

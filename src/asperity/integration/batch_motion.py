@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -40,10 +40,6 @@ class Slice(NamedTuple):
         return int(np.sum(self.places >= 0))
 
 
-def _nothing(begun: Begun, rows: ImpactRows) -> None:
-    """What a batch compiles beside its own steps."""
-
-
 class BatchMotion:
     """The motions of cases of one structure.
 
@@ -63,8 +59,6 @@ class BatchMotion:
         Whether the cases must be released outside contact.
     launched
         Whether speeds alone are given: the release lies as far out as the forces ask for.
-    compiling
-        Called with the shapes of what comes out while that is compiled.
 
     Attributes
     ----------
@@ -86,14 +80,13 @@ class BatchMotion:
         refinements: tuple[int, ...] = REFINEMENTS,
         checked: bool = True,
         launched: bool = False,
-        compiling: Callable[[Begun, ImpactRows], None] = _nothing,
     ) -> None:
         self.batch, self.steps, self.clock = batch, steps, clock
         self.made = np.zeros(tolerance.size, int)
         self.factors = np.ones(tolerance.size, int)
         self.failures: dict[int, Exception] = {}
         self._tolerance, self._refinements = tolerance, refinements
-        self._checked, self._launched, self._compiling = checked, launched, compiling
+        self._checked, self._launched = checked, launched
         self._waiting = np.arange(tolerance.size)  # for curves that are fine enough
         self._errors = np.full((tolerance.size, 2), np.inf)  # of its last curves but one, its last
         self._tries = np.zeros(tolerance.size, int)
@@ -138,7 +131,7 @@ class BatchMotion:
         clock.look()
         clock.report(0.02, "tracing")
         if moving and self._checked:  # what is launched runs programs that are compiled already
-            self._compiling(*steps.compile_ahead(here))
+            steps.compile_ahead(here)
         call = clock.ready(0.04, "the force curves", steps.curves, here, steps.tabulated)
         clock.report(0.06, "force curves")
         answer: tuple[Begun, Checks] = clock.timed(call)

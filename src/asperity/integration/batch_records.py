@@ -9,7 +9,7 @@ import numpy as np
 
 from .._jax import jax
 from ..contact import Contact
-from ..dynamics import Body, Impacts, Limits, Progress, Table
+from ..dynamics import Body, Impacts, Limits, Motion, Progress, Table
 from ..dynamics.release import AtRelease
 from ..dynamics.static_equilibrium import Reference
 from ..numerics.compilation import kept
@@ -122,10 +122,19 @@ def unbatched(tree: Any) -> Any:
 
 
 def unbatched_shapes(tree: Any) -> Any:
-    """The shapes of what a batch of one has of its one case."""
-    return jax.tree_util.tree_map(
-        lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), tree
-    )
+    """The shapes of what a batch of one has of its one case; what is no array stays."""
+
+    def one(leaf: Any) -> Any:
+        if not (is_array(leaf) or isinstance(leaf, jax.ShapeDtypeStruct)):
+            return leaf
+        return jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype)
+
+    return jax.tree_util.tree_map(one, tree)
+
+
+def whole(ends: Begun, rows: ImpactRows) -> Motion:
+    """The motion of one case, of its impacts and of where it ended; or the shapes of both."""
+    return Motion(rows.impacts, ends.progress, ends.table, ends.reference, ends.origin)
 
 
 def slices(places: np.ndarray, width: int) -> Iterator[np.ndarray]:

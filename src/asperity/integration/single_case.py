@@ -18,9 +18,9 @@ from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
-from ..results.conversion import Solution, compile_ahead
+from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
-from .batch_records import Batch, Begun, ImpactRows, unbatched, unbatched_shapes
+from .batch_records import Batch, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
 from .steps import Steps
 
@@ -176,18 +176,12 @@ def _of_one(
     drawn: bool = False,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
-
-    def compiling(begun: Begun, rows: ImpactRows) -> None:
-        if drawn:
-            begun, rows = unbatched_shapes((begun, rows))
-            compile_ahead(_moved(begun, rows), body)
-
     # A motion in time solves its contact as it goes: it reads no scanning curve off a table.
     many = many and problem.delayed is None and problem.relaxation is None
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
-        Steps.of_one(contact, body, many=many), clock,
-        refinements=refinements, checked=checked, launched=launched, compiling=compiling,
+        Steps.of_one(contact, body, many=many, drawn=drawn), clock,
+        refinements=refinements, checked=checked, launched=launched,
     )  # fmt: skip
 
 
@@ -205,13 +199,9 @@ def _solution(problem: Problem, motion: BatchMotion) -> Solution:
     ends, rows = motion.ends(), motion.history(-(-made // count) * count)
     if ends is None or rows is None:
         raise SimulationError(_STOPPED)
-    moved = _moved(unbatched(ends[0]), unbatched(rows))
+    moved = whole(unbatched(ends[0]), unbatched(rows))
     outcome = outcome or ENDS[int(moved.end.outcome)]
     return Solution(moved, _contact(problem, motion), outcome, body=_body(problem, motion))
-
-
-def _moved(ends: Begun, rows: ImpactRows) -> Motion:
-    return Motion(rows.impacts, ends.progress, ends.table, ends.reference, ends.origin)
 
 
 def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:

@@ -16,9 +16,18 @@ from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
 from ..numerics.compilation import AT_ONCE, QUICKLY, Options, Program
+from ..results import conversion
 from ..results.first_contact import FirstContact, first_contact, passing_at
 from ..results.measures import Measures, measure
-from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows
+from .batch_records import (
+    Batch,
+    Begun,
+    Checks,
+    FirstImpact,
+    ImpactRows,
+    unbatched_shapes,
+    whole,
+)
 
 FEW_CASES = 64
 """Cases up to which a group counts as small."""
@@ -124,6 +133,8 @@ class Steps(NamedTuple):
         Impacts of a compiled call.
     tabulated
         Whether the scanning curves are tabulated first.
+    drawn
+        Whether the motion of one case is measured and drawn: that is compiled meanwhile.
     """
 
     curves: Program[..., Any]
@@ -132,6 +143,7 @@ class Steps(NamedTuple):
     width: int
     together: int = _IMPACTS
     tabulated: bool = True
+    drawn: bool = False
 
     @classmethod
     def of_batch(cls, batch: Batch, cases: int, width: int | None = None) -> Steps:
@@ -140,18 +152,19 @@ class Steps(NamedTuple):
         return cls(*(_OF_FEW if wide == _NARROW else _OF_MANY), wide)
 
     @classmethod
-    def of_one(cls, contact: Contact, body: Body, *, many: bool) -> Steps:
+    def of_one(cls, contact: Contact, body: Body, *, many: bool, drawn: bool = False) -> Steps:
         """Those of one case; ``many`` as for :func:`asperity.integration.integrate`."""
         few = isinstance(contact, ElasticContact) and not many
-        return cls(
-            *(_OF_ONE_ON_HALF_SPACE if few else _OF_ONE), 1, _impacts_together(contact, body), many
-        )
+        programs = _OF_ONE_ON_HALF_SPACE if few else _OF_ONE
+        return cls(*programs, 1, _impacts_together(contact, body), many, drawn)
 
-    def compile_ahead(self, batch: Batch) -> tuple[Begun, ImpactRows]:
-        """Compile for a batch of the width of a call in threads; the shapes of what comes out."""
+    def compile_ahead(self, batch: Batch) -> None:
+        """Compile for a batch of the width of a call in threads, where that is not done."""
         begun, _checks = self.curves.ahead(batch, self.tabulated)
         _progress, _first, rows = self.impacts.ahead(batch, begun, self.before, self.together)
-        return begun, rows
+        if self.drawn:
+            begun, rows, body = unbatched_shapes((begun, rows, batch.body))
+            conversion.compile_ahead(whole(begun, rows), body)
 
     @property
     def before(self) -> FirstImpact | None:
