@@ -176,18 +176,16 @@ def _of_one(
     drawn: bool = False,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
-    # A motion in time solves its contact as it goes: it reads no scanning curve off a table.
-    many = many and problem.delayed is None and problem.relaxation is None
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
-        Steps.of_one(contact, body, many=many, drawn=drawn), clock,
+        Steps.of_one(contact, body, many=many and not _in_time(problem), drawn=drawn), clock,
         refinements=refinements, checked=checked, launched=launched,
     )  # fmt: skip
 
 
 def _solution(problem: Problem, motion: BatchMotion) -> Solution:
     """The motion of the one case of a batch, which is not integrated yet."""
-    if problem.delayed is not None or problem.relaxation is not None:
+    if _in_time(problem):
         return _integrate_in_time(problem, motion)
     outcome = None
     try:
@@ -202,6 +200,11 @@ def _solution(problem: Problem, motion: BatchMotion) -> Solution:
     moved = whole(unbatched(ends[0]), unbatched(rows))
     outcome = outcome or ENDS[int(moved.end.outcome)]
     return Solution(moved, _contact(problem, motion), outcome, body=_body(problem, motion))
+
+
+def _in_time(problem: Problem) -> bool:
+    """Whether the contact is solved as the body moves: such a motion reads no scanning curve."""
+    return problem.delayed is not None or problem.relaxation is not None
 
 
 def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:
@@ -255,6 +258,7 @@ def _body(problem: Problem, motion: BatchMotion) -> Body:
 def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     release = float(problem.contact.interaction_range) + CLEARANCE
-    clear = dataclasses.replace(problem.body, release=release, drags=())
-    place = float(prepared(problem.contact, clear, many=many)[1].equilibrium)
-    return f"; at rest the separation is {place * 1e9:.4g} nm" if np.isfinite(place) else ""
+    clear = dataclasses.replace(problem.body, release=release)
+    _, reference = prepared(problem.contact, clear, many=many and not _in_time(problem))
+    at_rest = float(reference.equilibrium)
+    return f"; at rest the separation is {at_rest * 1e9:.4g} nm" if np.isfinite(at_rest) else ""
