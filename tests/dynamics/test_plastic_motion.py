@@ -8,8 +8,7 @@ import asperity
 from asperity._jax import jax, jnp
 from asperity.config import builtin, load
 from asperity.config.resolve import resolve
-from asperity.errors import InputError, SimulationError
-from asperity.integration.batch_motion import REFINEMENTS
+from asperity.errors import InputError
 from asperity.model import build
 from asperity.results.read_record import read as read_record
 
@@ -143,8 +142,8 @@ def test_asperities_far_softer_than_stiff_meet_the_usual_tolerance(case):
     assert result.ledger["lost"]["plastic"] > 0.9 * result.ledger["initial"]
 
 
-def test_curves_that_more_panels_do_not_mend_are_given_up_at_once():
-    """The panels on which asperities spring back, too few here, do not grow with the others."""
+def test_panels_are_cut_where_their_error_is():
+    """Those on which flattened asperities spring back are too few for so small a tolerance."""
     base = []
     case = builtin("published-exact").replace(
         {
@@ -155,6 +154,6 @@ def test_curves_that_more_panels_do_not_mend_are_given_up_at_once():
             "numerics.tolerance": 1e-10,
         }
     )
-    with pytest.raises(SimulationError, match=r"relative error of .*e-09, not"):
-        asperity.solve(case, progress=lambda _, text: base.append(text), critical=False)
-    assert base.count("force curves") < len(REFINEMENTS)
+    result = asperity.solve(case, progress=lambda _, text: base.append(text), critical=False)
+    assert result.ledger["energy_balance_error"] < 1e-9
+    assert base.count("force curves") > 1

@@ -15,11 +15,15 @@ from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..contact.contact import Contact, Memory, State, YieldingContact
+from ..laws.law import Real
 from ..numerics.compilation import kept
 from ..numerics.polynomials import ANTIDERIVATIVE, NODES, chebyshev_sum, from_points, local
 
 ENERGY_SAMPLES = 24
 """Points of a panel at which the kinetic energy is sampled, its ends among them."""
+
+NO_CUTS = np.zeros(0)
+"""Panels as the contact has them."""
 
 _LEAST = 1e-6  # of the largest work: errors are not asked to be small against less
 _ENERGY_SAMPLES = np.linspace(-1.0, 1.0, ENERGY_SAMPLES)
@@ -96,9 +100,9 @@ class Table(NamedTuple):
         The first branch has no bonds kept, the last has all.
     works
         Their integrals.
-    error
-        Work of the last Chebyshev coefficients of the force on a panel, relative to the work
-        from outside to there: an estimate of the interpolation error.
+    errors
+        Work of the last Chebyshev coefficients of the force on each panel, relative to the work
+        from outside to there: an estimate of the interpolation error, shape (panels,).
     residual
         Largest error estimate of the contact itself.
     left
@@ -110,10 +114,15 @@ class Table(NamedTuple):
     ends: jax.Array
     values: jax.Array
     works: Works
-    error: jax.Array
+    errors: jax.Array
     residual: jax.Array
     left: Any = ()
     reversals: Any = ()
+
+    @property
+    def error(self) -> jax.Array:
+        """The largest of :attr:`errors`."""
+        return jnp.max(self.errors)
 
     @property
     def looks(self) -> jax.Array:
@@ -167,13 +176,27 @@ def quantities(contact: Contact) -> Quantities:
     return Quantities(len(contact.mechanisms), len(contact.components))
 
 
-def tabulate(contact: Contact, low: jax.Array, high: jax.Array) -> Table:
-    """Solve a contact on its major branches between two separations [m]."""
-    return _tabulated(contact, low, high, lambda ends, places, values: values)
+def tabulate(contact: Contact, low: jax.Array, high: jax.Array, cuts: Real = NO_CUTS) -> Table:
+    """Solve a contact on its major branches between two separations [m].
+
+    Parameters
+    ----------
+    contact
+        The contact.
+    low, high
+        The separations [m].
+    cuts
+        Separations [m] at which panels end too, where forces are not negligible.
+    """
+    return _tabulated(contact, (low, high), cuts, lambda ends, places, values: values)
 
 
 def tabulate_again(
-    contact: YieldingContact, before: Table, memory: Memory, turn: jax.Array
+    contact: YieldingContact,
+    before: Table,
+    memory: Memory,
+    turn: jax.Array,
+    cuts: Real = NO_CUTS,
 ) -> Table:
     """Solve a contact that yields as its first impact leaves it.
 
@@ -186,6 +209,8 @@ def tabulate_again(
         and stands for all others below the deepest point, which nothing reaches again.
     memory, turn
         Memory and separation [m] at the deepest point.
+    cuts
+        As for :func:`tabulate`.
     """
     left = contact.left_by(memory, turn)
 
@@ -194,17 +219,19 @@ def tabulate_again(
         deeper = (ends[1:] <= turn)[:, None, None]
         return jnp.concatenate([first[None], jnp.where(deeper, first, values)])
 
-    table = _tabulated(contact.after(left), before.ends[0], before.ends[-1], joined)
+    span = before.ends[0], before.ends[-1]
+    table = _tabulated(contact.after(left), span, cuts, joined)
     return table._replace(left=left)
 
 
 def _tabulated(
     contact: Contact,
-    low: jax.Array,
-    high: jax.Array,
+    span: tuple[jax.Array, jax.Array],
+    cuts: Real,
     joined: Callable[[jax.Array, jax.Array, jax.Array], jax.Array],
 ) -> Table:
-    ends = jax.lax.stop_gradient(contact.panels(low, high))
+    ends = jax.lax.stop_gradient(contact.panels(*span))
+    ends = jnp.sort(jnp.concatenate([ends, jnp.clip(cuts, ends[0], ends[-1])]))
     points = chebyshev.chebpts1(NODES)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
     states = contact.curves(ends, places)
@@ -218,7 +245,7 @@ def _tabulated(
     work = jnp.cumsum(done[:, ::-1], axis=1)[:, ::-1]
     work = work + _LEAST * jnp.max(work)
     error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
-    return Table(ends, values, _works(ends, values), jnp.max(error), jnp.max(errors))
+    return Table(ends, values, _works(ends, values), jnp.max(error, axis=0), jnp.max(errors))
 
 
 def _read_again(table: Table, places: jax.Array) -> jax.Array:

@@ -9,9 +9,11 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..contact.contact import Contact, Held, YieldingContact
 from ..errors import Tolerance
+from ..laws.law import Real
 from .curve_table import (
     CONTACTING,
     FORCE,
+    NO_CUTS,
     SIZE,
     STORED,
     Table,
@@ -38,11 +40,20 @@ FEW = 8
 """Impacts up to which each reversal is better solved as it comes."""
 
 
-def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Reference]:
+def prepare(
+    contact: Contact, body: Body, many: bool = False, cuts: Real = NO_CUTS
+) -> tuple[Table, Reference]:
     """Tabulate a contact over all separations that a body can reach; find its static equilibrium.
 
-    With the scanning curves where ``many`` impacts follow (static): a few are integrated sooner
-    without.
+    Parameters
+    ----------
+    contact, body
+        What moves on what.
+    many
+        Whether the scanning curves are tabulated too (static): a few impacts are integrated
+        sooner without.
+    cuts
+        As for :func:`asperity.dynamics.curve_table.tabulate`.
     """
     low = jax.lax.stop_gradient(
         contact.lower_bound(body.release, body.kinetic, body.load.potential)
@@ -54,9 +65,9 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     low = jnp.minimum(low, body.release - 1e-3 * jnp.abs(body.release))
     yields = isinstance(contact, YieldingContact)
     if isinstance(contact, YieldingContact):
-        table = _yielded_table(contact, body, low, high)
+        table = _yielded_table(contact, body, low, high, cuts)
     else:
-        table = tabulate(contact, low, high)
+        table = tabulate(contact, low, high, cuts)
     if body.rebounds_from is None:
         reference = find_reference(table, body.load, int(yields))
     else:
@@ -66,16 +77,18 @@ def prepare(contact: Contact, body: Body, many: bool = False) -> tuple[Table, Re
     return table, reference
 
 
-def _yielded_table(contact: YieldingContact, body: Body, low: jax.Array, high: jax.Array) -> Table:
+def _yielded_table(
+    contact: YieldingContact, body: Body, low: jax.Array, high: jax.Array, cuts: Real
+) -> Table:
     """The curves of a contact that yields, before its first impact and as that leaves it.
 
     Nothing that follows goes deeper than the first impact: it has lost energy since.
     """
-    before = tabulate(contact, low, high)
+    before = tabulate(contact, low, high, cuts)
     progress, _origin = start(contact, body, before)
     rest = Rest(find_reference(before, body.load, 0).equilibrium, jnp.zeros(()))
     after, _fall = _phase_of_impact(contact, body, before, rest, progress, jnp.asarray(False))
-    return tabulate_again(contact, before, after.memory, after.place)
+    return tabulate_again(contact, before, after.memory, after.place, cuts)
 
 
 def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:

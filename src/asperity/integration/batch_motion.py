@@ -14,15 +14,16 @@ from ..dynamics.release import TRIES, farther, negligible_force
 from ..errors import InputError, SimulationError
 from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows, is_array, slices, taken
 from .clock import Clock
+from .panel_cuts import CutPanels
 from .steps import Steps
 
 REFINEMENTS = (1, 2, 4, 8)
-"""Times the panels, one after the other, until the curves meet the tolerance."""
+"""Times the panels, at most, one after the other, until the curves meet the tolerance."""
 
 RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
-_GAIN = 0.9  # of the error is left by four times the panels: where more is, no more would help
+_LEAST = 4  # panels that count as one time, where a contact has fewer
 _RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
 
@@ -64,8 +65,6 @@ class BatchMotion:
     ----------
     made
         Number of impacts of each case, shape (cases,).
-    factors
-        Times the panels that each one's curves have, shape (cases,).
     failures
         Why a case failed, by its place.
     """
@@ -83,12 +82,11 @@ class BatchMotion:
     ) -> None:
         self.batch, self.steps, self.clock = batch, steps, clock
         self.made = np.zeros(tolerance.size, int)
-        self.factors = np.ones(tolerance.size, int)
         self.failures: dict[int, Exception] = {}
         self._tolerance, self._refinements = tolerance, refinements
         self._checked, self._launched = checked, launched
         self._waiting = np.arange(tolerance.size)  # for curves that are fine enough
-        self._errors = np.full((tolerance.size, 2), np.inf)  # of its last curves but one, its last
+        self._panels = [CutPanels()] * tolerance.size
         self._tries = np.zeros(tolerance.size, int)
         self._rows: list[tuple[np.ndarray, np.ndarray, ImpactRows]] = []
         self._ends: list[np.ndarray] = []
@@ -107,60 +105,68 @@ class BatchMotion:
 
     def _at(self, factor: int, *, moving: bool) -> Iterator[Slice]:
         """Those that so many times the panels are fine enough for; the others wait."""
-        places, self._waiting = self._waiting, self._waiting[:0]
+        most = self._most_cuts(factor)
+        fits = np.array([self._panels[place].cuts.size <= most for place in self._waiting], bool)
+        places, self._waiting = self._waiting[fits], self._waiting[~fits]
         while places.size:
             again = [places[:0]]
             for some in slices(places, self.steps.width):
-                contact = self.batch.contact
-                contact = contact.refined(factor) if factor > 1 else contact
-                here = taken(self.batch._replace(contact=contact), some)
-                begun, checks = self._curves(here, moving=moving)
-                last = factor == self._refinements[-1]
-                some = np.where(self._are_fine(some, here, checks, last=last), some, -1)
+                here = taken(self.batch, some)
+                begun, checks = self._curves(here, self._cuts(some, factor), moving=moving)
+                fine, cut = self._are_fine(some, here, checks, factor)
+                again.append(some[cut])
+                some = np.where(fine, some, -1)
                 moved = self._move_out(some, here, checks)
                 again.append(some[moved])
                 some = np.where(moved, -1, some)
                 some = np.where(self._are_outside(some, here, checks), some, -1)
-                self.factors[some[some >= 0]] = factor
                 if np.any(some >= 0):
                     yield Slice(some, here, begun, self.steps.before)
             places = np.concatenate(again)
 
-    def _curves(self, here: Batch, *, moving: bool) -> tuple[Begun, Checks]:
+    def _curves(self, here: Batch, cuts: np.ndarray, *, moving: bool) -> tuple[Begun, Checks]:
         clock, steps = self.clock, self.steps
         clock.look()
         clock.report(0.02, "tracing")
         if moving and self._checked:  # what is launched runs programs that are compiled already
-            steps.compile_ahead(here)
-        call = clock.ready(0.04, "the force curves", steps.curves, here, steps.tabulated)
+            steps.compile_ahead(here, cuts)
+        call = clock.ready(0.04, "the force curves", steps.curves, here, cuts, steps.tabulated)
         clock.report(0.06, "force curves")
         answer: tuple[Begun, Checks] = clock.timed(call)
         return answer
 
+    def _cuts(self, places: np.ndarray, factor: int) -> np.ndarray:
+        """Where the panels of cases are cut, as often as ``factor`` times their number allows."""
+        count, cases = self._most_cuts(factor), np.where(places < 0, places.max(), places)
+        return np.stack([self._panels[k].padded(count) for k in cases.tolist()])
+
+    def _most_cuts(self, factor: int) -> int:
+        return (factor - 1) * max(self.batch.contact.resolved.panels, _LEAST)
+
     def _are_fine(
-        self, places: np.ndarray, here: Batch, checks: Checks, *, last: bool
-    ) -> np.ndarray:
-        """Whether the curves of each case hold; others wait for more panels, or have failed."""
-        error, residual = np.asarray(checks.error), np.asarray(checks.residual)
-        real, tolerance = places >= 0, self._tolerance[places]
-        fine = error <= np.maximum(tolerance, here.contact.resolved.error_floor)
-        fails = last | (error > _GAIN * self._errors[places, 0])
-        for slot in np.flatnonzero(real & ~fine & fails).tolist():
-            self.failures[int(places[slot])] = SimulationError(
-                f"force curves reach a relative error of {error[slot]:.1e}, "
-                f"not `numerics.tolerance` = {tolerance[slot]:.1e}"
-            )
-        waits = real & ~fine & ~fails
-        self._waiting = np.concatenate([self._waiting, places[waits]])
-        self._errors[places[waits]] = np.stack([self._errors[places, 1], error], axis=1)[waits]
-        solved = residual <= _RESIDUAL
-        for slot in np.flatnonzero(real & fine & ~solved).tolist():
-            self.failures[int(places[slot])] = SimulationError(
-                "pressure and deformation do not agree: relative force error "
-                f"{residual[slot]:.1e}. The contact has no equilibrium that follows "
-                "from the one before (strong adhesion on soft bodies folds it)"
-            )
-        return np.asarray(real & fine & solved)
+        self, places: np.ndarray, here: Batch, checks: Checks, factor: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Whether the curves of each case hold, and whether those of others are cut further.
+
+        Where no more cuts have room at this factor, a case waits for the next one, or has failed.
+        """
+        ends, errors, residual, reach = (np.asarray(leaf) for leaf in checks[:4])
+        error, real, tolerance = np.max(errors, axis=1), places >= 0, self._tolerance[places]
+        allowed = np.maximum(tolerance, here.contact.resolved.error_floor)
+        fine, solved = error <= allowed, residual <= _RESIDUAL
+        cut, most = np.zeros(places.shape, bool), self._most_cuts(self._refinements[-1])
+        for slot in np.flatnonzero(real & ~(fine & solved)).tolist():
+            place = int(places[slot])
+            before = self._panels[place]
+            after = before.finer(ends[slot], errors[slot], reach[slot], allowed[slot], most)
+            if fine[slot] or after.stuck or after.cuts.size == before.cuts.size:
+                self.failures[place] = _failure(error[slot], tolerance[slot], residual[slot])
+                continue
+            self._panels[place] = after
+            cut[slot] = after.cuts.size <= self._most_cuts(factor)
+            if not cut[slot]:
+                self._waiting = np.append(self._waiting, place)
+        return np.asarray(real & fine & solved), cut
 
     def _move_out(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
         """Whether each case is begun anew, from a release further out, where none was given."""
@@ -277,6 +283,20 @@ class BatchMotion:
 
         found: ImpactRows = jax.tree_util.tree_map(whole, *rows)
         return found
+
+
+def _failure(error: float, tolerance: float, residual: float) -> SimulationError:
+    """Why curves do not hold: the contact itself comes first, whose noise no panel follows."""
+    if residual > _RESIDUAL:
+        return SimulationError(
+            f"pressure and deformation do not agree: relative force error {residual:.1e}. The "
+            "contact has no equilibrium that follows from the one before (strong adhesion on "
+            "soft bodies folds it)"
+        )
+    return SimulationError(
+        f"force curves reach a relative error of {error:.1e}, "
+        f"not `numerics.tolerance` = {tolerance:.1e}"
+    )
 
 
 def _packed(parts: list[Slice], width: int) -> Slice:

@@ -62,14 +62,20 @@ class Checks(NamedTuple):
 
     Attributes
     ----------
-    error, residual
-        Relative errors of the interpolation and of the contact's equilibrium.
+    ends, errors
+        Ends of the panels [m], and the relative error of the interpolation on each.
+    residual
+        Relative error of the contact's equilibrium.
+    reach
+        Separation [m] from which on no panel is cut.
     at_release
         The forces at the release.
     """
 
-    error: jax.Array
+    ends: jax.Array
+    errors: jax.Array
     residual: jax.Array
+    reach: jax.Array
     at_release: AtRelease
 
 

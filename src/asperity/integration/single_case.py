@@ -13,6 +13,7 @@ from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
+from ..dynamics.curve_table import NO_CUTS
 from ..dynamics.problem import CLEARANCE, Problem
 from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
@@ -134,7 +135,7 @@ def launch(
     tolerance
         Relative error allowed to the force curves [-].
     refinements
-        Times the panels that are tried.
+        As for :class:`~asperity.integration.batch_motion.BatchMotion`.
 
     Raises
     ------
@@ -159,7 +160,7 @@ def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table
     """
     steps = Steps.of_one(contact, body, many=many)
     here = Batch.of_one(contact, body, Limits.of(Tolerance()))
-    begun, _checks = unbatched(steps.curves(here, many))
+    begun, _checks = unbatched(steps.curves(here, NO_CUTS[None], many))
     return begun.table, begun.reference
 
 
@@ -199,7 +200,7 @@ def _solution(problem: Problem, motion: BatchMotion) -> Solution:
         raise SimulationError(_STOPPED)
     moved = whole(unbatched(ends[0]), unbatched(rows))
     outcome = outcome or ENDS[int(moved.end.outcome)]
-    return Solution(moved, _contact(problem, motion), outcome, body=_body(problem, motion))
+    return Solution(moved, problem.contact, outcome, body=_body(problem, motion))
 
 
 def _in_time(problem: Problem) -> bool:
@@ -217,7 +218,7 @@ def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:
     _raise_failure(motion)
     assert here is not None
     begun, limits = unbatched(here.begun), unbatched(motion.batch.limits)
-    contact, body = _contact(problem, motion), _body(problem, motion)
+    contact, body = problem.contact, _body(problem, motion)
     mechanism: Relaxation | DelayedContact | None = problem.relaxation or problem.delayed
     if isinstance(mechanism, DelayedContact) and isinstance(contact, ElasticContact):
         mechanism = Relaxation.none(mechanism)
@@ -240,12 +241,6 @@ def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:
 def _raise_failure(motion: BatchMotion) -> None:
     for failure in motion.failures.values():
         raise failure
-
-
-def _contact(problem: Problem, motion: BatchMotion) -> Contact:
-    """The contact with the panels that its curves have."""
-    factor = int(motion.factors[0])
-    return problem.contact.refined(factor) if factor > 1 else problem.contact
 
 
 def _body(problem: Problem, motion: BatchMotion) -> Body:

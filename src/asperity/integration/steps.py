@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..contact import Contact, ElasticContact, RigidContact
+from ..contact.rough import RoughContact
 from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts, prepare, start
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
@@ -43,17 +45,19 @@ _SOON: Options = {**QUICKLY, **_FAST}
 """For a few rigid or smooth bodies: they take less time than it takes to compile for them."""
 
 
-def _curves(batch: Batch, tabulated: bool) -> tuple[Begun, Checks]:
-    """The curves of each case, and its release."""
+def _curves(batch: Batch, cuts: np.ndarray, tabulated: bool) -> tuple[Begun, Checks]:
+    """The curves of each case, with panels cut at separations [m], and its release."""
 
-    def one(batch: Batch) -> tuple[Begun, Checks]:
-        contact, body = batch.contact, batch.body
-        table, reference = prepare(contact, body, tabulated)
+    def one(values: tuple[Batch, jax.Array]) -> tuple[Begun, Checks]:
+        (contact, body, _), cuts = values
+        table, reference = prepare(contact, body, tabulated, cuts)
         progress, origin = start(contact, body, table)
-        checks = Checks(table.error, table.residual, at_release(table, body))
+        # Beyond it a rough contact has panels of its own kind.
+        reach = contact.interaction_range if isinstance(contact, RoughContact) else table.ends[-1]
+        checks = Checks(table.ends, table.errors, table.residual, reach, at_release(table, body))
         return Begun(table, reference, origin, progress), checks
 
-    return _over(batch)(one)(batch)
+    return _over(batch)(one)((batch, cuts))
 
 
 def _impacts(
@@ -158,9 +162,10 @@ class Steps(NamedTuple):
         programs = _OF_ONE_ON_HALF_SPACE if few else _OF_ONE
         return cls(*programs, 1, _impacts_together(contact, body), many, drawn)
 
-    def compile_ahead(self, batch: Batch) -> None:
+    def compile_ahead(self, batch: Batch, cuts: np.ndarray | None = None) -> None:
         """Compile for a batch of the width of a call in threads, where that is not done."""
-        begun, _checks = self.curves.ahead(batch, self.tabulated)
+        cuts = np.zeros((self.width, 0)) if cuts is None else cuts
+        begun, _checks = self.curves.ahead(batch, cuts, self.tabulated)
         _progress, _first, rows = self.impacts.ahead(batch, begun, self.before, self.together)
         if self.drawn:
             begun, rows, body = unbatched_shapes((begun, rows, batch.body))

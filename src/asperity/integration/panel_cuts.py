@@ -1,0 +1,67 @@
+"""Where the panels of force curves are cut: there where their error is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+_ORDER = 6.0  # power of a panel's width with which its error falls, at least, where it is smooth
+_PARTS = 4  # into which a panel is cut at once: its error may lie at one place of it
+_SAFE = 0.3  # of the error allowed: panels with more are cut
+_GAIN = 0.9  # of the error is left by several more cuts: where more is, no more would help
+_TRIES = 4  # that are looked back for it
+_EMPTY = np.zeros(0)
+
+
+class CutPanels(NamedTuple):
+    """Panels of one case's curves, cut again and again.
+
+    Attributes
+    ----------
+    cuts
+        Separations [m] at which panels end besides their own ends.
+    errors
+        The largest error of each curve so far.
+    """
+
+    cuts: np.ndarray = _EMPTY
+    errors: tuple[float, ...] = ()
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the last curves are hardly better than those some tries before."""
+        if len(self.errors) <= _TRIES:
+            return False
+        return min(self.errors[-_TRIES:]) > _GAIN * min(self.errors[:-_TRIES])
+
+    def finer(
+        self, ends: np.ndarray, errors: np.ndarray, reach: float, allowed: float, most: int
+    ) -> CutPanels:
+        """Cut once more, where the errors of the last curves are.
+
+        Parameters
+        ----------
+        ends
+            Ends of their panels [m], ascending, shape (panels + 1,).
+        errors
+            Relative error on each panel [-], shape (panels,).
+        reach
+            Separation [m] from which on no panel is cut.
+        allowed
+            Relative error allowed [-].
+        most
+            Number of cuts that there may be in all: the worst panels come first.
+        """
+        width = np.minimum(ends[1:], reach) - ends[:-1]
+        bad = np.flatnonzero((errors > _SAFE * allowed) & (width > 0.0))
+        bad = bad[np.argsort(-errors[bad])]
+        parts = np.ceil((errors[bad] / (_SAFE * allowed)) ** (1.0 / _ORDER))
+        shares = [np.arange(1.0, n) / n for n in np.clip(parts, 2, _PARTS)]
+        new = [ends[k] + width[k] * share for k, share in zip(bad, shares, strict=True)]
+        cuts = np.concatenate([self.cuts, *new])[:most]
+        return CutPanels(cuts, (*self.errors, float(np.max(errors))))
+
+    def padded(self, count: int) -> np.ndarray:
+        """So many cuts; those that there are not lie below all panels."""
+        return np.append(self.cuts, np.full(count - self.cuts.size, -np.inf))

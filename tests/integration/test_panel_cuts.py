@@ -1,0 +1,68 @@
+"""Panels are cut where the error of their polynomials is."""
+
+import numpy as np
+import pytest
+
+from asperity.integration.panel_cuts import CutPanels
+
+NODES = 16
+GOAL = 1e-9
+FIRST = np.linspace(-1.0, 1.0, 7)
+
+
+def errors_of(function, ends):
+    """Largest of the last two Chebyshev coefficients on each panel."""
+    points = np.polynomial.chebyshev.chebpts1(NODES)
+    fitted = np.linalg.inv(np.polynomial.chebyshev.chebvander(points, NODES - 1))
+    middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
+    values = function(middle[:, None] + half[:, None] * points)
+    return np.max(np.abs(values @ fitted.T)[:, -2:], axis=1)
+
+
+def cut_until_fine(function, most, first=FIRST, reach=np.inf):
+    """The panels once they are fine, or not cut any more; how often curves were made."""
+    panels, tries = CutPanels(), 0
+    while True:
+        ends = np.sort(np.concatenate([first, panels.cuts]))
+        errors, tries = errors_of(function, ends), tries + 1
+        after = panels.finer(ends, errors, reach, GOAL, most)
+        if np.max(errors) <= GOAL or after.stuck or after.cuts.size == panels.cuts.size:
+            return panels, errors, tries
+        panels = after
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-3, 1e-4])
+def test_a_steep_place_is_found_and_resolved_by_a_few_panels(width):
+    """Evenly, 2 / width panels would be needed."""
+    panels, errors, tries = cut_until_fine(lambda x: np.tanh((x - 0.31) / width), 100)
+    assert np.max(errors) <= GOAL
+    assert panels.cuts.size < 12 * np.log2(2.0 / width)
+    assert tries < 12
+    assert np.median(np.abs(panels.cuts - 0.31)) < 30.0 * width
+
+
+def test_what_is_smooth_is_not_cut():
+    panels, errors, _ = cut_until_fine(lambda x: np.sin(x) + 50.0 * np.tanh(1e3 * (x - 0.31)), 200)
+    assert np.max(errors) <= GOAL
+    assert np.all((panels.cuts > 0.0) & (panels.cuts < 2.0 / 3.0))
+
+
+def test_a_jump_is_given_up_with_an_error_that_does_not_fall():
+    panels, errors, tries = cut_until_fine(lambda x: np.where(x > 0.1234, 1.0, 0.0), 200)
+    assert panels.cuts.size < 200
+    assert np.max(errors) > 0.01
+    assert tries < 8
+
+
+def test_no_more_cuts_than_there_may_be_the_worst_panels_first():
+    panels, errors, _ = cut_until_fine(lambda x: np.abs(x - 0.2) + 1e-3 * np.abs(x + 0.7), 5)
+    assert panels.cuts.size == 5
+    assert np.all(np.abs(panels.cuts[:3] - 0.2) < 0.34)
+    np.testing.assert_array_equal(panels.padded(7)[5:], -np.inf)
+    assert np.max(errors) > GOAL
+
+
+def test_nothing_is_cut_beyond_the_reach():
+    panels, _, _ = cut_until_fine(lambda x: np.tanh(40.0 * (x - 0.31)), 50, reach=0.25)
+    assert panels.cuts.size > 0
+    assert np.all(panels.cuts < 0.25)
