@@ -7,11 +7,11 @@ from pathlib import Path
 import platformdirs
 
 FLAGS = (
-    "--xla_cpu_multi_thread_eigen=false --xla_backend_optimization_level=1 "
+    "--xla_cpu_multi_thread_eigen=false --xla_backend_optimization_level=0 "
     "--xla_cpu_use_fusion_emitters=false --xla_cpu_parallel_codegen_split_count=4 "
     "--xla_disable_hlo_passes=while-loop-invariant-code-motion"
 )
-"""Those with which the program compiles a single case: half the time of XLA's own."""
+"""As the program compiles a single case, less optimised: most tests run what they compile once."""
 
 
 def prepare() -> None:

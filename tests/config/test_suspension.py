@@ -126,6 +126,7 @@ def test_a_record_reads_back(switch, tmp_path):
     np.testing.assert_array_equal(again.forces["spring"], switch.forces["spring"])
 
 
+@pytest.mark.long
 def test_a_study_of_springs_has_the_numbers_of_its_cases(switch):
     study = parse(
         "schema = 1\n"

@@ -197,6 +197,7 @@ def test_it_may_be_stopped():
     assert len(result.measures["restitution"]) == 1
 
 
+@pytest.mark.long
 def test_body_and_edge_that_turn_together_are_one_turn():
     """Where rounding puts the edge first the turn must not be lost: two impacts would be one."""
     case = load(SMOOTH.replace("= 3\n", "= 6\n") + CREEPS.replace("0.4", "0.03"))

@@ -18,6 +18,7 @@ from asperity.laws import Dmt, Hertz, Meniscus
 from asperity.model import build
 from asperity.numerics.krylov import CLOSE, nearly_solved
 from asperity.surfaces.heights import Gaussian
+from chosen import long_but
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)
@@ -75,7 +76,7 @@ def test_rates_are_those_of_rings_at_two_places():
 
 
 @pytest.mark.parametrize("humidity", [0.05, 0.6])
-@pytest.mark.parametrize("rms", ["2 nm", "10.5 nm"])
+@pytest.mark.parametrize("rms", long_but(["2 nm", "10.5 nm"], "10.5 nm"))
 def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms, humidity):
     """Liquid wets far more than what asperities carry: mesh and scanning curve take it in."""
     case = asperity.load("published-exact").replace(

@@ -31,6 +31,7 @@ from asperity.model import build
 from asperity.regimes.liquid_regime import liquid_state
 from asperity.results.measures import measure
 from asperity.surfaces.heights import Gaussian
+from chosen import long_but
 
 ANGLE, TENSION, RADIUS = radians(40.0), 0.0728, 20e-9
 SMALL = ConstantVolume(RADIUS, TENSION, ANGLE, 0.4e-9)
@@ -262,7 +263,7 @@ AREAS = {
 }
 
 
-@pytest.mark.parametrize("name", AREAS)
+@pytest.mark.parametrize("name", long_but(AREAS, "menisci", "filling"))
 def test_the_loss_of_an_impact_is_the_area_between_the_branches(name, monkeypatch):
     """To its deepest point and back, with many places for Simpson's rule."""
     monkeypatch.setattr(quasi_static, "_POINTS", 8000)

@@ -133,6 +133,7 @@ def test_energies_add_up_with_laws_beside_a_contact_that_yields():
     assert np.all(restitution[1:, 0] < dry[1:, 0])
 
 
+@pytest.mark.long
 def test_a_sphere_too_hard_to_yield_moves_as_one_that_cannot():
     hard = SmoothPlasticContact(ThorntonNing(RADIUS, MODULUS, 1e13), beside())
     rows, restitution, made = integrate(hard, SPEEDS, EARTH)
@@ -148,6 +149,7 @@ def test_a_sphere_too_hard_to_yield_moves_as_one_that_cannot():
     np.testing.assert_allclose(rows.lost[..., 1], theirs[0].lost[..., 0], rtol=1e-8)
 
 
+@pytest.mark.long
 def test_without_laws_beside_contact_the_work_that_is_kept_is_all_that_is_lost():
     sphere = JacksonGreen(RADIUS, MODULUS, 60e6, 0.3)
     rows, restitution, _ = integrate(SmoothPlasticContact(sphere), SPEEDS)

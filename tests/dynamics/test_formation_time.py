@@ -26,6 +26,7 @@ from asperity.errors import Tolerance
 from asperity.interface.interface import Interface
 from asperity.laws import ConstantVolume, Hertz, Jkr, Meniscus
 from asperity.surfaces.heights import Gaussian
+from chosen import long_but
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
@@ -69,7 +70,9 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["rough", "rough in air", "smooth", "smooth, adhesive"])
+@pytest.mark.parametrize(
+    "name", long_but(["rough", "rough in air", "smooth", "smooth, adhesive"], "rough", "smooth")
+)
 def test_short_formation_tends_to_formation_at_once_in_proportion_to_the_time(name):
     contact, body = CASES[name]
     prompt = at_once(contact, body).impacts

@@ -33,6 +33,7 @@ def lost(case):
     return float(impacts(case).lost[0, 0])
 
 
+@pytest.mark.long
 def test_short_formation_tends_to_formation_at_once_in_proportion_to_the_time(case):
     at_once = lost(case.replace({"capillary.formation_time": None}))
     more = [

@@ -260,6 +260,7 @@ def decrement():
     return jax.jit(jax.value_and_grad(first))
 
 
+@pytest.mark.long
 def test_gradient_of_the_decrement_with_respect_to_roughness(decrement):
     """jax.grad of a JKR case against a central difference of fourth order."""
     step = 2e-12

@@ -234,6 +234,7 @@ def test_a_dashpot_captures_as_an_integration_in_time_does():
     assert closure(motion) < 1e-10
 
 
+@pytest.mark.long
 def test_a_period_has_the_derivative_of_its_root():
     """d ln T/d ln k = -1/2, through the whole motion."""
 

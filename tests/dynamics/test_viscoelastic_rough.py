@@ -149,6 +149,7 @@ def _mesh(told):
     return ring_mesh(told.rings)
 
 
+@pytest.mark.long
 def test_many_asperities_at_high_load_lose_what_the_smooth_sphere_does():
     """Two codes that share nothing: rings and implicit steps, and the exact foundation."""
     body = Body(MASS, 9.81, 0.2e-6, 3.0)

@@ -21,6 +21,7 @@ from asperity.interface.radius_classes import RadiusClasses, members
 from asperity.laws import Bradley, ByKelvinGap, ConstantVolume, Dmt, Hertz, Jkr, Maugis, Meniscus
 from asperity.results.measures import measure
 from asperity.surfaces.heights import Gaussian, Sampled, spread_of
+from chosen import long_but
 
 E, W, SIGMA, N = 5e9, 0.05, 4e-9, 1e14
 ANGLE = radians(40.0)
@@ -237,7 +238,7 @@ TABULATED = {
 }
 
 
-@pytest.fixture(scope="module", params=TABULATED)
+@pytest.fixture(scope="module", params=long_but(TABULATED, "jkr", "maugis"))
 def two_ways(request):
     """Two classes whose branches are tabulated, and the same by quadrature throughout."""
     parts = measured_surface(
@@ -390,7 +391,9 @@ def wet(radius):
     return Hertz(radius, STIFF) + Dmt(radius, 0.03) + Meniscus(radius, 0.0728, 0.9, 0.8e-9)
 
 
-@pytest.mark.parametrize(("law", "spread"), [(wet, 0.05), (wet, 1e-3), (JKR, 0.05)])
+@pytest.mark.parametrize(
+    ("law", "spread"), long_but([(wet, 0.05), (wet, 1e-3), (JKR, 0.05)], (wet, 1e-3))
+)
 def test_the_ledger_closes_on_summits_of_two_levels(law, spread):
     """Such as steps that were etched: curves and ways are cut as finely as their heights ask."""
     random = np.random.default_rng(0)
@@ -446,6 +449,7 @@ def along_heights_and_radii():
     return both, first, ways
 
 
+@pytest.mark.long
 def test_decrement_of_summits_has_a_derivative_along_their_heights_and_radii():
     """Forward, 1000 heights and 1000 radii at once, against central differences to 1e-7."""
     both, *_ = along_heights_and_radii()

@@ -162,6 +162,7 @@ def integrated():
     return jax.jit(integrate)
 
 
+@pytest.mark.long
 def test_a_law_without_powers_is_integrated_and_moves_the_body_alike(integrated):
     known = asperities("dmt + meniscus", 0.1)
     beside = Sum((Unknown(DMT.radius, DMT.work_of_adhesion), *known.law.parts[1:]))

@@ -282,6 +282,7 @@ def test_bad_tables_are_refused_before_anything_is_computed(tmp_path: Path, monk
     assert "t.csv (line 1): the column `table` is missing" in ran.stderr
 
 
+@pytest.mark.long
 def test_refit_without_a_value_says_which_and_keeps_the_rest(tmp_path: Path, monkeypatch):
     """The stiction time of one row: 3, and inputs as good as with it."""
     monkeypatch.chdir(tmp_path)
@@ -314,6 +315,7 @@ def test_refit_of_tables_that_cannot_be_met_says_which(tmp_path: Path, monkeypat
     assert Path("out/figure-8.png").is_file()
 
 
+@pytest.mark.long
 def test_a_refit_may_find_a_release_for_a_surface_that_the_built_in_one_does_not_clear(
     tmp_path: Path, monkeypatch
 ):
@@ -367,6 +369,7 @@ def test_a_body_that_never_leaves_contact_has_figures_too(tmp_path: Path, monkey
     assert "NaN" not in Path("out/reproduction.json").read_text()
 
 
+@pytest.mark.long
 def test_a_refit_of_smoother_surfaces_keeps_its_inputs(tmp_path: Path, monkeypatch):
     """A release within contact on the publication's surface: 3, says so, files all the same."""
     monkeypatch.chdir(tmp_path)

@@ -14,6 +14,7 @@ from asperity.solver import solve
 from asperity.sweeps.compute.batch import compute, evaluate
 from asperity.sweeps.compute.building import built
 from asperity.sweeps.study.study import parse
+from chosen import long_but
 
 KEEP = """keep = ["captured", "impact_speed", "restitution", "rebound_height", "log_decrement",
  "rebound_period", "power_loss", "capture_time", "time_to_rest", "last_apex_time",
@@ -100,7 +101,7 @@ def plain(values):
     return [np.nan if value is None else float(value) for value in values]
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", long_but(STUDIES, "rough", "smooth"))
 def test_cases_side_by_side_are_the_cases_one_by_one(name):
     study = parse("schema = 1\n" + STUDIES[name])
     columns, effort = compute(study, 0)
@@ -205,6 +206,7 @@ def test_turning_points_are_kept_in_order_of_time():
     assert times[count - 1] == pytest.approx(result.time[-1])
 
 
+@pytest.mark.long
 def test_cases_that_are_stepped_in_time_have_the_same_columns():
     text = KEEP.replace("keep_impacts", "motions = true\nkeep_impacts") + """
 [axes]

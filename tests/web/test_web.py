@@ -225,6 +225,7 @@ def test_silent_connections_do_not_keep_others_out():
         assert status == 200
 
 
+@pytest.mark.long
 def test_ten_thousand_requests_leave_it_answering_in_bounded_memory():
     with served("--quiet") as (running, port):
         flood(port, 1000, within=20.0)

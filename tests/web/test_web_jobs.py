@@ -24,6 +24,7 @@ from asperity.errors import InputError, SimulationError
 from asperity.web import app as pages
 from asperity.web import jobs as desks
 from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
+from chosen import long_but
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it would rather have another client
@@ -660,14 +661,11 @@ def test_compilations_are_heard():
     assert found
 
 
-STEPPED = {"menisci that take time on a half-space", "bulk that creeps"}
-"""Kinds of which every answer takes seconds."""
+QUICK = ("rigid", "asperities that yield", "menisci that take time")
+"""Kinds that compile and answer soon."""
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [pytest.param(kind, marks=pytest.mark.long) if kind in STEPPED else kind for kind in KINDS],
-)
+@pytest.mark.parametrize("kind", long_but(KINDS, *QUICK))
 def test_a_slider_never_compiles(client: TestClient, kind: str, real: None):
     """Values are traced: after one answer to a case, none of its numbers needs a new program."""
     form = client.get("/api/form").json()["tables"]
