@@ -5,9 +5,14 @@ import pytest
 
 import asperity
 from asperity.config import load_file
+from asperity.config.resolve import resolve
 from asperity.critical_velocity import Launcher
+from asperity.dynamics import Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
 from asperity.errors import InputError
+from asperity.integration import integrate
+from asperity.integration.batch_motion import BatchMotion
+from asperity.model import build
 from jkr_spheres import CRITICAL, MODULUS, RADIUS, W, smooth
 
 
@@ -52,6 +57,33 @@ def test_a_rough_wet_body_just_above_its_critical_velocity_leaves_and_just_below
     assert curve.captured.tolist() == [True, True, False, False]
     assert curve.critical_velocity == pytest.approx(critical, rel=1e-6)
     assert 0.0 < curve.restitution[2] < curve.restitution[3]
+
+
+def test_curves_of_a_fast_launch_serve_slower_ones(monkeypatch):
+    """Down to a quarter of its speed, with the impacts that curves of their own give."""
+    case = load_file("examples/wet-drop.toml")
+    problem = build(resolve(case))
+    solution = integrate(problem)
+    made, prepared = [], BatchMotion.curves
+
+    def counted(self):
+        made.append(1)
+        return prepared(self)
+
+    monkeypatch.setattr(BatchMotion, "curves", counted)
+    limits = Limits.of(problem.inputs.tolerance)
+    speeds = np.array([0.3, 0.5, 1.0]) * 0.05
+    shared = Launcher(problem, solution, limits)
+    served = shared.together(np.zeros(3, int), speeds)
+    assert len(made) == 1
+    for k, speed in enumerate(speeds):
+        alone = Launcher(problem, solution, limits)(float(speed))
+        assert alone.speed == pytest.approx(served.speed[k], rel=1e-9)
+        assert alone.captured == served.captured[k]
+        assert alone.excess == pytest.approx(served.excess[k], rel=1e-6)
+    assert len(made) == 4
+    shared(float(0.2 * speeds[-1]))
+    assert len(made) == 5
 
 
 def model(captured, excess):

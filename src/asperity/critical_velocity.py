@@ -14,11 +14,16 @@ from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_a
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
 from .integration import launch
+from .integration.batch_motion import Slice
 from .results.conversion import Solution, measured
 from .results.summary import amount
 
 LAUNCH_ERROR = 1e-6
 """Relative error of the force curves: an impact on worse ones is not counted."""
+
+
+SLOWER = 0.25
+"""Share of a launch speed down to which the curves for it serve: they are cut for its depth."""
 
 
 class Rebound(NamedTuple):
@@ -95,6 +100,7 @@ class Launcher:
         self._problem = problem._replace(body=body, contact=contact)
         self._many, self._stop, self._refinements = many, stop, (1, *finer)
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
+        self._curves: dict[float, Slice] = {}  # by the speed up to which they serve
 
     def __call__(self, speed: float) -> Rebound:
         """The first impact of a body launched with a speed [m/s]."""
@@ -105,12 +111,16 @@ class Launcher:
     def _launched(self, speed: float) -> Rebound:
         body = dataclasses.replace(self._problem.body, speed=speed)
         problem = self._problem._replace(body=body)
+        serve = [most for most in self._curves if SLOWER * most <= speed <= most]
         try:
-            solution = launch(
-                problem, self._limits, LAUNCH_ERROR, self._refinements, self._stop, many=self._many
-            )
+            solution, begun = launch(
+                problem, self._limits, LAUNCH_ERROR, self._refinements, self._stop,
+                many=self._many, faster=self._curves[min(serve)] if serve else None,
+            )  # fmt: skip
         except SimulationError:
             return _UNKNOWN
+        if not serve and not isinstance(problem.contact, YieldingContact):
+            self._curves[speed] = begun
         measures = measured(solution, body)
         if not np.isfinite(measures.contact_end):  # contact reaches beyond where it was launched
             return _UNKNOWN
@@ -124,8 +134,14 @@ class Launcher:
         )
 
     def together(self, cases: np.ndarray, speeds: np.ndarray) -> FirstImpacts:
-        """First impacts with several speeds [m/s], one after the other; there is one case."""
-        found, dragged = [self(speed) for speed in speeds.tolist()], self._problem.body.damped_apart
+        """First impacts with several speeds [m/s], one after the other; there is one case.
+
+        The fastest first: its curves serve others.
+        """
+        found = [_UNKNOWN] * speeds.size
+        for k in np.argsort(-speeds).tolist():
+            found[k] = self(float(speeds[k]))
+        dragged = self._problem.body.damped_apart
         return FirstImpacts.of(
             np.array([rebound.speed for rebound in found]),
             np.array([rebound.captured for rebound in found]),

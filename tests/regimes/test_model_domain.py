@@ -12,9 +12,11 @@ from scipy.integrate import quad
 import asperity
 from asperity import solver
 from asperity.config import load
+from asperity.config.case_solids import solids_of
 from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.inputs import Asperities
+from asperity.materials.solids import contact_modulus
 from asperity.regimes.model_domain import first_yield_speed, mean_overlap
 from asperity.results.verdict import verdict
 
@@ -62,6 +64,30 @@ def test_what_no_model_describes_is_refused_before_it_is_computed(key, value, wo
     with pytest.raises(InputError, match=words) as refused:
         changed(ROUGH, **{key: value})
     assert refused.value.key == key
+
+
+TIPS = {"roughness.asperity_radius": "100 nm", "roughness.asperity_density": "1e16 1/m^2"}
+ONE = (1.0 / (math.pi * 1e16)) ** 1.5 * 2.0 / (3.0 * math.pi * 1e-14)
+"""Work of adhesion over contact modulus at which DMT's contacts of these tips fill the area."""
+
+
+@pytest.mark.parametrize("model", ["jkr", "dmt", "maugis", "bradley", "auto"])
+def test_asperities_that_adhesion_makes_one_contact_are_refused_on_a_half_space(model):
+    case = load(ROUGH)
+    body, counterface = solids_of(case)
+    limit = ONE * contact_modulus(body, counterface)
+
+    def with_work(share, deformation="half-space"):
+        changes = {"adhesion.model": model, "adhesion.work": f"{share * limit} J/m^2", **TIPS}
+        if model != "jkr":
+            changes["adhesion.equilibrium_spacing"] = "0.3 nm"
+        return case.replace({**changes, "counterface.deformation": deformation})
+
+    with_work(0.999)
+    with_work(1.001, "rigid")
+    with pytest.raises(InputError, match=r"1 times the whole area \(the limit is 1\)") as refused:
+        with_work(1.001)
+    assert refused.value.key == "adhesion.work"
 
 
 def test_the_speed_of_a_fall_counts_as_well():

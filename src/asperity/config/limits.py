@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from asperity.config.asperities import asperities_of, refuse_asperities
 from asperity.config.case_solids import solids_of
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError
-from asperity.materials.solids import bar_wave_speed, named
+from asperity.inputs import Asperities
+from asperity.materials.solids import bar_wave_speed, contact_modulus, named
+
+ONE_CONTACT = 1.0
+"""Contacts of asperities at zero load, over the area, from which they count as one."""
 
 SMALLEST_BODY = 1e-9
 """Smallest radius of a body [m]: such a one has some 200 atoms, and is no continuum."""
@@ -33,8 +39,46 @@ def refuse_outside(case: CaseTables) -> None:
             key="body.radius",
         )
     if case.roughness is not None and case.roughness.files is None:
-        refuse_asperities(radius, asperities_of(case.roughness))
+        refuse_rough(case, asperities_of(case.roughness))
     _refuse_waves(case)
+
+
+def refuse_rough(case: CaseTables, rough: Asperities) -> None:
+    """Refuse asperities that are no bumps on the body, or that adhesion makes one contact.
+
+    On a half-space the latter have no equilibrium short of full contact, since its surface follows
+    theirs. At zero load one asperity has a contact of at least the radius of Derjaguin, Muller and
+    Toporov, (3 pi w R^2/(2 E*))^(1/3); that of Johnson, Kendall and Roberts is 4^(1/3) times as
+    large.
+
+    Parameters
+    ----------
+    case
+        The case.
+    rough
+        Its asperities.
+
+    Raises
+    ------
+    InputError
+        With the rule and its number.
+    """
+    refuse_asperities(case.body.radius, rough)
+    adhesion = case.adhesion
+    if adhesion.model == "none" or case.counterface.deformation == "rigid":
+        return
+    assert adhesion.work is not None
+    tips = adhesion.work * rough.asperity_radius**2 / contact_modulus(*solids_of(case))
+    contact = (1.5 * pi * tips) ** (1.0 / 3.0)
+    share = pi * contact**2 * rough.asperity_density
+    if share >= ONE_CONTACT:
+        raise InputError(
+            "`work` must leave the asperities on a half-space apart: adhesion alone presses each "
+            f"to a contact of radius {contact * 1e9:.3g} nm, all to {share:.3g} times the whole "
+            f"area (the limit is {ONE_CONTACT:g}), and they touch as one smooth surface does, a "
+            f"case without [roughness]; got {adhesion.work * 1e3:.6g} mJ/m^2",
+            key="adhesion.work",
+        )
 
 
 def _refuse_waves(case: CaseTables) -> None:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.config.asperities import asperities_of, refuse_asperities
+from asperity.config.asperities import asperities_of
 from asperity.config.case_solids import case_yielding, solids_of
+from asperity.config.limits import refuse_rough
 from asperity.config.plasticity import Plasticity
 from asperity.errors import InputError, Tolerance
 from asperity.inputs import (
@@ -51,7 +52,8 @@ def resolve(case: CaseTables) -> Inputs:
     Raises
     ------
     InputError
-        If a file of a surface cannot be used, or its asperities are as large as the body.
+        If a file of a surface cannot be used, or its asperities are as large as the body,
+        or made one contact by adhesion.
     """
     body, counterface = solids_of(case)
     rough, radius = _asperities(case), case.body.radius
@@ -108,7 +110,7 @@ def _asperities(case: CaseTables) -> Asperities | None:
     if case.roughness is None:
         return None
     rough = asperities_of(case.roughness)
-    refuse_asperities(case.body.radius, rough)
+    refuse_rough(case, rough)
     return rough
 
 

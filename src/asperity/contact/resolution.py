@@ -18,6 +18,8 @@ LINEAR = 8.0
 
 _DEEP = 5.0  # rms below the mean plane, down to where a body may come
 _SHORTEST = 4.0  # rms, where heights end soon above the mean plane: some lie below it
+_NEAR = 20.0  # rms, up to which kinks count evenly
+_LONGER = 4.0  # times, that panels are beyond
 _HEIGHTS = 17.2  # rms between the lowest and the highest
 _PIECE = 6.4  # rms of a quadrature's piece
 
@@ -83,9 +85,12 @@ def resolution_of(
         nodes, pieces = 16, max(pieces, ceil(bends / 4.0))
     if interface.yields:  # what is left of the heights is steeper than they were
         nodes, pieces = 16, max(pieces, 2)
-    # What is smooth counts as the panels do, which widen with the separation.
-    smooth = LINEAR * (asinh(interaction_range / LINEAR) - asinh(kinked / LINEAR))
-    length = max(kinked + max(smooth, 0.0), _SHORTEST)
+    # What is smooth counts as the panels do, which widen with the separation. Far out they are
+    # longer still: where curves ask for it, as at the ends of bonds that stretch far, they are cut.
+    even, near = min(kinked, _NEAR), min(interaction_range, _NEAR)
+    smooth = LINEAR * (asinh(near / LINEAR) - asinh(even / LINEAR))
+    far = LINEAR * (asinh(interaction_range / LINEAR) - asinh(near / LINEAR))
+    length = max(even + max(smooth, 0.0) + far / _LONGER, _SHORTEST)
     if not deforms:
         # One more where a law bends (Maugis and Dugdale's), which else misses 1e-8 at first.
         panels = ceil(length / panel_lengths.panel) + (bends > 0.0)

@@ -92,8 +92,14 @@ class BatchMotion:
         self._ends: list[np.ndarray] = []
         self._structure: Any = None
 
-    def integrate(self) -> None:
-        """Integrate all cases; `Stopped` is raised in between where the clock says so."""
+    def integrate(self, begun: Slice | None = None) -> None:
+        """Integrate all cases; `Stopped` is raised in between where the clock says so.
+
+        From their release, with curves that are computed first unless they are given.
+        """
+        if begun is not None:
+            self._finish([begun])
+            return
         for factor in self._refinements:
             pool = [self._go_on(some) for some in self._at(factor, moving=True)]
             self._finish([some for some in pool if some is not None])
@@ -158,7 +164,10 @@ class BatchMotion:
         for slot in np.flatnonzero(real & ~(fine & solved)).tolist():
             place = int(places[slot])
             before = self._panels[place]
-            after = before.finer(ends[slot], errors[slot], reach[slot], allowed[slot], most)
+            after = before.finer(
+                ends[slot], errors[slot], reach[slot], allowed[slot], most,
+                solved=bool(solved[slot]),
+            )  # fmt: skip
             if fine[slot] or after.stuck or after.cuts.size == before.cuts.size:
                 self.failures[place] = _failure(error[slot], tolerance[slot], residual[slot])
                 continue

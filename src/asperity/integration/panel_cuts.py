@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 _ORDER = 6.0  # power of a panel's width with which its error falls, at least, where it is smooth
-_PARTS = 4  # into which a panel is cut at once: its error may lie at one place of it
+_PARTS = 6  # into which a panel is cut at once: its error may lie at one place of it
 _SAFE = 0.3  # of the error allowed: panels with more are cut
 _GAIN = 0.9  # of the error is left by several more cuts: where more is, no more would help
 _TRIES = 4  # that are looked back for it
+_PATIENCE = 1  # tries without an equilibrium, before a contact counts as one that has none
 _EMPTY = np.zeros(0)
 
 
@@ -23,20 +24,32 @@ class CutPanels(NamedTuple):
         Separations [m] at which panels end besides their own ends.
     errors
         The largest error of each curve so far.
+    unsolved
+        How often the contact had no equilibrium somewhere.
     """
 
     cuts: np.ndarray = _EMPTY
     errors: tuple[float, ...] = ()
+    unsolved: int = 0
 
     @property
     def stuck(self) -> bool:
         """Whether the last curves are hardly better than those some tries before."""
+        if self.unsolved > _PATIENCE:
+            return True
         if len(self.errors) <= _TRIES:
             return False
         return min(self.errors[-_TRIES:]) > _GAIN * min(self.errors[:-_TRIES])
 
     def finer(
-        self, ends: np.ndarray, errors: np.ndarray, reach: float, allowed: float, most: int
+        self,
+        ends: np.ndarray,
+        errors: np.ndarray,
+        reach: float,
+        allowed: float,
+        most: int,
+        *,
+        solved: bool = True,
     ) -> CutPanels:
         """Cut once more, where the errors of the last curves are.
 
@@ -52,6 +65,8 @@ class CutPanels(NamedTuple):
             Relative error allowed [-].
         most
             Number of cuts that there may be in all: the worst panels come first.
+        solved
+            Whether the contact has an equilibrium everywhere.
         """
         width = np.minimum(ends[1:], reach) - ends[:-1]
         bad = np.flatnonzero((errors > _SAFE * allowed) & (width > 0.0))
@@ -60,7 +75,7 @@ class CutPanels(NamedTuple):
         shares = [np.arange(1.0, n) / n for n in np.clip(parts, 2, _PARTS)]
         new = [ends[k] + width[k] * share for k, share in zip(bad, shares, strict=True)]
         cuts = np.concatenate([self.cuts, *new])[:most]
-        return CutPanels(cuts, (*self.errors, float(np.max(errors))))
+        return CutPanels(cuts, (*self.errors, float(np.max(errors))), self.unsolved + (not solved))
 
     def padded(self, count: int) -> np.ndarray:
         """So many cuts; those that there are not lie below all panels."""

@@ -20,7 +20,7 @@ from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
 from ..results.conversion import Solution
-from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
+from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion, Slice
 from .batch_records import Batch, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
 from .steps import Steps
@@ -123,8 +123,11 @@ def launch(
     stop: threading.Event | None,
     *,
     many: bool,
-) -> Solution:
-    """The motion of a body wherever it is released.
+    faster: Slice | None = None,
+) -> tuple[Solution, Slice]:
+    """The motion of a body wherever it is released, and that body with its curves at its release.
+
+    Curves of a body that is launched faster serve a slower one: it comes less deep.
 
     Parameters
     ----------
@@ -136,6 +139,8 @@ def launch(
         Relative error allowed to the force curves [-].
     refinements
         As for :class:`~asperity.integration.batch_motion.BatchMotion`.
+    faster
+        The curves of such a body, if there are any; not of a contact that yields.
 
     Raises
     ------
@@ -145,7 +150,8 @@ def launch(
     motion = _of_one(
         problem, limits, tolerance, Clock(stop), many=many, refinements=refinements, checked=False
     )
-    return _solution(problem, motion)
+    here = _at_release(motion) if faster is None else _slower(faster, motion.batch)
+    return _solution(problem, motion, here), here
 
 
 def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table, Reference]:
@@ -184,13 +190,34 @@ def _of_one(
     )  # fmt: skip
 
 
-def _solution(problem: Problem, motion: BatchMotion) -> Solution:
+def _slower(faster: Slice, batch: Batch) -> Slice:
+    """A body at its release, with the curves of one that was faster there."""
+    begun, body = faster.begun, batch.body
+    kinetic = 0.5 * np.asarray(body.mass) * np.asarray(body.speed) ** 2
+    origin = np.asarray(begun.origin) + (kinetic - np.asarray(begun.progress.kinetic))
+    progress = begun.progress._replace(kinetic=kinetic)
+    begun = begun._replace(origin=origin, progress=progress)
+    return faster._replace(batch=batch, begun=begun)
+
+
+def _at_release(motion: BatchMotion) -> Slice:
+    """The one case of a batch at its release, with curves that hold."""
+    try:
+        here = next(motion.curves(), None)
+    except Stopped:
+        raise SimulationError(_STOPPED) from None
+    _raise_failure(motion)
+    assert here is not None
+    return here
+
+
+def _solution(problem: Problem, motion: BatchMotion, here: Slice | None = None) -> Solution:
     """The motion of the one case of a batch, which is not integrated yet."""
     if _in_time(problem):
-        return _integrate_in_time(problem, motion)
+        return _integrate_in_time(problem, motion, here or _at_release(motion))
     outcome = None
     try:
-        motion.integrate()
+        motion.integrate(here)
     except Stopped:
         outcome = Outcome.INTERRUPTED
     _raise_failure(motion)
@@ -208,15 +235,9 @@ def _in_time(problem: Problem) -> bool:
     return problem.delayed is not None or problem.relaxation is not None
 
 
-def _integrate_in_time(problem: Problem, motion: BatchMotion) -> Solution:
+def _integrate_in_time(problem: Problem, motion: BatchMotion, here: Slice) -> Solution:
     """The motion on a bulk that creeps, or with menisci that take time to form, step by step."""
     clock = motion.clock
-    try:
-        here = next(motion.curves(), None)
-    except Stopped:
-        raise SimulationError(_STOPPED) from None
-    _raise_failure(motion)
-    assert here is not None
     begun, limits = unbatched(here.begun), unbatched(motion.batch.limits)
     contact, body = problem.contact, _body(problem, motion)
     mechanism: Relaxation | DelayedContact | None = problem.relaxation or problem.delayed
