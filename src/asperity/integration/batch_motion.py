@@ -11,10 +11,10 @@ import numpy as np
 from .._jax import jax
 from ..dynamics.record import IN_MOTION
 from ..dynamics.release import TRIES, farther, negligible_force
-from ..errors import InputError, SimulationError
+from ..errors import InputError
 from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows, is_array, slices, taken
 from .clock import Clock
-from .panel_cuts import CutPanels
+from .panel_cuts import RESIDUAL, CutPanels, curve_failure
 from .steps import Steps
 
 REFINEMENTS = (1, 2, 4, 8)
@@ -24,7 +24,6 @@ RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
 _LEAST = 4  # panels that count as one time, where a contact has fewer
-_RESIDUAL = 1e-6  # relative force error of a contact that counts as solved
 
 
 class Slice(NamedTuple):
@@ -159,17 +158,14 @@ class BatchMotion:
         ends, errors, residual, reach = (np.asarray(leaf) for leaf in checks[:4])
         error, real, tolerance = np.max(errors, axis=1), places >= 0, self._tolerance[places]
         allowed = np.maximum(tolerance, here.contact.resolved.error_floor)
-        fine, solved = error <= allowed, residual <= _RESIDUAL
+        fine, solved = error <= allowed, residual <= RESIDUAL
         cut, most = np.zeros(places.shape, bool), self._most_cuts(self._refinements[-1])
         for slot in np.flatnonzero(real & ~(fine & solved)).tolist():
-            place = int(places[slot])
-            before = self._panels[place]
-            after = before.finer(
-                ends[slot], errors[slot], reach[slot], allowed[slot], most,
-                solved=bool(solved[slot]),
-            )  # fmt: skip
+            before = self._panels[place := int(places[slot])]
+            last = ends[slot], errors[slot], reach[slot]
+            after = before.finer(*last, allowed[slot], most, solved=bool(solved[slot]))
             if fine[slot] or after.stuck or after.cuts.size == before.cuts.size:
-                self.failures[place] = _failure(error[slot], tolerance[slot], residual[slot])
+                self.failures[place] = curve_failure(error[slot], tolerance[slot], residual[slot])
                 continue
             self._panels[place] = after
             cut[slot] = after.cuts.size <= self._most_cuts(factor)
@@ -292,20 +288,6 @@ class BatchMotion:
 
         found: ImpactRows = jax.tree_util.tree_map(whole, *rows)
         return found
-
-
-def _failure(error: float, tolerance: float, residual: float) -> SimulationError:
-    """Why curves do not hold: the contact itself comes first, whose noise no panel follows."""
-    if residual > _RESIDUAL:
-        return SimulationError(
-            f"pressure and deformation do not agree: relative force error {residual:.1e}. The "
-            "contact has no equilibrium that follows from the one before (strong adhesion on "
-            "soft bodies folds it)"
-        )
-    return SimulationError(
-        f"force curves reach a relative error of {error:.1e}, "
-        f"not `numerics.tolerance` = {tolerance:.1e}"
-    )
 
 
 def _packed(parts: list[Slice], width: int) -> Slice:

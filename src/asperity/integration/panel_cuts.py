@@ -6,6 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..errors import SimulationError
+
+RESIDUAL = 1e-6
+"""Relative force error of a contact that counts as solved."""
+
 _ORDER = 6.0  # power of a panel's width with which its error falls, at least, where it is smooth
 _PARTS = 6  # into which a panel is cut at once: its error may lie at one place of it
 _SAFE = 0.3  # of the error allowed: panels with more are cut
@@ -80,3 +85,17 @@ class CutPanels(NamedTuple):
     def padded(self, count: int) -> np.ndarray:
         """So many cuts; those that there are not lie below all panels."""
         return np.append(self.cuts, np.full(count - self.cuts.size, -np.inf))
+
+
+def curve_failure(error: float, tolerance: float, residual: float) -> SimulationError:
+    """Why curves do not hold: the contact itself comes first, whose noise no panel follows."""
+    if residual > RESIDUAL:
+        return SimulationError(
+            f"pressure and deformation do not agree: relative force error {residual:.1e}. The "
+            "contact has no equilibrium that follows from the one before (strong adhesion on "
+            "soft bodies folds it)"
+        )
+    return SimulationError(
+        f"force curves reach a relative error of {error:.1e}, "
+        f"not `numerics.tolerance` = {tolerance:.1e}"
+    )
