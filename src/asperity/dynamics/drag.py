@@ -148,7 +148,9 @@ def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array)
     places = piece.enter + span * SHARES
     energies = kinetic + piece.energy(jnp.append(places, stop), body.load)
     energy, last = energies[:-1], energies[-1]
-    most = jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last))
+    # A unit alone, without a derivative: that of a maximum divides by how many are equal to it,
+    # which is none where XLA computes them once more with another rounding.
+    most = jax.lax.stop_gradient(jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last)))
     most = jnp.where(most > 0.0, most, 1.0)
     unit = jnp.sqrt(2.0 * most / body.mass)
     length = jnp.abs(span) * _PACE

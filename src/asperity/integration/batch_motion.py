@@ -118,12 +118,12 @@ class BatchMotion:
             for some in slices(places, self.steps.width):
                 here = taken(self.batch, some)
                 begun, checks = self._curves(here, self._cuts(some, factor), moving=moving)
-                fine, cut = self._are_fine(some, here, checks, factor)
-                again.append(some[cut])
-                some = np.where(fine, some, -1)
                 moved = self._move_out(some, here, checks)
                 again.append(some[moved])
                 some = np.where(moved, -1, some)
+                fine, cut = self._are_fine(some, here, checks, factor)
+                again.append(some[cut])
+                some = np.where(fine, some, -1)
                 some = np.where(self._are_outside(some, here, checks), some, -1)
                 if np.any(some >= 0):
                     yield Slice(some, here, begun, self.steps.before)
