@@ -113,11 +113,13 @@ def drawn(seed: int, number: int) -> dict[str, dict[str, Any]]:
 
 def _fitting(case: dict[str, dict[str, Any]], rms: float) -> dict[str, dict[str, Any]]:
     """The case without what its other tables leave no room for, and with what they ask for."""
-    rough, wet = "roughness" in case, case.get("capillary", {})
+    rough = "roughness" in case
     if "viscoelasticity" in case:
         case.pop("gas", None)
         case["counterface"]["deformation"] = "half-space"
-        case = case if rough else {k: v for k, v in case.items() if k not in ("adhesion",)}
+        for table in () if rough else ("adhesion", "capillary"):
+            case.pop(table, None)
+    wet = case.get("capillary", {})
     if "plasticity" in case:
         if rough:
             case["counterface"]["deformation"] = "rigid"
@@ -205,9 +207,9 @@ def found(seed: int, number: int) -> Found:
         result = asperity.solve(load(text_of(case)), critical=False, stop=stop)
         end, words = "answered", result.outcome.value
         balance = float(result.ledger["energy_balance_error"])
-        if result.outcome is Outcome.INTERRUPTED:
+        if result.outcome is Outcome.INTERRUPTED or time.monotonic() - begun > LIMIT:
             end = "slow"
-        elif not np.isfinite([balance, *result.measures["restitution"]]).all():
+        elif not np.isfinite([balance, *result.separation, *result.time]).all():
             end, words = "broken", "a number is NaN"
     except InputError as error:
         end, words = "refused", f"{error.key}: {error}"

@@ -14,7 +14,7 @@ from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_a
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
 from .integration import launch
-from .integration.batch_motion import Slice
+from .integration.batch_records import Slice
 from .results.conversion import Solution, measured
 from .results.summary import amount
 

@@ -1,5 +1,6 @@
 """Motion from turning point to turning point: conservation, known rebounds, time itself."""
 
+import dataclasses
 from math import pi, radians, sqrt
 
 import equinox as eqx
@@ -174,8 +175,10 @@ def test_curves_twice_as_fine_give_the_same_motion():
     """The stated error of the curves, 1e-8, is more than they have: apexes move by less."""
     contact = WITH_LOSS["rough meniscus"][0]
     body = Body(MASS, 9.81, 2e-6)
-    coarse, fine = (integrate(contact.refined(k), body)[0] for k in (1, 2))
-    assert float(coarse.table.error) < 1e-8
+    resolved = contact.resolved
+    twice = dataclasses.replace(contact, resolved=resolved._replace(panels=2 * resolved.panels))
+    coarse, fine = (integrate(each, body)[0] for each in (contact, twice))
+    assert float(jnp.max(coarse.table.errors)) < 1e-8
     np.testing.assert_allclose(coarse.impacts.apex, fine.impacts.apex, rtol=1e-8)
     np.testing.assert_allclose(coarse.impacts.apex_time, fine.impacts.apex_time, rtol=1e-8)
 

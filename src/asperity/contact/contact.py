@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import abc
-import dataclasses
 from collections.abc import Callable
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import equinox as eqx
 
@@ -154,10 +153,6 @@ class Contact(eqx.Module):
     @abc.abstractmethod
     def components(self) -> tuple[str, ...]:
         """Names of the forces in :attr:`State.parts`."""
-
-    def refined(self, factor: int) -> Self:
-        """The same contact with ``factor`` times as many panels on its curves."""
-        return dataclasses.replace(self, resolved=self.resolved.finer(factor))
 
     def initial_memory(self) -> Memory:
         """Memory of bodies that never touched: the first of the :meth:`branches`."""

@@ -50,14 +50,6 @@ class Resolution(NamedTuple):
     reversals: int = 10
     error_floor: float = 0.0
 
-    def finer(self, factor: int) -> Resolution:
-        """So many times as fine."""
-        return self._replace(
-            panels=factor * self.panels,
-            shared=factor * self.shared,
-            reversals=factor * self.reversals,
-        )
-
 
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.

@@ -120,11 +120,6 @@ class Table(NamedTuple):
     reversals: Any = ()
 
     @property
-    def error(self) -> jax.Array:
-        """The largest of :attr:`errors`."""
-        return jnp.max(self.errors)
-
-    @property
     def looks(self) -> jax.Array:
         """The places [m] of :attr:`Works.looks`, shape (panels, ENERGY_SAMPLES)."""
         low, high = self.ends[:-1, None], self.ends[1:, None]
@@ -179,24 +174,13 @@ def quantities(contact: Contact) -> Quantities:
 def tabulate(contact: Contact, low: jax.Array, high: jax.Array, cuts: Real = NO_CUTS) -> Table:
     """Solve a contact on its major branches between two separations [m].
 
-    Parameters
-    ----------
-    contact
-        The contact.
-    low, high
-        The separations [m].
-    cuts
-        Separations [m] at which panels end too, where forces are not negligible.
+    Its panels end at the ``cuts`` [m] too, which lie where forces are not negligible.
     """
     return _tabulated(contact, (low, high), cuts, lambda ends, places, values: values)
 
 
 def tabulate_again(
-    contact: YieldingContact,
-    before: Table,
-    memory: Memory,
-    turn: jax.Array,
-    cuts: Real = NO_CUTS,
+    contact: YieldingContact, before: Table, memory: Memory, turn: jax.Array, cuts: Real = NO_CUTS
 ) -> Table:
     """Solve a contact that yields as its first impact leaves it.
 
@@ -209,8 +193,6 @@ def tabulate_again(
         and stands for all others below the deepest point, which nothing reaches again.
     memory, turn
         Memory and separation [m] at the deepest point.
-    cuts
-        As for :func:`tabulate`.
     """
     left = contact.left_by(memory, turn)
 

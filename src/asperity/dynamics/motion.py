@@ -45,15 +45,8 @@ def prepare(
 ) -> tuple[Table, Reference]:
     """Tabulate a contact over all separations that a body can reach; find its static equilibrium.
 
-    Parameters
-    ----------
-    contact, body
-        What moves on what.
-    many
-        Whether the scanning curves are tabulated too (static): a few impacts are integrated
-        sooner without.
-    cuts
-        As for :func:`asperity.dynamics.curve_table.tabulate`.
+    With the scanning curves where ``many`` impacts follow (static): a few are integrated sooner
+    without. ``cuts`` as for :func:`asperity.dynamics.curve_table.tabulate`.
     """
     low = jax.lax.stop_gradient(
         contact.lower_bound(body.release, body.kinetic, body.load.potential)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,7 +12,17 @@ from .._jax import jax
 from ..dynamics.record import IN_MOTION
 from ..dynamics.release import TRIES, farther, negligible_force
 from ..errors import InputError
-from .batch_records import Batch, Begun, Checks, FirstImpact, ImpactRows, is_array, slices, taken
+from .batch_records import (
+    Batch,
+    Begun,
+    Checks,
+    FirstImpact,
+    ImpactRows,
+    Slice,
+    packed,
+    slices,
+    taken,
+)
 from .clock import Clock
 from .panel_cuts import RESIDUAL, CutPanels, curve_failure
 from .steps import Steps
@@ -24,20 +34,6 @@ RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
 _LEAST = 4  # panels that count as one time, where a contact has fewer
-
-
-class Slice(NamedTuple):
-    """Cases of a compiled call; places beyond the last are -1 and repeat it."""
-
-    places: np.ndarray
-    batch: Batch
-    begun: Begun
-    first: FirstImpact | None
-
-    @property
-    def size(self) -> int:
-        """Number of cases."""
-        return int(np.sum(self.places >= 0))
 
 
 class BatchMotion:
@@ -216,7 +212,7 @@ class BatchMotion:
             while pool and (not gathered or count + pool[-1].size <= self.steps.width):
                 count += pool[-1].size
                 gathered.append(pool.pop())
-            left = self._go_on(_packed(gathered, self.steps.width), patient=not pool)
+            left = self._go_on(packed(gathered, self.steps.width), patient=not pool)
             if left is not None:
                 pool.append(left)
 
@@ -288,19 +284,3 @@ class BatchMotion:
 
         found: ImpactRows = jax.tree_util.tree_map(whole, *rows)
         return found
-
-
-def _packed(parts: list[Slice], width: int) -> Slice:
-    """The cases still in motion, side by side."""
-    places = np.concatenate([part.places[part.places >= 0] for part in parts])
-    index = np.append(np.arange(places.size), np.zeros(width - places.size, int))
-
-    def packed(*leaves: Any) -> Any:
-        if not is_array(leaves[0]):
-            return leaves[0]
-        kept = [np.asarray(x)[p.places >= 0] for x, p in zip(leaves, parts, strict=True)]
-        return np.concatenate(kept)[index]
-
-    tree = jax.tree_util.tree_map(packed, *(part[1:] for part in parts))
-    filled = np.concatenate([places, np.full(width - places.size, -1, int)])
-    return Slice(filled, *tree)

@@ -117,6 +117,20 @@ class ImpactRows(NamedTuple):
     passing: Passing | None = None
 
 
+class Slice(NamedTuple):
+    """Cases of a compiled call; places beyond the last are -1 and repeat it."""
+
+    places: np.ndarray
+    batch: Batch
+    begun: Begun
+    first: FirstImpact | None
+
+    @property
+    def size(self) -> int:
+        """Number of cases."""
+        return int(np.sum(self.places >= 0))
+
+
 def _raised(leaf: Any) -> Any:
     is_array = isinstance(leaf, np.ndarray | np.generic | jax.Array)
     return np.asarray(leaf)[None] if is_array else leaf
@@ -161,3 +175,19 @@ def taken(tree: Any, places: np.ndarray) -> Any:
 def is_array(leaf: Any) -> bool:
     """Whether a leaf of a tree is an array, which has the cases along its first axis."""
     return isinstance(leaf, np.ndarray | jax.Array)
+
+
+def packed(parts: list[Slice], width: int) -> Slice:
+    """The cases still in motion, side by side."""
+    places = np.concatenate([part.places[part.places >= 0] for part in parts])
+    index = np.append(np.arange(places.size), np.zeros(width - places.size, int))
+
+    def joined(*leaves: Any) -> Any:
+        if not is_array(leaves[0]):
+            return leaves[0]
+        kept = [np.asarray(x)[p.places >= 0] for x, p in zip(leaves, parts, strict=True)]
+        return np.concatenate(kept)[index]
+
+    tree = jax.tree_util.tree_map(joined, *(part[1:] for part in parts))
+    filled = np.concatenate([places, np.full(width - places.size, -1, int)])
+    return Slice(filled, *tree)

@@ -20,8 +20,8 @@ from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
 from ..results.conversion import Solution
-from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion, Slice
-from .batch_records import Batch, unbatched, whole
+from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
+from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
 from .steps import Steps
 
