@@ -21,7 +21,7 @@ LIMIT = 60.0
 """Time [s] after which a case counts as too slow."""
 
 _LIQUID = ("equilibrium", "constant-volume", "kelvin-filling")
-_LAWS = ("none", "bradley", "dmt", "maugis", "jkr", "auto")
+_LAWS = ("none", "bradley", "dmt", "maugis", "jkr", "auto", "lennard-jones")
 _GASES = ("air", "nitrogen", "argon", "carbon dioxide")
 _YIELDING = ("kogut-etsion", "jackson-green", "thornton-ning")
 
@@ -77,16 +77,17 @@ def drawn(seed: int, number: int) -> dict[str, dict[str, Any]]:
     radius, work = random.between(1e-7, 1e-3), random.between(1e-4, 0.5)
     spacing, tip = random.evenly(1.5e-10, 4.5e-10), min(random.between(1e-9, 1e-5), radius)
     rms = min(random.between(1e-11, 1e-6), 0.05 * radius)
-    tabor = random.between(1e-3, 1e3)
+    rough, law = random.some(0.85), random.among(_LAWS)
+    tabor = random.between(*((0.01, 5.0) if law == "lennard-jones" else (1e-3, 1e3)))
+    bent = tip if rough else radius
     # Both solids alike: E* = E / (2 (1 - nu^2)).
-    modulus = min(max((tip * work**2 / (tabor * spacing) ** 3) ** 0.5, 1e4), 5e11)
+    modulus = min(max((bent * work**2 / (tabor * spacing) ** 3) ** 0.5, 1e4), 5e11)
     modulus *= 2.0 * (1.0 - 0.25**2)
     solid = {
         "youngs_modulus": f"{modulus} Pa",
         "poisson": 0.25,
         "density": f"{random.between(800.0, 12e3)} kg/m^3",
     }
-    rough = random.some(0.85)
     deformation = random.among(("rigid", "half-space")) if rough else "half-space"
     case: dict[str, dict[str, Any]] = {
         "body": {"radius": f"{radius} m", **solid},
@@ -103,7 +104,6 @@ def drawn(seed: int, number: int) -> dict[str, dict[str, Any]]:
             "asperity_radius": f"{tip} m",
             "rms_height": f"{rms} m",
         }
-    law = random.among(_LAWS)
     if law != "none":
         case["adhesion"] = {"model": law, "work": f"{work} J/m^2"}
         if law != "jkr":
@@ -114,6 +114,9 @@ def drawn(seed: int, number: int) -> dict[str, dict[str, Any]]:
 def _fitting(case: dict[str, dict[str, Any]], rms: float) -> dict[str, dict[str, Any]]:
     """The case without what its other tables leave no room for, and with what they ask for."""
     rough = "roughness" in case
+    if rough and case.get("adhesion", {}).get("model") == "lennard-jones":
+        case["counterface"]["deformation"] = "rigid"
+        case.pop("viscoelasticity", None)
     if "viscoelasticity" in case:
         case.pop("gas", None)
         case["counterface"]["deformation"] = "half-space"

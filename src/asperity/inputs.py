@@ -29,7 +29,7 @@ class Structure(NamedTuple):
     ----------
     adhesion
         Law of adhesion of one asperity, after "auto" has chosen: "none", "bradley", "dmt",
-        "maugis" or "jkr".
+        "maugis", "jkr" or "lennard-jones".
     liquid
         Model of the menisci: "none" in dry air too, "equilibrium", "constant-volume",
         "kelvin-filling".

@@ -47,6 +47,7 @@ from .laws import (
     Jkr,
     KelvinFilling,
     Law,
+    LennardJones,
     Maugis,
     Meniscus,
     PublishedPressure,
@@ -263,6 +264,8 @@ def _law(inputs: Inputs, tip: float, smallest: float | None = None) -> Law:
         contact = Jkr(tip, modulus, work)
     elif model == "maugis":
         contact = Maugis(tip, modulus, work, inputs.equilibrium_spacing)
+    elif model == "lennard-jones":
+        contact = LennardJones(tip, modulus, work, inputs.equilibrium_spacing)
     beside = _beside(inputs, tip, smallest)
     return Sum([contact, *beside]) if beside else contact
 

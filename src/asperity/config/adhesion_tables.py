@@ -22,8 +22,8 @@ def _one_model(value: object) -> object:
     several = isinstance(value, list) or (isinstance(value, str) and "+" in value)
     if several:
         raise InputError(
-            "`model` must be one model, since 'bradley', 'dmt', 'jkr' and 'maugis' are the same "
-            f"adhesion and together would count it twice; got {shown(value)}"
+            "`model` must be one model, since 'bradley', 'dmt', 'jkr', 'lennard-jones' and "
+            f"'maugis' are the same adhesion and together would count it twice; got {shown(value)}"
         )
     if isinstance(value, str) and value.strip().lower() == "hertz":
         raise InputError(
@@ -39,10 +39,12 @@ class Adhesion(Table):
     loss: ClassVar[str] = "adhesion"
 
     model: Annotated[
-        Literal["none", "auto", "bradley", "dmt", "maugis", "jkr"], BeforeValidator(_one_model)
+        Literal["none", "auto", "bradley", "dmt", "maugis", "jkr", "lennard-jones"],
+        BeforeValidator(_one_model),
     ] = entry(
         "",
-        "Law of one asperity: 'none', 'bradley', 'dmt', 'maugis' or 'jkr'; 'auto' chooses.",
+        "Law of one asperity: 'none', 'bradley', 'dmt', 'maugis', 'jkr' or 'lennard-jones'; "
+        "'auto' chooses.",
         "auto",
     )
     work: fields.SurfaceEnergy | None = entry(

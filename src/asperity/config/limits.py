@@ -14,6 +14,9 @@ from asperity.materials.solids import bar_wave_speed, contact_modulus, named
 ONE_CONTACT = 1.0
 """Contacts of asperities at zero load, over the area, from which they count as one."""
 
+LENNARD_JONES = (0.01, 5.0)
+"""Tabor numbers between which the equilibria under the Lennard-Jones pressure are tabulated."""
+
 SMALLEST_BODY = 1e-9
 """Smallest radius of a body [m]: such a one has some 200 atoms, and is no continuum."""
 
@@ -38,7 +41,9 @@ def refuse_outside(case: CaseTables) -> None:
             f"atoms is no continuum; got {radius * 1e9:.6g} nm",
             key="body.radius",
         )
-    if case.roughness is not None and case.roughness.files is None:
+    if case.roughness is None:
+        _refuse_tabor_numbers(case, (radius,))
+    elif case.roughness.files is None:
         refuse_rough(case, asperities_of(case.roughness))
     _refuse_waves(case)
 
@@ -64,12 +69,23 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
         With the rule and its number.
     """
     refuse_asperities(case.body.radius, rough)
+    tips: tuple[float, ...] = (rough.asperity_radius,)
+    if rough.summits is not None:
+        tips = float(rough.summits.radii.min()), float(rough.summits.radii.max())
+    _refuse_tabor_numbers(case, tips)
+    if case.adhesion.model == "lennard-jones" and case.counterface.deformation != "rigid":
+        raise InputError(
+            "`deformation` must be 'rigid' where asperities adhere by 'lennard-jones', whose means "
+            "over all heights would take minutes on every ring of a half-space: take 'rigid', or "
+            f"`model` = 'maugis'; got '{case.counterface.deformation}'",
+            key="counterface.deformation",
+        )
     adhesion = case.adhesion
     if adhesion.model == "none" or case.counterface.deformation == "rigid":
         return
     assert adhesion.work is not None
-    tips = adhesion.work * rough.asperity_radius**2 / contact_modulus(*solids_of(case))
-    contact = (1.5 * pi * tips) ** (1.0 / 3.0)
+    softness = adhesion.work * rough.asperity_radius**2 / contact_modulus(*solids_of(case))
+    contact = (1.5 * pi * softness) ** (1.0 / 3.0)
     share = pi * contact**2 * rough.asperity_density
     if share >= ONE_CONTACT:
         raise InputError(
@@ -79,6 +95,27 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
             f"case without [roughness]; got {adhesion.work * 1e3:.6g} mJ/m^2",
             key="adhesion.work",
         )
+
+
+def _refuse_tabor_numbers(case: CaseTables, radii: tuple[float, ...]) -> None:
+    """Refuse tips of such radii [m] whose equilibria are not tabulated."""
+    adhesion = case.adhesion
+    if adhesion.model != "lennard-jones":
+        return
+    assert adhesion.work is not None
+    assert adhesion.equilibrium_spacing is not None
+    from asperity.regimes.dimensionless_numbers import tabor_number  # imports numpy
+
+    modulus, (least, most) = contact_modulus(*solids_of(case)), LENNARD_JONES
+    for radius in radii:
+        tabor = tabor_number(radius, adhesion.work, modulus, adhesion.equilibrium_spacing)
+        if not least <= tabor <= most:
+            other = "'bradley' or 'dmt'" if tabor < least else "'maugis' or 'jkr'"
+            raise InputError(
+                f"`model` = 'lennard-jones' is for Tabor numbers from {least:g} to {most:g}; a "
+                f"tip of radius {radius * 1e9:.4g} nm has {tabor:.4g}: take {other}",
+                key="adhesion.model",
+            )
 
 
 def _refuse_waves(case: CaseTables) -> None:

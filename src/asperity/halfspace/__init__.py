@@ -7,6 +7,13 @@
 Nothing here knows where the pressure comes from.
 """
 
-from .ring_displacement import PANEL_COUNT, Rings, finer_rings, ring_mesh, rings_of_mesh
+from .ring_displacement import (
+    PANEL_COUNT,
+    Rings,
+    finer_rings,
+    mesh_on,
+    ring_mesh,
+    rings_of_mesh,
+)
 
-__all__ = ["PANEL_COUNT", "Rings", "finer_rings", "ring_mesh", "rings_of_mesh"]
+__all__ = ["PANEL_COUNT", "Rings", "finer_rings", "mesh_on", "ring_mesh", "rings_of_mesh"]

@@ -15,6 +15,7 @@ contact.
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
 
@@ -57,16 +58,21 @@ def rings_of_mesh(rings: int) -> int:
 @cache
 def ring_mesh(rings: int) -> Rings:
     """The mesh with at least ``rings`` rings, as :func:`rings_of_mesh` counts them."""
-    order = rings_of_mesh(rings) // PANEL_COUNT
+    return mesh_on(_PANELS, rings_of_mesh(rings) // PANEL_COUNT)
+
+
+def mesh_on(panels: np.ndarray, order: int) -> Rings:
+    """The mesh with ``order`` rings on each of the panels that end at ascending radii, from 0."""
     node, weight = np.polynomial.legendre.leggauss(order)
-    low, high = _PANELS[:-1, None], _PANELS[1:, None]
+    low, high = panels[:-1, None], panels[1:, None]
     radius = (0.5 * (low + high) + 0.5 * (high - low) * node).ravel()
     area = 2.0 * np.pi * radius * (0.5 * (high - low) * weight).ravel()
-    end = float(_PANELS[-1])
-    matrix = np.concatenate([_panel_columns(radius, k, node) for k in range(PANEL_COUNT)], axis=1)
+    matrix = np.concatenate(
+        [_panel_columns(radius, pair, node) for pair in pairwise(panels)], axis=1
+    )
     axis = np.zeros_like(radius)
     axis[:order] = _lagrange(radius[:order] ** 2, np.zeros(1))[:, 0]
-    return Rings(radius, area, matrix, end, axis)
+    return Rings(radius, area, matrix, float(panels[-1]), axis)
 
 
 def finer_rings(rings: int, more: int) -> np.ndarray:
@@ -78,9 +84,9 @@ def finer_rings(rings: int, more: int) -> np.ndarray:
     return np.kron(np.eye(PANEL_COUNT), _lagrange(node, fine).T)
 
 
-def _panel_columns(targets: np.ndarray, panel: int, node: np.ndarray) -> np.ndarray:
+def _panel_columns(targets: np.ndarray, panel: tuple[float, float], node: np.ndarray) -> np.ndarray:
     """Displacement at all targets for each Lagrange polynomial of one panel."""
-    low, high = _PANELS[panel], _PANELS[panel + 1]
+    low, high = panel
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     out = np.empty((len(targets), len(node)))
     far = np.abs(targets - middle) > 3.0 * half

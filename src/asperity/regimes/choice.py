@@ -28,6 +28,7 @@ LAW_NAMES = {
     "dmt": "DMT",
     "maugis": "Maugis-Dugdale",
     "jkr": "JKR",
+    "lennard-jones": "Lennard-Jones",
 }
 """The laws as they are called in text, by their names in a case."""
 

@@ -1,0 +1,60 @@
+"""From rigid to soft spheres: pull-off force and hysteresis over the Tabor number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from asperity.plots import style
+from asperity.plots.style import Panel
+from asperity.results.colours import colour
+
+_TINTS = ("motion", "unloading", "apex", "gas")
+_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
+_LIMITS = {"Bradley, DMT": 2.0, "JKR": 1.5}
+
+Curves = Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""By law: Tabor numbers, pull-off force over pi w R, and energy lost in a cycle over JKR's [-]."""
+
+
+def figure(curves: Curves) -> Figure:
+    """Two panels over the Tabor number: pull-off force, and energy lost in a cycle.
+
+    Parameters
+    ----------
+    curves : mapping of str to triples of numpy.ndarray
+        By the name of a law; Tabor numbers are ascending.
+    """
+
+    def pull_off(axes: Axes) -> None:
+        for name, height in _LIMITS.items():
+            axes.axhline(height, color=colour("contact"), lw=0.8, zorder=0)
+            axes.annotate(
+                name, (0.98, height), (0.0, 2.0), xycoords=("axes fraction", "data"),
+                textcoords="offset points", ha="right", va="bottom",
+            )  # fmt: skip
+        _draw(axes, {name: (tabor, pull) for name, (tabor, pull, _) in curves.items()})
+        axes.set_ylabel("pull-off force / (π w R) [-]")
+        axes.set_ylim(1.4, 2.12)
+        style.legend_above(axes)
+
+    def lost(axes: Axes) -> None:
+        _draw(axes, {name: (tabor, share) for name, (tabor, _, share) in curves.items()})
+        axes.set_ylabel("energy lost / JKR's [-]")
+        axes.set_ylim(-0.03, 1.03)
+
+    with style.look():
+        return style.figure_of([[Panel(1.0, pull_off)], [Panel(1.0, lost)]])
+
+
+def _draw(axes: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
+    """One line a law over the Tabor number."""
+    ends = [float(end) for tabor, _ in lines.values() for end in (tabor[0], tabor[-1])]
+    for (name, (tabor, line)), tint, dashes in zip(lines.items(), _TINTS, _DASHES, strict=False):
+        axes.plot(tabor, line, color=colour(tint), ls=dashes, label=name)
+    axes.set(xscale="log", xlim=(min(ends), max(ends)), xlabel="Tabor number [-]")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
