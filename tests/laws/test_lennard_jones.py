@@ -13,7 +13,7 @@ from asperity.config.limits import LENNARD_JONES
 from asperity.errors import InputError
 from asperity.halfspace import mesh_on
 from asperity.laws import Bradley, Jkr, LennardJones
-from asperity.laws.lennard_jones import TABOR_NUMBERS
+from asperity.laws.lennard_jones_equilibria import TABOR_NUMBERS
 from asperity.laws.testing import check_law
 from chosen import long_but
 

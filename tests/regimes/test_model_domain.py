@@ -71,16 +71,29 @@ ONE = (1.0 / (math.pi * 1e16)) ** 1.5 * 2.0 / (3.0 * math.pi * 1e-14)
 """Work of adhesion over contact modulus at which DMT's contacts of these tips fill the area."""
 
 
-@pytest.mark.parametrize("model", ["jkr", "dmt", "maugis", "bradley", "auto"])
-def test_asperities_that_adhesion_makes_one_contact_are_refused_on_a_half_space(model):
+@pytest.mark.parametrize(
+    ("model", "spacing", "cube"),
+    [
+        ("jkr", 0.3, 3.0),
+        ("dmt", 0.3, 1.0),
+        ("maugis", 0.3, 1.0),
+        ("maugis", 0.01, 3.0),
+        ("bradley", 0.3, 1.0),
+        ("auto", 0.3, 1.0),
+    ],
+)
+def test_asperities_that_adhesion_makes_one_contact_are_refused_on_a_half_space(
+    model, spacing, cube
+):
+    """Contacts are 3^(1/3) times as large in JKR, and so with a Tabor number of 11."""
     case = load(ROUGH)
     body, counterface = solids_of(case)
-    limit = ONE * contact_modulus(body, counterface)
+    limit = ONE / cube * contact_modulus(body, counterface)
 
     def with_work(share, deformation="half-space"):
         changes = {"adhesion.model": model, "adhesion.work": f"{share * limit} J/m^2", **TIPS}
         if model != "jkr":
-            changes["adhesion.equilibrium_spacing"] = "0.3 nm"
+            changes["adhesion.equilibrium_spacing"] = f"{spacing} nm"
         return case.replace({**changes, "counterface.deformation": deformation})
 
     with_work(0.999)

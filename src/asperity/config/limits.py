@@ -14,6 +14,10 @@ from asperity.materials.solids import bar_wave_speed, contact_modulus, named
 ONE_CONTACT = 1.0
 """Contacts of asperities at zero load, over the area, from which they count as one."""
 
+_DEFORMED = ("jkr", "maugis", "auto")  # laws in which adhesion deforms the contact
+
+_SOFT = 5.0  # Tabor number from which it does as in Johnson, Kendall and Roberts' law
+
 LENNARD_JONES = (0.01, 5.0)
 """Tabor numbers between which the equilibria under the Lennard-Jones pressure are tabulated."""
 
@@ -52,9 +56,9 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
     """Refuse asperities that are no bumps on the body, or that adhesion makes one contact.
 
     On a half-space the latter have no equilibrium short of full contact, since its surface follows
-    theirs. At zero load one asperity has a contact of at least the radius of Derjaguin, Muller and
-    Toporov, (3 pi w R^2/(2 E*))^(1/3); that of Johnson, Kendall and Roberts is 4^(1/3) times as
-    large.
+    theirs. At zero load one asperity has a contact of the radius of Derjaguin, Muller and Toporov,
+    (3 pi w R^2/(2 E*))^(1/3); that of Johnson, Kendall and Roberts is 3^(1/3) times as large, which
+    holds in their law, and in others for Tabor numbers above 5.
 
     Parameters
     ----------
@@ -84,8 +88,13 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
     if adhesion.model == "none" or case.counterface.deformation == "rigid":
         return
     assert adhesion.work is not None
-    softness = adhesion.work * rough.asperity_radius**2 / contact_modulus(*solids_of(case))
-    contact = (1.5 * pi * softness) ** (1.0 / 3.0)
+    tip, modulus = rough.asperity_radius, contact_modulus(*solids_of(case))
+    cube = 1.5 * pi * adhesion.work * tip**2 / modulus
+    if adhesion.model in _DEFORMED:
+        spacing = adhesion.equilibrium_spacing or 0.0
+        if tip * (adhesion.work / modulus) ** 2 > (_SOFT * spacing) ** 3:
+            cube *= 3.0
+    contact = cube ** (1.0 / 3.0)
     share = pi * contact**2 * rough.asperity_density
     if share >= ONE_CONTACT:
         raise InputError(

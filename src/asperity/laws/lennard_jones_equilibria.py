@@ -1,0 +1,243 @@
+"""Equilibria of a paraboloid and a plane under the Lennard-Jones pressure, read from a table.
+
+In reduced units: gaps in spacings, forces in w R, energies in w R eps, with w the work of adhesion,
+R the radius and eps the spacing. ``tools/lennard_jones.py`` solves them and makes the table.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..numerics.polynomials import chebyshev_sum, local
+
+TABLE = Path(__file__).with_name("lennard_jones.npy")
+"""Chebyshev coefficients of all equilibria, from ``tools/lennard_jones.py``.
+
+Their axes: panel of ln mu, its degree, panel of the measure, its degree, and the row: gap, force,
+force where the pressure presses, energy.
+"""
+
+NODES = 10
+"""Coefficients along a panel of the measure."""
+
+DEGREES = 8
+"""Coefficients along a panel of ln mu."""
+
+TABOR_NUMBERS = np.array([0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0])
+"""Tabor numbers at which the panels of the table end."""
+
+MEASURES = np.concatenate(
+    [
+        np.linspace(-22.0, -2.0, 9)[:-1],
+        np.linspace(-2.0, 0.0, 5)[:-1],
+        np.linspace(0.0, 2.5, 21)[:-1],
+        np.linspace(2.5, 4.0, 7)[:-1],
+        np.linspace(4.0, 12.2, 13),
+    ]
+)
+"""Where the panels end along a path. The measure grows along it, from far apart to deep contact."""
+
+GAP, _FORCE, _PRESSED, _ENERGY = range(4)
+_SAMPLES = 10  # on a panel, between which folds are sought and equilibria are bracketed
+_STEPS = 10  # of Newton's method within a bracket
+_BISECTIONS = 34  # for a fold
+_ROUNDING = 4e-15  # of a gap
+_FLAT = 1e-7  # slope of the gap with the measure that counts as none, over 1 + |gap|
+
+
+class Equilibria(NamedTuple):
+    """All equilibria at one Tabor number, in reduced units.
+
+    Attributes
+    ----------
+    coefficients
+        Of the rows of the table, and of their slopes with the measure; shape (NODES, panels, 8).
+    """
+
+    coefficients: jax.Array
+
+    def read(self, measure: jax.Array) -> tuple[jax.Array, jax.Array]:
+        """All rows at measures, and their slopes, rows first; outside the table at its ends."""
+        found = _summed(self.coefficients, measure)
+        return found[:4], found[4:]
+
+    def gap(self, measure: jax.Array) -> tuple[jax.Array, jax.Array]:
+        """The gap at measures, and its slope."""
+        value, slope = _summed(self.coefficients[..., [GAP, 4 + GAP]], measure)
+        return value, slope
+
+
+@jax.jit
+def _summed(coefficients: jax.Array, measure: jax.Array) -> jax.Array:
+    """Polynomials in pieces at measures, rows first."""
+    ends = jnp.asarray(MEASURES)
+    panel = jnp.clip(jnp.searchsorted(ends, measure) - 1, 0, len(MEASURES) - 2)
+    x = jnp.clip(local(ends[panel], ends[panel + 1], measure), -1.0, 1.0)
+    return jnp.moveaxis(chebyshev_sum(coefficients[:, panel], x[..., None]), -1, 0)
+
+
+_SLOPE = np.array([np.polynomial.chebyshev.chebder(row) for row in np.eye(NODES)]).T
+"""From coefficients to those of the slope with x, one fewer."""
+
+
+class Folds(NamedTuple):
+    """Where the path folds: from which equilibria a body jumps, in and out.
+
+    Attributes
+    ----------
+    first, last
+        Measure at the first fold, where the outer branch ends, and at the last.
+    inwards, outwards
+        Rows there.
+    some
+        Whether there are any; else both are one equilibrium.
+    """
+
+    first: jax.Array
+    last: jax.Array
+    inwards: jax.Array
+    outwards: jax.Array
+    some: jax.Array
+
+
+_BETWEEN = np.unique(
+    np.concatenate([np.linspace(*ends, _SAMPLES + 1) for ends in pairwise(MEASURES)])
+)
+"""Measures between which folds are sought and equilibria are bracketed."""
+
+
+@cache
+def _table() -> np.ndarray:
+    return np.asarray(np.load(TABLE, allow_pickle=False))
+
+
+@cache
+def largest_gap() -> float:
+    """A reduced gap that all paths begin beyond, where bodies hardly deform each other."""
+    return 0.99 * float(np.polynomial.chebyshev.chebval(-1.0, _table()[0, 0, 0, :, GAP]))
+
+
+@cache
+def smallest_gap() -> float:
+    """A reduced gap which all paths reach."""
+    ends = np.polynomial.chebyshev.chebval(1.0, _table()[:, 0, -1, :, GAP].T)
+    return 0.999 * float(np.max(ends))
+
+
+@jax.jit
+def _path_at(log_tabor: jax.Array) -> Equilibria:
+    """All equilibria at one Tabor number."""
+    ends = jnp.asarray(np.log(TABOR_NUMBERS))
+    panel = jnp.clip(jnp.searchsorted(ends, log_tabor) - 1, 0, len(TABOR_NUMBERS) - 2)
+    chosen = jnp.asarray(_table())[panel]
+
+    found = chebyshev_sum(chosen, local(ends[panel], ends[panel + 1], log_tabor))
+    slope = np.concatenate([_SLOPE, np.zeros((1, NODES))])
+    slopes = jnp.einsum("kn,xnr,x->xkr", slope, found, 2.0 / np.diff(MEASURES))
+    return Equilibria(jnp.swapaxes(jnp.concatenate([found, slopes], axis=-1), 0, 1))
+
+
+@jax.jit
+def _folds_of(path: Equilibria) -> Folds:
+    """The first and the last fold; where there is none, the flattest place stands for both."""
+    places, count = jnp.asarray(_BETWEEN), len(_BETWEEN)
+    gaps, slopes = path.gap(places)
+    slope = slopes / (1.0 + jnp.abs(gaps))
+    back = slope > _FLAT  # the gap grows again
+    some = jnp.any(back)
+    start, end = jnp.argmax(back), count - 1 - jnp.argmax(back[::-1])
+    # The gap stops falling at the first, and falls again from the last.
+    low = jnp.stack([places[jnp.maximum(start - 1, 0)], places[end]])
+    high = jnp.stack([places[start], places[jnp.minimum(end + 1, count - 1)]])
+    falls_before = jnp.asarray([True, False])
+
+    def closer(_: int, ends: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+        middle = 0.5 * (ends[0] + ends[1])
+        before = (path.gap(middle)[1] < 0.0) == falls_before
+        return jnp.where(before, middle, ends[0]), jnp.where(before, ends[1], middle)
+
+    low, high = jax.lax.fori_loop(0, _BISECTIONS, closer, (low, high))
+    at = jnp.where(some, 0.5 * (low + high), places[jnp.argmax(slope)])
+    at = jax.lax.stop_gradient(at)
+    rows, _ = path.read(at)
+    return Folds(at[0], at[1], rows[:, 0], rows[:, 1], some)
+
+
+@jax.jit
+def _measures_at(gap: jax.Array, path: Equilibria, folds: Folds) -> jax.Array:
+    """The measures of equilibria at gaps within the outer and the inner branch, shape (2, ...)."""
+    places = jnp.asarray(_BETWEEN)
+    falling = -path.gap(places)[0]
+    # Along a branch the gap falls; what is not of it counts as too large a measure, or too small.
+    outer = jnp.where(places < folds.first, falling, jnp.inf)
+    inner = jnp.where(places > folds.last, falling, -jnp.inf)
+    index = jnp.stack([jnp.searchsorted(outer, -gap[0]), jnp.searchsorted(inner, -gap[1])])
+    each = (2,) + (1,) * (gap.ndim - 1)
+    low = jnp.stack([places[0], folds.last]).reshape(each)
+    high = jnp.stack([folds.first, places[-1]]).reshape(each)
+    fold = jnp.stack([folds.first, folds.last]).reshape(each)
+    start = jnp.clip(places[jnp.maximum(index - 1, 0)], low, high)
+    end = jnp.clip(places[jnp.minimum(index, len(_BETWEEN) - 1)], low, high)
+    before, after = path.gap(start)[0], path.gap(end)[0]
+    whole = before - after
+    share = jnp.clip((before - gap) / jnp.where(whole > 0.0, whole, 1.0), 0.0, 1.0)
+    # Next to a fold the gap changes with the square of the measure.
+    share = jnp.where(folds.some & (start == fold), jnp.sqrt(share), share)
+    share = jnp.where(folds.some & (end == fold), 1.0 - jnp.sqrt(1.0 - share), share)
+    guess = start + (end - start) * share
+
+    def closer(
+        _: int, now: tuple[jax.Array, jax.Array, jax.Array]
+    ) -> tuple[jax.Array, jax.Array, jax.Array]:
+        place, start, end = now
+        value, slope = path.gap(place)
+        over = value - gap
+        start, end = jnp.where(over > 0.0, place, start), jnp.where(over > 0.0, end, place)
+        falls = slope < 0.0
+        newton = place - over / jnp.where(falls, slope, 1.0)
+        good = falls & (newton >= start) & (newton <= end)
+        return jnp.where(good, newton, 0.5 * (start + end)), start, end
+
+    found = jax.lax.fori_loop(0, _STEPS, closer, (guess, start, end))[0]
+    # At a fold rounding of the gap alone would move the measure by its square root.
+    there = jnp.stack([folds.inwards[GAP], folds.outwards[GAP]]).reshape(each)
+    return jnp.where(jnp.abs(gap - there) <= _ROUNDING * jnp.abs(gap), fold, found)
+
+
+@jax.jit
+def solved(log_tabor: jax.Array) -> tuple[Equilibria, Folds]:
+    """All equilibria at one Tabor number, and where their path folds."""
+    path = _path_at(log_tabor)
+    return path, _folds_of(path)
+
+
+@jax.custom_jvp
+@jax.jit
+def equilibria(
+    gap: jax.Array, path: Equilibria, folds: Folds
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Force, its part where surfaces press, and energy, at gaps on both branches, (2, ...)."""
+    values, _ = path.read(_measures_at(gap, path, folds))
+    return values[_FORCE], values[_PRESSED], values[_ENERGY]
+
+
+@equilibria.defjvp
+@jax.jit
+def _equilibria_jvp(primals, tangents):  # type: ignore[no-untyped-def]
+    (gap, path, folds), (by_gap, by_path, _) = primals, tangents
+    measure = _measures_at(gap, path, folds)
+    values, slopes = path.read(measure)
+    changes, _ = by_path.read(measure)
+    regular = slopes[GAP] < -1e-9
+    moved = by_gap - changes[GAP]
+    along = jnp.where(regular, moved / jnp.where(regular, slopes[GAP], 1.0), 0.0)
+    force, pressed = (slopes[k] * along + changes[k] for k in (_FORCE, _PRESSED))
+    # The energy is stationary in the shapes of both bodies: its slope with the gap is the force.
+    energy = changes[_ENERGY] - values[_FORCE] * moved
+    return (values[_FORCE], values[_PRESSED], values[_ENERGY]), (force, pressed, energy)
