@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
+import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.compilation import kept
 from ..numerics.roots import fixed_point
@@ -20,9 +22,11 @@ from .equilibrium import (
     rates,
     solve_equilibrium,
 )
-from .resolution import Resolution, fills_by_contact
+from .resolution import LINEAR, Resolution, fills_by_contact
 from .scanning_curve import piece_points, pieces_to
 
+_BELOW = 5.0  # rms below the deepest separation, where the table of the pressure begins
+_FINER = 2  # panels of that table for each of the curves
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
@@ -156,8 +160,13 @@ def fitted(
 def continue_branch(
     contact: Deforming, corners: jax.Array, places: jax.Array, thresholds: Thresholds
 ) -> tuple[jax.Array, RingEquilibrium]:
-    """Sizes and rings at descending ``places`` within panels that end at ``corners``."""
+    """Sizes and rings at descending ``places`` within panels that end at ``corners``.
+
+    They are solved with a table of the pressure first, which costs little, and then with the
+    pressure itself: mostly one step.
+    """
     count = corners.shape[0]
+    tabulated = _with_table(contact, corners, thresholds)
     sigma = contact.interface.scale.rms
     flat = jnp.zeros(contact.rings + 1)
     above = ContinuationPath.straight(corners[0] + sigma, flat, flat, -sigma)
@@ -170,13 +179,14 @@ def continue_branch(
         light = first_size(contact, place)
         between = jnp.interp(place, corners[::-1], sizes[::-1])
         size, rest = fitted(
-            contact,
+            tabulated,
             place,
             thresholds,
             jnp.where(corner, light * factor, between),
             jnp.where(corner, path.displacements[0], path.guess(place)),
             corner,
         )
+        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, contact.rings)
         sizes = jnp.where(jnp.arange(count) == k, size, sizes)
         return (path.append(place, rest.displacement), size / light, sizes), (size, rest)
 
@@ -185,6 +195,18 @@ def continue_branch(
     _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
     sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
     return sizes, rests
+
+
+def _with_table(contact: Deforming, corners: jax.Array, thresholds: Thresholds) -> Deforming:
+    """The contact with the pressure of a branch tabulated, over all separations of its rings."""
+    scale = LINEAR * contact.interface.scale.rms
+    low = corners[-1] - _BELOW * contact.interface.scale.rms
+    count = _FINER * contact.resolved.panels
+    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(corners[0] / scale), count + 1)
+    memory = tuple(b[-1] for b in thresholds)
+    table = BranchPressure(contact.interface, memory, scale * jnp.sinh(ends))
+    with_table: Deforming = eqx.tree_at(lambda one: one.interface, contact, table)
+    return with_table
 
 
 def continue_scanning_curve(
