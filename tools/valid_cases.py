@@ -17,6 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+BALANCE = 1e-5
+"""Error of the energy balance, over the initial energy, above which an answer counts as broken."""
+
 LIMIT = 60.0
 """Time [s] after which a case counts as too slow."""
 
@@ -214,6 +217,8 @@ def found(seed: int, number: int) -> Found:
             end = "slow"
         elif not np.isfinite([balance, *result.separation, *result.time]).all():
             end, words = "broken", "a number is NaN"
+        elif balance > BALANCE:
+            end, words = "broken", f"the energy balance closes to {balance:.1e}"
     except InputError as error:
         end, words = "refused", f"{error.key}: {error}"
     except SimulationError as error:

@@ -22,7 +22,7 @@ from .equilibrium import (
     rates,
     solve_equilibrium,
 )
-from .resolution import LINEAR, Resolution, fills_by_contact
+from .resolution import LATER, LINEAR, Resolution, fills_by_contact
 from .scanning_curve import piece_points, pieces_to
 
 _BELOW = 5.0  # rms below the deepest separation, where the table of the pressure begins
@@ -114,15 +114,17 @@ def _marks(
 ) -> jax.Array:
     """Ends of the pieces of the scanning curve, for each law.
 
-    Even ones until the fastest ring has passed from one branch to the other, and one more
-    until the slowest has.
+    Even ones until the fastest ring has passed from one branch to the other, and up to three more,
+    each longer than the one before, until the slowest has.
     """
     slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces = contact.resolved.pieces
-    even = np.arange(1.0, pieces) / max(pieces - 1, 1)
+    later = min(max(pieces // 2, 1), LATER)
+    even = np.arange(1.0, pieces - later + 1.0) / max(pieces - later, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
-    shares = jnp.append(even / fastest, more / slowest)
+    longer = np.arange(1.0, later + 1.0) / later
+    shares = jnp.append(even / fastest, (more * fastest / slowest) ** longer / fastest)
     ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
         start + ahead * (law.breaking_gap - law.forming_gap) * shares

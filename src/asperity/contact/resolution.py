@@ -16,6 +16,9 @@ from ..numerics.compilation import AT_ONCE, Program
 LINEAR = 8.0
 """Panels are even in asinh(separation / (LINEAR rms))."""
 
+LATER = 3
+"""Pieces at most in which rings that lag behind reach the branch, and half of all at most."""
+
 _DEEP = 5.0  # rms below the mean plane, down to where a body may come
 _SHORTEST = 4.0  # rms, where heights end soon above the mean plane: some lie below it
 _NEAR = 20.0  # rms, up to which kinks count evenly
@@ -88,10 +91,12 @@ def resolution_of(
         panels = ceil(length / panel_lengths.panel) + (bends > 0.0)
         shared = _shared(interaction_range, panels)
         return Resolution(panels, max(nodes, 8), pieces, shared, error_floor=floor)
-    # Rings that lag behind have a piece of their own, where what they hold counts for much.
+    # Rings that lag behind have pieces of their own, where what they hold counts for much: where
+    # bonds stretch over several rms, their forces change while contact opens from its edge inwards.
     fills = fills_by_contact(interface.hysteretic)
     panels = ceil(length / (1.7 * panel_lengths.grain))
-    nodes, pieces = 16 if fills else nodes, pieces + (fills or share > 0.1)
+    later = min(ceil(share), LATER) if share > 0.1 else int(fills)
+    nodes, pieces = 16 if fills else nodes, max(pieces + later, 2 * later)
     return Resolution(panels, nodes, pieces, error_floor=floor)
 
 
@@ -111,6 +116,7 @@ FEW_RIGID = (
 )
 FEW_DEFORMING = (
     Resolution(9, 16, 3),
+    Resolution(9, 16, 6),
     Resolution(18, 16, 6, 14),
     Resolution(36, 16, 12, 28),
     Resolution(72, 16, 24, 56),
