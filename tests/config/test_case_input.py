@@ -79,7 +79,7 @@ BAD = [
      "'rigid'; got 'rigit' - did you mean 'rigid'?"),
     ('model = "auto"', "", "adhesion.model"),
     ('model = "auto"', 'model = "dtm"', "`model` must be one of 'none', 'auto', 'bradley', 'dmt', "
-     "'maugis' or 'jkr'; got 'dtm' - did you mean 'dmt'?"),
+     "'maugis', 'jkr' or 'lennard-jones'; got 'dtm' - did you mean 'dmt'?"),
     ('model = "auto"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
     ('model = "auto"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "auto"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),

@@ -211,4 +211,4 @@ def test_a_ledger_closes_where_menisci_stretch_over_many_rms_heights():
     """Rings deep in contact reach the branch last: one piece for all of them missed it by 3e-3."""
     result = asperity.solve(asperity.config.load(STRETCHED), critical=False)
     assert result.ledger["lost"]["capillary"] > 0.05 * result.ledger["initial"]
-    assert result.ledger["energy_balance_error"] < 1e-6
+    assert result.ledger["energy_balance_error"] < 2e-6

@@ -115,7 +115,7 @@ def _marks(
     """Ends of the pieces of the scanning curve, for each law.
 
     Even ones until the fastest ring has passed from one branch to the other, and up to three more,
-    each longer than the one before, until the slowest has.
+    even too, until the slowest has.
     """
     slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rates), slowest)
@@ -123,8 +123,10 @@ def _marks(
     later = min(max(pieces // 2, 1), LATER)
     even = np.arange(1.0, pieces - later + 1.0) / max(pieces - later, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
-    longer = np.arange(1.0, later + 1.0) / later
-    shares = jnp.append(even / fastest, (more * fastest / slowest) ** longer / fastest)
+    further = np.arange(1.0, later + 1.0) / later
+    shares = jnp.append(
+        even / fastest, (1.0 + further * (more * fastest / slowest - 1.0)) / fastest
+    )
     ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
     rows = [
         start + ahead * (law.breaking_gap - law.forming_gap) * shares
@@ -164,39 +166,30 @@ def continue_branch(
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``.
 
-    They are solved with a table of the pressure first, which costs little, and then with the
-    pressure itself: mostly one step.
+    The size of the mesh is found at the corners. In between, rings are solved with a table of the
+    pressure first, which costs little, and then with the pressure itself: mostly one step.
     """
-    count = corners.shape[0]
+    rings, sigma = contact.rings, contact.interface.scale.rms
     tabulated = _with_table(contact, corners, thresholds)
-    sigma = contact.interface.scale.rms
-    flat = jnp.zeros(contact.rings + 1)
-    above = ContinuationPath.straight(corners[0] + sigma, flat, flat, -sigma)
+    flat = jnp.zeros(rings + 1)
 
-    def step(carry: tuple[Any, ...], job: tuple[jax.Array, jax.Array]) -> Any:
-        path, factor, sizes = carry
-        k, place = job
-        corner = k < count
-        path = jax.tree_util.tree_map(lambda a, b: jnp.where(k == count, a, b), above, path)
+    def fit(carry: tuple[jax.Array, jax.Array], place: jax.Array) -> Any:
+        displacement, factor = carry
         light = first_size(contact, place)
-        between = jnp.interp(place, corners[::-1], sizes[::-1])
-        size, rest = fitted(
-            tabulated,
-            place,
-            thresholds,
-            jnp.where(corner, light * factor, between),
-            jnp.where(corner, path.displacements[0], path.guess(place)),
-            corner,
-        )
-        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, contact.rings)
-        sizes = jnp.where(jnp.arange(count) == k, size, sizes)
-        return (path.append(place, rest.displacement), size / light, sizes), (size, rest)
+        free = jnp.asarray(True)
+        size, rest = fitted(contact, place, thresholds, light * factor, displacement, free)
+        return (rest.displacement, size / light), size
 
-    begin = above, jnp.ones(()), jnp.ones(count)
-    jobs = jnp.concatenate([corners, places])
-    _, found = jax.lax.scan(step, begin, (jnp.arange(jobs.shape[0]), jobs))
-    sizes, rests = jax.tree_util.tree_map(lambda leaf: leaf[count:], found)
-    return sizes, rests
+    def step(path: ContinuationPath, place: jax.Array) -> Any:
+        size = jnp.interp(place, corners[::-1], sizes[::-1])
+        rest = solve_equilibrium(tabulated, place, thresholds, size, path.guess(place), rings)
+        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, rings)
+        return path.append(place, rest.displacement), (size, rest)
+
+    _, sizes = jax.lax.scan(fit, (flat, jnp.ones(())), corners)
+    above = ContinuationPath.straight(corners[0] + sigma, flat, flat, -sigma)
+    _, found = jax.lax.scan(step, above, places)
+    return found
 
 
 def _with_table(contact: Deforming, corners: jax.Array, thresholds: Thresholds) -> Deforming:
