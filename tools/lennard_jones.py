@@ -5,7 +5,7 @@
 In reduced units (gaps in the interatomic spacing eps, radii in sqrt(R eps), pressures in w/eps,
 forces in w R, energies in w R eps) the gap at a radius is H = G + r^2/2 + mu^(3/2) u(r), with u the
 displacement of a half-space of unit modulus under the pressure (8/3) (H^-9 - H^-3), and mu the
-Tabor number. G is the gap at the axis were nothing deformed. For mu above 1 the curve of force
+Tabor number. G is the gap at the axis were nothing deformed. For mu above 0.7 the curve of force
 against G is S-shaped: three equilibria at one G. It is followed by a measure of how far the
 surfaces have come together, which grows all along it, as Greenwood (1997) and Feng (2000) followed
 it by the gap at the axis and by its arc length.
@@ -26,7 +26,7 @@ from asperity.halfspace import Rings, mesh_on
 from asperity.laws.lennard_jones_equilibria import DEGREES, MEASURES, NODES, TABLE, TABOR_NUMBERS
 
 _FIRST = -22.0
-"""Measure where the path begins, some 30 spacings apart."""
+"""Measure where the path begins, some 490 spacings apart."""
 
 
 class Point(NamedTuple):

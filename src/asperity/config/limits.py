@@ -16,8 +16,6 @@ ONE_CONTACT = 1.0
 
 _DEFORMED = ("jkr", "maugis", "auto")  # laws in which adhesion deforms the contact
 
-_SOFT = 5.0  # Tabor number from which it does as in Johnson, Kendall and Roberts' law
-
 LENNARD_JONES = (0.01, 5.0)
 """Tabor numbers between which the equilibria under the Lennard-Jones pressure are tabulated."""
 
@@ -90,10 +88,8 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
     assert adhesion.work is not None
     tip, modulus = rough.asperity_radius, contact_modulus(*solids_of(case))
     cube = 1.5 * pi * adhesion.work * tip**2 / modulus
-    if adhesion.model in _DEFORMED:
-        spacing = adhesion.equilibrium_spacing or 0.0
-        if tip * (adhesion.work / modulus) ** 2 > (_SOFT * spacing) ** 3:
-            cube *= 3.0
+    if adhesion.model in _DEFORMED and _is_soft(case, tip):
+        cube *= 3.0
     contact = cube ** (1.0 / 3.0)
     share = pi * contact**2 * rough.asperity_density
     if share >= ONE_CONTACT:
@@ -106,18 +102,31 @@ def refuse_rough(case: CaseTables, rough: Asperities) -> None:
         )
 
 
+def _is_soft(case: CaseTables, tip: float) -> bool:
+    """Whether a tip of this radius [m] adheres as in Johnson, Kendall and Roberts' law."""
+    from asperity.regimes.choice import JKR_ABOVE  # imports numpy
+
+    return case.adhesion.model == "jkr" or _tabor_number(case, tip) > JKR_ABOVE
+
+
+def _tabor_number(case: CaseTables, radius: float) -> float:
+    """Tabor number of a tip of this radius [m], where a case gives an equilibrium spacing."""
+    from asperity.regimes.dimensionless_numbers import tabor_number  # imports numpy
+
+    work, spacing = case.adhesion.work, case.adhesion.equilibrium_spacing
+    assert work is not None
+    assert spacing is not None
+    return tabor_number(radius, work, contact_modulus(*solids_of(case)), spacing)
+
+
 def _refuse_tabor_numbers(case: CaseTables, radii: tuple[float, ...]) -> None:
     """Refuse tips of such radii [m] whose equilibria are not tabulated."""
     adhesion = case.adhesion
     if adhesion.model != "lennard-jones":
         return
-    assert adhesion.work is not None
-    assert adhesion.equilibrium_spacing is not None
-    from asperity.regimes.dimensionless_numbers import tabor_number  # imports numpy
-
-    modulus, (least, most) = contact_modulus(*solids_of(case)), LENNARD_JONES
+    least, most = LENNARD_JONES
     for radius in radii:
-        tabor = tabor_number(radius, adhesion.work, modulus, adhesion.equilibrium_spacing)
+        tabor = _tabor_number(case, radius)
         if not least <= tabor <= most:
             other = "'bradley' or 'dmt'" if tabor < least else "'maugis' or 'jkr'"
             raise InputError(

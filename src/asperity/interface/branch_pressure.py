@@ -59,10 +59,6 @@ class BranchPressure(RoughPlanes):
         return self.planes.laws
 
     @property
-    def hysteretic(self) -> tuple[Law, ...]:
-        return self.planes.hysteretic
-
-    @property
     def scale(self) -> Scale:
         return self.planes.scale
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,8 +13,6 @@ from asperity.plots import style
 from asperity.plots.style import Panel
 from asperity.results.colours import colour
 
-_TINTS = ("motion", "unloading", "apex", "gas")
-_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _BEYOND = "#eeeeee"
 
 Curves = Mapping[str, tuple[np.ndarray, np.ndarray]]
@@ -55,8 +52,7 @@ def _draw(
 ) -> None:
     """One line a law over the index, beside that of elastic asperities."""
     axes.plot(index, np.full(index.shape, elastic), color=colour("contact"), label="Hertz")
-    for (name, line), tint, dashes in zip(lines.items(), cycle(_TINTS), cycle(_DASHES)):
-        axes.plot(index, line, color=colour(tint), ls=dashes, label=name)
+    style.lines(axes, {name: (index, line) for name, line in lines.items()})
     if fitted < index[-1]:
         axes.axvspan(fitted, index[-1], color=_BEYOND, lw=0.0, zorder=0, label="beyond the fits")
     axes.set(xscale="log", xlim=(index[0], index[-1]), xlabel="plasticity index [-]")

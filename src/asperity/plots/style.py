@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import cycle
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -13,6 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
+from asperity.results.colours import colour
 from asperity.results.summary import scaled
 
 COLUMN, PAGE = 85.0, 170.0
@@ -26,6 +28,8 @@ _MARGINS = {"left": 14.0, "right": 3.0, "top": 9.0, "bottom": 11.0}
 _GAP = 17.0
 _HEIGHT = 42.0
 _ONE_ROW = 3
+_TINTS = ("motion", "unloading", "apex", "gas")
+_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _MARKER_SCALE = 1.5
 
 
@@ -137,6 +141,12 @@ def count_axis(axes: Axes, name: str) -> None:
 def label(quantity: str, unit: str) -> str:
     """An axis label, e.g. ``separation [nm]``."""
     return f"{quantity} [{unit}]"
+
+
+def lines(axes: Axes, curves: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
+    """Several laws over one number: a colour and a dash each, named for the legend."""
+    for (name, (x, y)), tint, dashes in zip(curves.items(), cycle(_TINTS), cycle(_DASHES)):
+        axes.plot(x, y, color=colour(tint), ls=dashes, label=name)
 
 
 def legend_above(axes: Axes, rows: int | None = None) -> None:

@@ -13,8 +13,6 @@ from asperity.plots import style
 from asperity.plots.style import Panel
 from asperity.results.colours import colour
 
-_TINTS = ("motion", "unloading", "apex", "gas")
-_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _LIMITS = {"Bradley, DMT": 2.0, "JKR": 1.5}
 
 Curves = Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -54,7 +52,6 @@ def figure(curves: Curves) -> Figure:
 def _draw(axes: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
     """One line a law over the Tabor number."""
     ends = [float(end) for tabor, _ in lines.values() for end in (tabor[0], tabor[-1])]
-    for (name, (tabor, line)), tint, dashes in zip(lines.items(), _TINTS, _DASHES, strict=False):
-        axes.plot(tabor, line, color=colour(tint), ls=dashes, label=name)
+    style.lines(axes, lines)
     axes.set(xscale="log", xlim=(min(ends), max(ends)), xlabel="Tabor number [-]")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
