@@ -189,6 +189,21 @@ class Release(NamedTuple):
     gravity: float
 
 
+class Placement(NamedTuple):
+    """Summits one by one.
+
+    Attributes
+    ----------
+    realisations
+        Bodies, each on summits of its own.
+    seed
+        Of their places.
+    """
+
+    realisations: int
+    seed: int
+
+
 class Assumptions(NamedTuple):
     """What the publication assumes.
 
@@ -276,6 +291,8 @@ class Inputs:
         Of a half-space that relaxes [-], [s]; 1 and 0 of an elastic one.
     release
         How the body is let go; None where only curves can be asked for.
+    placement
+        Single bodies on summits at random places; None where the mean over all is asked for alone.
     published
         What the publication assumes; None in every other case.
     tolerance
@@ -315,6 +332,7 @@ class Inputs:
     relaxed_modulus_ratio: float
     relaxation_time: float
     release: Release | None
+    placement: Placement | None
     published: Assumptions | None
     tolerance: Tolerance
 

@@ -22,6 +22,7 @@ from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
 from .results.conversion import Solution, first_restitution, result_of
 from .results.result import Curve, Result
+from .single_bodies import realised
 
 
 def solve(
@@ -62,7 +63,7 @@ def solve(
     _ = case.launch
     report, problem = progress or silently, build(resolve(case))
     solution = integrate(problem, report, stop)
-    result = _result(case, name, problem, solution, report, None)
+    result = _result(case, name, problem, solution, report, stop, None)
     if critical:
         report(0.92, "critical velocity")
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
@@ -101,7 +102,7 @@ def explore(
     _ = case.launch
     report, problem = progress or silently, cut_in_steps(build(resolve(case)))
     solution = integrate(problem, report, stop, many=True)
-    result = _result(case, name, problem, solution, report, most)
+    result = _result(case, name, problem, solution, report, stop, most)
     if solution.outcome is Outcome.FAILED:
         raise SimulationError(_failure(problem), result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
@@ -143,13 +144,22 @@ def critical_velocity(
 
 
 def _result(
-    case: Case, name: str, problem: Problem, solution: Solution, report: Report, most: int | None
+    case: Case,
+    name: str,
+    problem: Problem,
+    solution: Solution,
+    report: Report,
+    stop: threading.Event | None,
+    most: int | None,
 ) -> Result:
-    """The result of a motion."""
+    """The result of a motion, and of single bodies beside it."""
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
-    return result_of(case, name, problem, solution, elastic, most)
+    bodies = None
+    if problem.inputs.placement is not None and not stopped:
+        bodies = realised(problem, solution, lambda _, text: report(0.9, text), stop)
+    return result_of(case, name, problem, solution, elastic, most, bodies)
 
 
 def _failure(problem: Problem) -> str:

@@ -196,7 +196,10 @@ def test_the_example_of_every_key_is_read(place, name, field):
             "asperity_radius": "1 nm",
             "rms_height": "1 nm",
         }
-    if place[0] == "roughness" and name not in NUMBERS:
+    if name in ("placement", "realisations", "seed"):
+        table["counterface"]["deformation"] = "rigid"
+        table["roughness"]["placement"] = "random"
+    elif place[0] == "roughness" and name not in NUMBERS:
         table["roughness"] = {"files": ["surface.csv"], "source": "summits"}
     if place[0] in ("adhesion", "capillary"):
         table[place[0]] = {"model": "none"}

@@ -83,10 +83,10 @@ BAD = [
     ('model = "auto"', 'model = "dmt+jkr"', "would count it twice; got 'dmt+jkr'"),
     ('model = "auto"', 'model = ["jkr", "dmt"]', "would count it twice; got ['jkr', 'dmt']"),
     ('model = "auto"', 'model = "hertz"', "would count twice: take 'none'; got 'hertz'"),
-    ('work = "60 mJ/m^2"', "", "adhesion.work (line 54): `work` must be given with model = 'auto'"),
+    ('work = "60 mJ/m^2"', "", "adhesion.work (line 58): `work` must be given with model = 'auto'"),
     ('equilibrium_spacing = "0.2 nm"', "",
      "`equilibrium_spacing` must be given with model = 'auto'"),
-    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 70): `humidity` must lie in "
+    ("humidity = 0.6", "humidity = 1.2", "capillary.humidity (line 74): `humidity` must lie in "
      "[0, 1]; got 1.2"),
     ("# [gas]", '[gas]\nname = "argom"\npressure = "1 bar"\ntemperature = "20 degC"',
      "got 'argom' - did you mean 'argon'?"),
@@ -106,12 +106,12 @@ BAD = [
     ("humidity = 0.6", 'humidity = "60 %"', "`humidity` must be a number in [0, 1]; got '60 %'"),
     ("humidity = 0.6", "humidity = true", "`humidity` must be a number in [0, 1]; got True"),
     ("humidity = 0.6", "", "`humidity` must be given with model = 'equilibrium'"),
-    ('"30 deg"', '"120 deg"', "capillary.contact_angle (line 72): `contact_angle` must lie in "
+    ('"30 deg"', '"120 deg"', "capillary.contact_angle (line 76): `contact_angle` must lie in "
      "[0, 90) deg with menisci"),
     ('"30 deg"', '"300 deg"', "`contact_angle` must lie in [0, 180] deg; got '300 deg'"),
     ('"30 deg"', '"-1 deg"', "`contact_angle` must lie in [0, 180] deg; got '-1 deg'"),
     ('liquid = "water"', 'liquid = "watr"', "got 'watr' - did you mean 'water'?"),
-    ('"20 degC"', '"200 degC"', "capillary.temperature (line 71): `temperature` must lie in "
+    ('"20 degC"', '"200 degC"', "capillary.temperature (line 75): `temperature` must lie in "
      "[273.15 K, 373.15 K]"),
     ('"20 degC"', '"-300 degC"', "`temperature` must lie in [1, 10000] K; got '-300 degC'"),
     ('release_separation = "1 um"', "",

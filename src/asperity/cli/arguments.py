@@ -87,7 +87,11 @@ Speeds = Annotated[
 SpeedPoints = Annotated[
     int | None,
     typer.Option(
-        "--points", min=2, max=1001, help="How many speeds; 61 unless given.", show_default=False
+        "--points",
+        min=2,
+        max=1001,
+        help="How many speeds; 61 unless given, 31 with single bodies.",
+        show_default=False,
     ),
 ]
 Json = Annotated[

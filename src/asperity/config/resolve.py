@@ -11,6 +11,7 @@ from asperity.config.asperities import asperities_of
 from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.limits import refuse_rough
 from asperity.config.plasticity import Plasticity
+from asperity.config.roughness import REALISATIONS, Roughness
 from asperity.errors import InputError, Tolerance
 from asperity.inputs import (
     CLASSES,
@@ -18,6 +19,7 @@ from asperity.inputs import (
     Assumptions,
     Gas,
     Inputs,
+    Placement,
     Release,
     Structure,
     Suspension,
@@ -100,6 +102,7 @@ def resolve(case: CaseTables) -> Inputs:
         relaxed_modulus_ratio=_relaxation(case, "relaxed_modulus_ratio") if relaxing else 1.0,
         relaxation_time=_relaxation(case, "relaxation_time") if relaxing else 0.0,
         release=_release(case),
+        placement=_placement(table),
         published=_assumptions(case),
         tolerance=_tolerance(case),
     )
@@ -180,6 +183,12 @@ def _release(case: CaseTables) -> Release | None:
     if impact is None:
         return None
     return Release(impact.release_separation, _or_zero(impact.speed), impact.gravity)
+
+
+def _placement(table: Roughness | None) -> Placement | None:
+    if table is None or table.placement != "random":
+        return None
+    return Placement(table.realisations or REALISATIONS, table.seed or 0)
 
 
 def _tolerance(case: CaseTables) -> Tolerance:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,9 @@ from asperity.units import lengths
 
 if TYPE_CHECKING:
     from asperity.surfaces.preparation.prepare import Preparation
+
+REALISATIONS = 1000
+"""Single bodies where a case with ``placement = "random"`` names no number."""
 
 NUMBERS = ("asperity_density", "asperity_radius", "rms_height")
 
@@ -81,6 +84,17 @@ class Roughness(Table):
         default=None,
     )  # fmt: skip
 
+    placement: Literal["mean", "random"] | None = entry(
+        "", "Summits: their 'mean' over all bodies (default), or beside it single bodies, each on "
+        "summits at 'random' places.", "random", default=None,
+    )  # fmt: skip
+    realisations: Annotated[int, Number("[1, 1000000]", whole=True)] | None = entry(
+        "1", "With placement = 'random': single bodies; 1000.", 1000, default=None
+    )
+    seed: Annotated[int, Number("[0, 4294967295]", whole=True)] | None = entry(
+        "1", "With placement = 'random': seed of the places; 0.", 0, default=None
+    )
+
     of_files: ClassVar[tuple[str, ...]] = (
         "source", "size", "unit", "channel", "missing", "form_removal", "line_levelling",
         "direction", "degree", "s_filter", "l_filter", "radius_classes",
@@ -102,6 +116,16 @@ class Roughness(Table):
                 "`radius_classes` must be absent without source = 'summits'; got "
                 f"{self.radius_classes}",
                 key="radius_classes",
+            )
+        if self.placement != "random":
+            refuse_all(
+                InputError(
+                    f"`{key}` must be absent without placement = 'random', which it is for; got "
+                    f"{getattr(self, key)}",
+                    key=key,
+                )
+                for key in ("realisations", "seed")
+                if getattr(self, key) is not None
             )
         if self.size is not None:
             lengths(self.size, 2, "size")
@@ -137,3 +161,47 @@ class Roughness(Table):
             return None
         width, length = lengths(self.size, 2, "size")
         return width, length
+
+    def check_beside(self, case: Any) -> None:
+        if self.placement != "random":
+            return
+        others = {
+            "counterface.deformation": case.counterface.deformation != "rigid",
+            "roughness.source": self.source == "summits",
+            "capillary.model": case.capillary.model == "kelvin-filling",
+            "capillary.formation_time": bool(case.capillary.formation_time),
+            "plasticity.model": _on(case.plasticity),
+            "waves.model": _on(case.waves),
+            "gas": case.gas is not None,
+            "suspension": case.suspension is not None,
+            "publication": case.publication is not None,
+        }
+        refuse_all(
+            InputError(f"{_BESIDE[key]} with placement = 'random'; {why}", key=key)
+            for key, found in others.items()
+            if found
+            for why in (_WHY.get(key, _NO_OTHER),)
+        )
+
+
+_BESIDE = {
+    "counterface.deformation": "`deformation` must be 'rigid'",
+    "roughness.source": "`source` must be 'gaussian'",
+    "capillary.model": "`model` must not be 'kelvin-filling'",
+    "capillary.formation_time": "`formation_time` must be absent",
+    "plasticity.model": "`model` must be 'none' in [plasticity]",
+    "waves.model": "`model` must be 'none' in [waves]",
+    "gas": "a [gas] table must be absent",
+    "suspension": "a [suspension] table must be absent",
+    "publication": "a [publication] table must be absent",
+}
+_WHY = {
+    "counterface.deformation": "summits that feel one another through a half-space are not solved",
+    "roughness.source": "all summits of single bodies have one tip radius",
+}
+_NO_OTHER = "single bodies have the elastic forces, adhesion and menisci of their summits alone"
+
+
+def _on(table: Any) -> bool:
+    """Whether a table is there with a model."""
+    return table is not None and table.model != "none"

@@ -111,21 +111,20 @@ class SmoothContact(Contact):
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """The kinks of all laws, with panels that narrow to each."""
-        kinks = {
-            id(k): jnp.asarray(k, float)
-            for law in terms(self.law)
-            for k in (*law.kinks, *self._ends(law))
-        }
-        kink = jnp.stack([jnp.zeros(()), *kinks.values()])
-        return panels_around(kink, low, high, self.resolved.panels)
-
-    @staticmethod
-    def _ends(law: Law) -> tuple[jax.Array | float, ...]:
-        return (law.forming_gap, law.breaking_gap) if law.hysteretic else ()
+        return panels_around(kinks_of(self.law), low, high, self.resolved.panels)
 
     @property
     def interaction_range(self) -> jax.Array:
         return reduce(jnp.maximum, [law.interaction_range for law in terms(self.law)])
+
+
+def kinks_of(law: Law) -> jax.Array:
+    """Gaps [m] at which a law or its parts are not smooth, 0 first, shape (kinks,)."""
+    found: dict[int, jax.Array | float] = {}
+    for one in terms(law):
+        ends = (one.forming_gap, one.breaking_gap) if one.hysteretic else ()
+        found |= {id(gap): gap for gap in (*one.kinks, *ends)}
+    return jnp.stack([jnp.zeros(()), *(jnp.asarray(gap, float) for gap in found.values())])
 
 
 _SMALLEST = 1e-16  # m; far below any deformation that a continuum has

@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from asperity.errors import InputError
-from asperity.plots import curve, energy, forces, motion_plot, style
+from asperity.plots import bodies_plot, curve, energy, forces, motion_plot, style
 from asperity.plots.style import Row
 from asperity.results.result import Curve, Result
 
@@ -20,7 +20,8 @@ def figure(result: Result | Curve, *parts: str) -> Figure:
     result : Result or Curve
         What to draw.
     *parts : str
-        Of "motion", "forces" and "energy" for a result; "curve" for a curve.
+        Of "motion", "forces" and "energy" for a result, and "bodies" where it has single bodies;
+        "curve" for a curve.
 
     Raises
     ------
@@ -57,8 +58,11 @@ def _rows(result: Result | Curve) -> dict[str, Row]:
             f"{result.name}: a result must hold its motion to be drawn; it has none "
             "(`output.motion` is false, or nothing was computed)"
         )
-    return {
+    rows = {
         "motion": motion_plot.panels(result),
         "forces": forces.panels(result),
         "energy": energy.panels(result),
     }
+    if result.realisations is not None:
+        rows["bodies"] = bodies_plot.panels(result, result.realisations)
+    return rows

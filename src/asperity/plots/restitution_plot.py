@@ -13,11 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from asperity.plots import style
+from asperity.plots import capture_plot, style
 from asperity.plots.study import outcomes
 from asperity.plots.study.drawn_quantities import Quantity
 from asperity.plots.study.panels import Block, Page
 from asperity.results.colours import colour
+from asperity.sweeps.capture_probability import CaptureProbability
 
 _DOTTED = 40
 _MARGIN = 1.15
@@ -38,6 +39,7 @@ def figure(
     edges: tuple[float, ...] = (),
     critical: float | None = None,
     own_speed: float | None = None,
+    single_bodies: CaptureProbability | None = None,
     name: str = "",
 ) -> Figure:
     """Restitution of the first impact over speeds of approach.
@@ -58,6 +60,8 @@ def figure(
         Critical velocity [m/s]; None where every speed rebounds.
     own_speed : float or None
         Speed of approach of the case itself [m/s].
+    single_bodies : CaptureProbability or None
+        What single bodies do at these speeds, drawn as bands and in a panel of its own.
     name : str
         What it belongs to, for the title.
     """
@@ -70,31 +74,50 @@ def figure(
     bands = _bands(speeds, captured, edges)
     others = [edge for edge in edges if critical is None or not isclose(edge, critical)]
 
-    def draw(axes: Axes) -> None:
+    def dress(axes: Axes) -> None:
         x.dress(axes, "x")
-        axes.set(ylabel="coefficient of restitution [-]", ylim=(-0.03, 1.03))
         axes.set_xlim(*(ends / factor * np.array([1.0 / _MARGIN, _MARGIN])))
+        if critical is not None:
+            axes.axvline(critical / factor, **outcomes.BOUNDARY)
+
+    def draw(axes: Axes) -> None:
+        dress(axes)
+        axes.set(ylabel="coefficient of restitution [-]", ylim=(-0.03, 1.03))
         for low, high in bands:
             span = (axes.get_xlim()[0] if low is None else low / factor,
                     axes.get_xlim()[1] if high is None else high / factor)  # fmt: skip
             axes.axvspan(*span, color=outcomes.SHADE, lw=0.0, zorder=0)
         for edge in others:
             axes.axvline(edge / factor, **_EDGE)
-        if critical is not None:
-            axes.axvline(critical / factor, **outcomes.BOUNDARY)
         if own_speed is not None:
             axes.plot([own_speed / factor] * 2, [-0.03, 1.0], markevery=[1], **_OWN)
+        if single_bodies is not None:
+            capture_plot.draw_restitution(axes, x.values, single_bodies)
         _values(axes, x.values, np.where(captured, np.nan, restitution), captured)
 
-    legend = _legend(critical, others, own_speed)
-    if bands:
-        legend.append((Patch(facecolor=outcomes.SHADE, lw=0.0), outcomes.WORDS["captured"]))
-    stopped = np.count_nonzero(np.isnan(restitution) & ~captured)
-    if stopped:
-        legend.append(
-            (Line2D([], [], ls=""), f"no rebound, no capture at {stopped} of {speeds.size} speeds")
-        )
-    return Page(name, [Block("", draw)], 1, legend).figure()
+    def draw_share(axes: Axes) -> None:
+        dress(axes)
+        assert single_bodies is not None
+        capture_plot.draw_share(axes, x.values, single_bodies, factor)
+
+    blocks = [Block("", draw), *([] if single_bodies is None else [Block("", draw_share)])]
+    legend = [
+        *_legend(critical, others, own_speed, held=bool(bands)),
+        *([] if single_bodies is None else _of_bodies(single_bodies)),
+        *_of_stopped(np.isnan(restitution) & ~captured),
+    ]
+    return Page(name, blocks, 1, legend).figure()
+
+
+def _of_bodies(found: CaptureProbability) -> list[tuple[Artist, str]]:
+    half = found.half_velocity
+    return capture_plot.legend(found, "" if half is None else _told(half))
+
+
+def _of_stopped(stopped: np.ndarray) -> list[tuple[Artist, str]]:
+    count = np.count_nonzero(stopped)
+    told = f"no rebound, no capture at {count} of {stopped.size} speeds"
+    return [(Line2D([], [], ls=""), told)] if count else []
 
 
 def _values(axes: Axes, x: np.ndarray, bounce: np.ndarray, captured: np.ndarray) -> None:
@@ -124,7 +147,7 @@ def _bands(
 
 
 def _legend(
-    critical: float | None, others: list[float], own_speed: float | None
+    critical: float | None, others: list[float], own_speed: float | None, *, held: bool
 ) -> list[tuple[Artist, str]]:
     found: list[tuple[Artist, str]] = []
     if critical is not None:
@@ -134,6 +157,8 @@ def _legend(
         found.append((Line2D([], [], **_EDGE), f"other edges of capture {told}"))
     if own_speed is not None:
         found.append((Line2D([], [], **_OWN), f"speed of the case {_told(own_speed)}"))
+    if held:
+        found.append((Patch(facecolor=outcomes.SHADE, lw=0.0), outcomes.WORDS["captured"]))
     return found
 
 

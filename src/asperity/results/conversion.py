@@ -32,6 +32,7 @@ from ..regimes.validity import (
 from .assessment import regime_of
 from .first_contact import FirstContact, least_peak
 from .measures import Measures, measure
+from .realisations import Realisations
 from .result import Result
 
 _ROWS = 256
@@ -133,6 +134,7 @@ def result_of(
     solution: Solution,
     elastic: float | None = None,
     most: int | None = None,
+    realisations: Realisations | None = None,
 ) -> Result:
     """The result of a motion that was integrated.
 
@@ -148,6 +150,8 @@ def result_of(
         Restitution of the first impact were nothing to yield, for a case in which it does.
     most
         Impacts whose course is drawn, at least 1; all without it. What is measured is of all.
+    realisations
+        First impacts of single bodies, where the case asks for them.
     """
     problem = problem._replace(body=solution.body or problem.body)
     motion, body, inputs = solution.motion, problem.body, problem.inputs
@@ -171,6 +175,7 @@ def result_of(
         energies=energies,
         regime=regime._asdict(),
         measures=_plain(measures, made),
+        realisations=realisations,
         ledger=_ledger(solution.contact, motion, body, made),
         surface=None if inputs.asperities is None else inputs.asperities.facts,
         warnings=[

@@ -14,6 +14,7 @@ from asperity.config import load
 from asperity.errors import InputError, Outcome
 from asperity.results import record_layout
 from asperity.results.netcdf_record import SEAL, sealed
+from asperity.results.realisations import KINDS, Realisations
 from asperity.results.result import Curve, Result
 
 _MOTION = ("time", "separation", "central_separation", "speed")
@@ -101,7 +102,16 @@ def _result(
         events={key: arrays.get(key, nothing) for key in _EVENTS},
         **{key: json.loads(said[key]) for key in ("regime", "measures", "ledger", "warnings")},
         surface=json.loads(said["surface"]) if "surface" in said else None,
+        realisations=_realisations(_below(arrays, record_layout.BODY)),
     )
+
+
+def _realisations(arrays: dict[str, np.ndarray]) -> Realisations | None:
+    if not arrays:
+        return None
+    captured, lost = arrays.pop("captured") > 0.5, _below(arrays, "lost_")
+    values = {name: values for name, values in arrays.items() if name in KINDS}
+    return Realisations(captured, values, lost)
 
 
 def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:

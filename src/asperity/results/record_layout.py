@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from asperity.results.realisations import KINDS, Realisations
 from asperity.results.result_data import CurveData, ResultData
 
 KIND = "asperity_record"
@@ -20,6 +21,9 @@ KIND = "asperity_record"
 
 VERSION = 2
 """Version of this layout."""
+
+BODY = "body_"
+"""What the names of variables of single bodies begin with."""
 
 _FORCES = {
     "weight": "weight",
@@ -80,7 +84,8 @@ def variables(result: ResultData | CurveData) -> list[Variable]:
     """The variables of a result, in the order of its record."""
     if isinstance(result, CurveData):
         return _curve_variables(result)
-    return [*_motion(result), *_impacts(result), *_ledger(result.ledger)]
+    bodies = [] if result.realisations is None else _bodies(result.realisations)
+    return [*_motion(result), *_impacts(result), *_ledger(result.ledger), *bodies]
 
 
 def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
@@ -128,6 +133,8 @@ def json_object(result: ResultData | CurveData) -> dict[str, Any]:
     found = {name: plain(getattr(result, name)) for name in parts}
     if result.surface is not None:
         found["surface"] = plain(result.surface)
+    if result.realisations is not None:
+        found["realisations"] = plain(result.realisations.plain())
     return {"outcome": result.outcome.value, **found}
 
 
@@ -201,6 +208,20 @@ def _ledger(ledger: Mapping[str, Any]) -> list[Variable]:
     meaning = "largest departure of the energy balance over the impact energy"
     found.append(Variable("energy_balance_error", (), energy_balance_error, "1", meaning))
     return found
+
+
+def _bodies(found: Realisations) -> list[Variable]:
+    """One value for each of the single bodies."""
+    along = ("realisation",)
+    captured = found.captured.astype(float)
+    rows = [Variable(f"{BODY}captured", along, captured, "1", "1 where the body is captured")]
+    for name, values in found.values.items():
+        units, meaning = KINDS[name]
+        rows.append(Variable(f"{BODY}{name}", along, values, units, f"{meaning}, of a single body"))
+    for name, values in found.lost.items():
+        meaning = f"energy that bonds take from a single body, {name}"
+        rows.append(Variable(f"{BODY}lost_{name}", along, values, "J", meaning))
+    return rows
 
 
 def _curve_variables(curve: CurveData) -> list[Variable]:

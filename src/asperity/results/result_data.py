@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.errors import Outcome
+from asperity.results.realisations import Realisations
 
 if TYPE_CHECKING:
     from asperity.config import Case
@@ -53,6 +54,9 @@ class ResultData:
     surface : dict, optional
         Measured surfaces: files with their SHA-256, what was done to them, and what was found,
         in SI; None for a case of numbers.
+    realisations : Realisations, optional
+        First impacts of single bodies, each on summits of its own; None where the case asks for
+        the mean alone.
     """
 
     case: Case
@@ -72,6 +76,7 @@ class ResultData:
     input_sha256: str | None = None
     case_file: str | None = None
     surface: dict[str, Any] | None = None
+    realisations: Realisations | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

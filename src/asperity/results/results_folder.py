@@ -13,7 +13,11 @@ from asperity.errors import InputError, OutputError
 
 RUN_FILES = (
     "record.nc",
-    *(f"{name}.{kind}" for name in ("motion", "forces", "energy") for kind in ("png", "svg")),
+    *(
+        f"{name}.{kind}"
+        for name in ("motion", "forces", "energy", "bodies")
+        for kind in ("png", "svg")
+    ),
     "summary.txt",
 )
 """Names that a run may write."""

@@ -11,6 +11,7 @@ from asperity.config.amounts import amount as amount
 from asperity.config.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
 from asperity.results.impact_table import cell_text, impact_table
+from asperity.results.realisations import KINDS, percent
 from asperity.results.shares import share_texts
 from asperity.results.verdict import sentence
 
@@ -43,6 +44,7 @@ def of_result(
             *_heading(result.name, _ended(result)),
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
+            *_section("Single bodies", _bodies(result)),
             *_section("Surface", _surface(result.surface)),
             *_section("Regime", _regime(result.regime)),
             *_chosen(result.regime),
@@ -69,6 +71,7 @@ def brief(result: ResultData, *, published: bool | None = None) -> str:
             f"{result.name}: {result.outcome.value}",
             *_wrapped(_ended(result)),
             *_section("", rows),
+            *_section("Single bodies", _bodies(result)),
             *_chosen(result.regime),
             *impact_table(result, FEW, published),
             *warning_lines(result.warnings),
@@ -81,6 +84,7 @@ def shown_of(result: ResultData) -> tuple[str, list[tuple[str, list[tuple[str, s
     parts = {
         "Motion": _motion(result.measures),
         "Energy": _energy(result.ledger),
+        "Single bodies": _bodies(result),
         "Surface": _surface(result.surface),
     }
     return _ended(result), [(title, _known(rows)) for title, rows in parts.items()]
@@ -160,6 +164,46 @@ def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
     error = ledger.get("energy_balance_error")
     closed = "-" if error is None else f"{error:.1e} of the impact energy"
     return [*rows, ("balance closes to", closed)]
+
+
+def _bodies(result: ResultData) -> list[tuple[str, str]]:
+    """First impacts of single bodies, beside the mean over all."""
+    found = result.realisations
+    if found is None:
+        return []
+    measures, first = result.measures, (result.measures.get("restitution") or [None])[0]
+    low, high = (percent(share) for share in found.capture_interval)
+    mean = {
+        "restitution": first,
+        "contacting": result.regime.get("contacting_asperities"),
+        "maximum_force": measures.get("maximum_force"),
+        "pull_off": measures.get("pull_off"),
+    }
+    labels = {
+        "restitution": "restitution",
+        "contacting": "touching at the turn",
+        "loaded": "loaded, effectively",
+        "maximum_force": "largest force",
+        "pull_off": "pull-off force",
+    }
+    captured = f"{percent(found.capture_probability)} %  (95 % interval: {low} to {high} %)"
+    rows = [("bodies", str(found.size)), ("captured at first impact", captured)]
+    for name, label in labels.items():
+        rows.append((label, _spread(found.quantiles(name), KINDS[name][0], mean.get(name))))
+    lost = result.ledger.get("lost") or {}
+    once = len(measures.get("restitution") or []) == 1
+    for name in found.lost:
+        told = lost.get(name) if once else None
+        rows.append((f"lost to {name}", _spread(found.quantiles(name), "J", told)))
+    return rows
+
+
+def _spread(quantiles: Sequence[float], unit: str, mean: float | None) -> str:
+    """The median, what lies 10 % below and above, and the mean field's value."""
+    unit = "" if unit == "1" else unit
+    low, median, high = (amount(value, unit) for value in quantiles)
+    beside = "" if mean is None else f"; mean field: {amount(mean, unit)}"
+    return f"{median}  ({low} to {high}{beside})"
 
 
 def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:

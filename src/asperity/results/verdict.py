@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity.errors import Outcome
 from asperity.regimes import missed
+from asperity.results.realisations import Realisations, percent
 
 if TYPE_CHECKING:
     from asperity.results.result_data import ResultData
@@ -35,6 +36,8 @@ def verdict(result: ResultData) -> str:
     result: ResultData
         The result.
     """
+    if result.realisations is not None:
+        return _bodies(result.realisations)
     if unjudged(result):
         contacting = result.regime["contacting_asperities"]
         return (
@@ -61,7 +64,19 @@ def sentence(result: ResultData) -> str:
         The result.
     """
     answer = verdict(result)
+    if result.realisations is not None:
+        return answer
     return answer[0].upper() + answer[1:] if unjudged(result) else f"The body {answer}"
+
+
+def _bodies(found: Realisations) -> str:
+    """What single bodies do at their first impact."""
+    low, high = (percent(share) for share in found.capture_interval)
+    kept = found.quantiles("restitution")[1]
+    return (
+        f"Of single bodies {percent(found.capture_probability)} % are captured at the first impact "
+        f"(95 % interval: {low} to {high} %); their median restitution is {kept:.3g}"
+    )
 
 
 def _first(measures: dict[str, Any]) -> str:

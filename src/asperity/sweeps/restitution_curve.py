@@ -25,8 +25,10 @@ from ..model import build
 from ..results.assessment import assessment_of
 from ..results.case_source import CaseLike, case_of
 from ..results.conversion import measured
+from ..results.realisations import percent
 from ..results.result import drawing
 from ..results.summary import amount, warning_lines
+from .capture_probability import CaptureProbability, capture_probability
 
 if TYPE_CHECKING:
     import xarray
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
 
 _PICTURE = "asperity.plots.restitution_plot"
 
-POINTS = 61
-"""Speeds that are computed where none are given, besides some close to the edges of capture."""
+POINTS, FEWER = 61, 31
+"""Speeds that are computed where none are given, besides some close to the edges of capture; and of
+a case with single bodies, a thousand for each speed."""
 _NEAR = np.array([1e-4, 1e-3, 1e-2, 3e-2])  # relative: speeds on both sides of each edge
 _FINER = (4,)  # times as many panels where fast impacts ask for them
 _BELOW, _ABOVE = 0.1, 100.0  # from and to how many critical velocities it is drawn
@@ -70,6 +73,8 @@ class RestitutionCurve:
         Speed of approach of the case itself [m/s].
     warnings : list of str
         What to know before the numbers are used, for the case's own speed.
+    single_bodies : CaptureProbability, optional
+        What single bodies do at these speeds; None where the case asks for the mean alone.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from.
     case_file : str, optional
@@ -86,6 +91,7 @@ class RestitutionCurve:
     note: str | None
     own_speed: float
     warnings: list[str]
+    single_bodies: CaptureProbability | None = None
     input_sha256: str | None = None
     case_file: str | None = None
 
@@ -108,8 +114,11 @@ class RestitutionCurve:
         """Plain values in SI, None where one does not apply."""
         from asperity.results import records
 
-        names = [field.name for field in dataclasses.fields(self) if field.name != "case"]
-        found: dict[str, Any] = records.plain({name: getattr(self, name) for name in names})
+        held = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        del held["case"]
+        if self.single_bodies is not None:
+            held["single_bodies"] = dataclasses.asdict(self.single_bodies)
+        found: dict[str, Any] = records.plain(held)
         return found
 
     def plot(self) -> Figure:
@@ -121,6 +130,7 @@ class RestitutionCurve:
             edges=tuple(self.capture_edges),
             critical=self.critical_velocity,
             own_speed=self.own_speed,
+            single_bodies=self.single_bodies,
             name=self.name,
         )
         return figure
@@ -130,7 +140,10 @@ class RestitutionCurve:
         lines = [f"{self.name}: restitution of the first impact against speed of approach", ""]
         lines.append(f"  {'critical velocity':<26}{self._critical()}")
         lines.append(f"  {'speed of the case':<26}{amount(self.own_speed, 'm/s')}")
-        lines += ["", f"  {'speed':<26}restitution"]
+        if self.single_bodies is not None:
+            lines.append(f"  {'half are captured at':<26}{self._half()}")
+        beside = "" if self.single_bodies is None else "  captured  of single bodies"
+        lines += ["", f"  {'speed':<26}restitution{beside}"]
         lines += [f"  {speed:<26}{told}" for speed, told in self._points()]
         return "\n".join([*lines, *warning_lines(self.warnings)])
 
@@ -141,12 +154,24 @@ class RestitutionCurve:
         note = f"  ({self.note})" if self.note else ""
         return amount(self.critical_velocity, "m/s") + note
 
+    def _half(self) -> str:
+        """The speed at which half of single bodies are captured, with its interval."""
+        found = self.single_bodies
+        if found is None or found.half_velocity is None:
+            return "no speed that was tried"
+        low, high = (amount(speed, "m/s") for speed in found.half_interval)
+        return f"{amount(found.half_velocity, 'm/s')}  (95 % interval: {low} to {high})"
+
     def _points(self) -> list[tuple[str, str]]:
         """Some thirteen of the speeds, and the restitution at each."""
         found = []
         for at in range(0, self.speed.size, max(1, (self.speed.size - 1) // 12)):
             kept, held = self.restitution[at], self.captured[at]
             told = "captured" if held else "-" if np.isnan(kept) else f"{kept:.4f}"
+            if (bodies := self.single_bodies) is not None:
+                low, median, high = bodies.restitution[at]
+                told = f"{told:<10}{percent(bodies.probability[at]):>6} %    {median:.4f}"
+                told += f"  ({low:.4f} to {high:.4f})"
             found.append((amount(float(self.speed[at]), "m/s"), told))
         return found
 
@@ -170,9 +195,13 @@ class RestitutionCurve:
     def _table(self) -> str:
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(["speed [m/s]", "restitution [-]", "captured"])
-        rows = zip(self.speed.tolist(), self.restitution.tolist(), self.captured, strict=True)
-        writer.writerows((speed, "" if e != e else e, int(held)) for speed, e, held in rows)
+        more = {} if self.single_bodies is None else self.single_bodies.columns()
+        writer.writerow(["speed [m/s]", "restitution [-]", "captured", *more])
+        columns = (self.speed, self.restitution, self.captured, *more.values())
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        writer.writerows(
+            (speed, "" if e != e else e, int(held), *rest) for speed, e, held, *rest in rows
+        )
         return out.getvalue()
 
     def __repr__(self) -> str:
@@ -186,6 +215,7 @@ class RestitutionCurve:
         rows = [
             ("critical velocity", self._critical()),
             ("speed of the case", amount(self.own_speed, "m/s")),
+            *([] if self.single_bodies is None else [("half are captured at", self._half())]),
             *self._points(),
         ]
         sentence = "Restitution of the first impact against speed of approach."
@@ -196,7 +226,7 @@ def restitution_curve(
     case: CaseLike,
     speeds: np.ndarray | None = None,
     *,
-    points: int = POINTS,
+    points: int | None = None,
     name: str | None = None,
     progress: Report | None = None,
     stop: threading.Event | None = None,
@@ -211,7 +241,7 @@ def restitution_curve(
         Speeds of launch [m/s], all positive; by default over three decades about the critical
         velocity, or about the case's own speed where there is none.
     points
-        How many speeds, where they are chosen.
+        How many speeds, where they are chosen: 61, or 31 with single bodies.
     name, progress, stop
         As for :func:`asperity.solve`.
 
@@ -236,7 +266,8 @@ def restitution_curve(
     report(0.3, "critical velocity")
     found = critical_measures(launcher.edges(solution))
     if speeds is None:
-        speeds = _decades(found["capture_edges"], own, points)
+        usual = POINTS if inputs.placement is None else FEWER
+        speeds = _decades(found["capture_edges"], own, points or usual)
     rebounds: list[Rebound] = []
     for number, speed in enumerate(speeds.tolist()):
         report(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
@@ -244,17 +275,15 @@ def restitution_curve(
     known = sorted((r for r in rebounds if np.isfinite(r.speed)), key=lambda r: r.speed)
     if not known:
         raise SimulationError("no first impact could be computed at any of the speeds")
-    warnings = list(about.warnings)
-    if len(known) < len(rebounds):
-        warnings.append(
-            f"{len(rebounds) - len(known)} of {len(rebounds)} speeds are left out: their force "
-            "curves are not fine enough, or their motion could not be solved"
-        )
+    warnings = [*about.warnings, *_left_out(len(rebounds) - len(known), len(rebounds))]
+    speed, bodies = np.array([rebound.speed for rebound in known]), None
+    if inputs.placement is not None:
+        bodies = capture_probability(problem, speed, lambda _, text: report(0.99, text), stop)
     report(1.0, "done")
     return RestitutionCurve(
         case=case,
         name=name,
-        speed=np.array([rebound.speed for rebound in known]),
+        speed=speed,
         restitution=np.array([rebound.restitution for rebound in known]),
         captured=np.array([rebound.captured for rebound in known]),
         critical_velocity=found["critical_velocity"],
@@ -262,7 +291,18 @@ def restitution_curve(
         note=found["critical_velocity_note"],
         own_speed=own,
         warnings=warnings,
+        single_bodies=bodies,
     )
+
+
+def _left_out(missing: int, speeds: int) -> list[str]:
+    """What is to be said of speeds at which nothing could be computed."""
+    if not missing:
+        return []
+    return [
+        f"{missing} of {speeds} speeds are left out: their force curves are not fine enough, or "
+        "their motion could not be solved"
+    ]
 
 
 def _checked(speeds: np.ndarray) -> np.ndarray:

@@ -11,6 +11,9 @@ CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""
 
 
+_OF_BODIES = ("placement", "realisations", "seed")
+
+
 def refuse_unusable(study: StudyDefinition) -> None:
     """Refuse columns that there are not, cases without a motion, and cases beyond counting.
 
@@ -20,6 +23,15 @@ def refuse_unusable(study: StudyDefinition) -> None:
         With the rule, and the key at fault.
     """
     _ = study.columns
+    rough = study.base.roughness
+    if any(place(axis.key)[1] in _OF_BODIES for axis in study.axes) or (
+        rough is not None and rough.placement == "random"
+    ):
+        raise InputError(
+            "`placement` must be 'mean' in a study, which keeps the mean over all bodies: single "
+            "ones are for `asperity run` and `asperity restitution`",
+            key="roughness.placement",
+        )
     if study.base.impact is None and not any(place(a.key)[0] == "impact" for a in study.axes):
         raise InputError("`base` must have an [impact] table, for motions; got none", key="base")
     if study.size > CASES_LIMIT:

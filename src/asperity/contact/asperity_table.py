@@ -1,0 +1,196 @@
+"""Energies of one asperity, tabulated: they are read some thousand times for every impact."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..laws.law import Law, Real, terms
+from ..numerics.compilation import AT_ONCE, Program, kept
+from .smooth import kinks_of
+
+_CELLS = 512  # between two gaps at which a law is not smooth
+_POINTS = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(4))
+_TO_POWERS = np.linalg.inv(np.vander(_POINTS, increasing=True)).T
+_BEYOND = 1.01  # times where forces end: there, the table ends with none
+_EMPTY = 1e-9  # y: a stretch between two gaps that are one is passed within it
+_LADDER = -1e-15 * 2.0 ** np.arange(0.0, 80.0)  # m, down to where a gap needs the largest energy
+
+APPROACH = -1
+"""Row of an asperity that comes from far away."""
+
+
+@kept
+class AsperityTable(NamedTuple):
+    """Energies of the laws of one asperity as cubics on cells of its gap.
+
+    Cells are even in y, |gap|/scale = exp |y| - 1 with the sign of the gap; their ends are gaps at
+    which a law is not smooth. An energy holds what was lost on the way: at any gap it is the work
+    done since the asperity was far away.
+
+    Attributes
+    ----------
+    scale
+        Length [m] below which cells are even in the gap itself.
+    borders
+        y at both ends and where a law is not smooth, ascending.
+    rates
+        Cells over y from each of these to the next, shape (borders - 1,).
+    energy, slope
+        Energy [J] and its slope with the gap [N], shape (rows, cells, 4): coefficients of powers of
+        the share of a cell. There is a row for each set of laws whose bond was formed, and the last
+        is that on approach, where each forms in its turn.
+    forming, breaking
+        Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (laws,).
+    lost
+        Energy [J] that each loses once made and broken, shape (laws,).
+    pulling
+        Gap [m] at which an asperity with all bonds pulls most.
+    """
+
+    scale: jax.Array
+    borders: jax.Array
+    rates: jax.Array
+    energy: jax.Array
+    slope: jax.Array
+    forming: jax.Array
+    breaking: jax.Array
+    lost: jax.Array
+    pulling: jax.Array
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which an asperity feels nothing."""
+        return self.scale * _stretched(self.borders[-1])
+
+    @property
+    def cells(self) -> int:
+        """Number of cells. Without values."""
+        return self.energy.shape[1]
+
+    def gap(self, cells: np.ndarray) -> jax.Array:
+        """Gap [m] at a number of cells from the lowest on, shape (n,)."""
+        widths = jnp.diff(self.borders)
+        shares = np.clip(cells[:, None] / _CELLS - np.arange(widths.size), 0.0, 1.0)
+        return self.scale * _stretched(self.borders[0] + shares @ widths)
+
+    def between(
+        self, start: jax.Array, end: jax.Array, origin: jax.Array, shares: np.ndarray
+    ) -> jax.Array:
+        """Places [m] from one to another, spaced as cells are about a gap of 0 at an ``origin``."""
+        low, high = (_even((place - origin) / self.scale) for place in (start, end))
+        return origin + self.scale * _stretched(low + (high - low) * shares)
+
+    def row(self, gap: jax.Array) -> jax.Array:
+        """Row of an asperity that came to a gap [m] and leaves again; any shape."""
+        formed = gap <= self.forming.reshape(-1, *(1,) * gap.ndim)
+        return jnp.tensordot(2 ** np.arange(formed.shape[0]), formed, axes=1)
+
+    def work(self, gap: jax.Array, row: jax.Array | int = APPROACH) -> jax.Array:
+        """Work [J] from far away to a gap [m]; any shape."""
+        return _work(self, gap, jnp.asarray(row))
+
+
+def _stretched(y: jax.Array) -> jax.Array:
+    return jnp.sign(y) * jnp.expm1(jnp.abs(y))
+
+
+def _even(gap: jax.Array) -> jax.Array:
+    """The inverse."""
+    return jnp.sign(gap) * jnp.log1p(jnp.abs(gap))
+
+
+@jax.custom_jvp
+def _work(table: AsperityTable, gap: jax.Array, row: jax.Array) -> jax.Array:
+    return _read(table.energy, row, *_cell(table, gap))
+
+
+@_work.defjvp
+def _work_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
+    """With respect to the gap alone."""
+    table, gap, row = primals
+    at = _cell(table, gap)
+    return _read(table.energy, row, *at), _read(table.slope, row, *at) * tangents[1]
+
+
+def _cell(table: AsperityTable, gap: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Cell of a gap, and the share of it that lies below."""
+    place, number = _even(gap / table.scale), jnp.zeros_like(gap)
+    for low, rate in zip(table.borders, table.rates, strict=False):
+        number = number + jnp.clip((place - low) * rate, 0.0, _CELLS)
+    cell = jnp.clip(number.astype(jnp.int32), 0, table.cells - 1)
+    return cell, number - cell
+
+
+def _read(values: jax.Array, row: jax.Array, cell: jax.Array, share: jax.Array) -> jax.Array:
+    powers = values[row, cell]
+    value = powers[..., 3]
+    for k in (2, 1, 0):
+        value = value * share + powers[..., k]
+    return value
+
+
+def _stretches(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Scale of a table from a gap ``low`` on, and the borders of the stretches of its cells."""
+    every, kinks = terms(law), kinks_of(law)
+    sizes = jnp.stack([*jnp.abs(kinks), *(jnp.asarray(one.length, float) for one in every)])
+    shortest = jnp.min(jnp.where((sizes > 0.0) & jnp.isfinite(sizes), sizes, jnp.inf))
+    scale = jnp.minimum(shortest, -1e-3 * low)
+    ranges = [jnp.asarray(one.interaction_range, float) for one in every]
+    reach = _BEYOND * jnp.max(jnp.stack([scale, jnp.max(kinks), *ranges]))
+    outer = jnp.stack([low, reach])
+    gaps = jnp.sort(jnp.concatenate([jnp.clip(kinks, *outer), outer]))
+    return scale, _even(gaps / scale)
+
+
+def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
+    """The table of a law, down to a gap that needs more than an energy [J]."""
+    every = terms(law)
+    hysteretic = [one for one in every if one.hysteretic]
+
+    def work(gap: jax.Array, formed: tuple[bool, ...] | None) -> jax.Array:
+        """By the laws whose bond was formed; without them on approach."""
+        total = sum((one.energy(gap) for one in every), jnp.zeros_like(gap))
+        for k, one in enumerate(hysteretic):
+            held = one.formation_loss + one.bonded_energy(gap) - one.energy(gap)
+            lost = one.formation_loss + one.rupture_loss
+            bonded = jnp.where(gap < one.breaking_gap, held, lost)
+            on = gap <= one.forming_gap if formed is None else formed[k]
+            total = total + jnp.where(on, bonded, 0.0)
+        return total
+
+    ladder = jnp.asarray(_LADDER)
+    low = ladder[jnp.argmax(work(ladder, None) > energy)]
+    scale, borders = _stretches(law, low)
+    widths = jnp.diff(borders)
+    steps = np.arange(_CELLS)[:, None] + _POINTS
+    places = borders[:-1, None, None] + (widths / _CELLS)[:, None, None] * steps
+    gap = scale * _stretched(places).reshape(-1, _POINTS.size)
+    sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]
+
+    def fitted(formed: tuple[bool, ...] | None) -> jax.Array:
+        both = jax.jvp(lambda x: work(x, formed), (gap,), (jnp.ones_like(gap),))
+        return jnp.stack(both) @ _TO_POWERS
+
+    def each(values: list[Real]) -> jax.Array:
+        return jnp.stack([jnp.asarray(x, float) for x in values]) if values else jnp.zeros(0)
+
+    pulls = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
+    energy, slope = jnp.stack([fitted(formed) for formed in (*sets, None)], axis=1)
+    return AsperityTable(
+        scale,
+        borders,
+        _CELLS / jnp.maximum(widths, _EMPTY),
+        energy,
+        slope,
+        each([one.forming_gap for one in hysteretic]),
+        each([one.breaking_gap for one in hysteretic]),
+        each([one.formation_loss + one.rupture_loss for one in hysteretic]),
+        gap.ravel()[jnp.argmax(pulls)],
+    )
+
+
+asperity_table = Program(_table_of, AT_ONCE)

@@ -1,0 +1,61 @@
+"""How single bodies differ at their first impact, with the mean field's value beside them."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from asperity.plots import style
+from asperity.plots.style import Panel, Row
+from asperity.results.colours import colour
+from asperity.results.realisations import Realisations
+from asperity.results.result import Result
+
+_BINS = 25
+_MEAN: Any = {"color": colour("contact"), "lw": 1.2, "label": "mean field"}
+
+
+def panels(result: Result, found: Realisations) -> Row:
+    """Restitution, the summits that touch and the pull-off force: shares of the bodies."""
+    first = (result.measures.get("restitution") or [None])[0]
+    kept = np.histogram_bin_edges(found.values["restitution"], _BINS, (0.0, 1.0))
+    touching = found.values["contacting"]
+    counts = np.arange(touching.min(), touching.max() + 2.0) - 0.5
+    newtons, unit = style.scale_of(found.values["pull_off"], unit="N")
+    pull = result.measures.get("pull_off")
+    return [
+        Panel(1.0, partial(_shares, values=found.values["restitution"], bins=kept, mean=first,
+                           label="restitution (0: captured) [-]", legend=True)),
+        Panel(1.0, partial(_shares, values=touching, bins=counts, whole=True,
+                           mean=result.regime.get("contacting_asperities"),
+                           label="summits that touch [-]")),
+        Panel(1.0, partial(_shares, values=found.values["pull_off"] / newtons, bins=_BINS,
+                           mean=None if pull is None else pull / newtons,
+                           label=style.label("pull-off force", unit))),
+    ]  # fmt: skip
+
+
+def _shares(
+    axes: Axes,
+    *,
+    values: np.ndarray,
+    bins: Any,
+    mean: float | None,
+    label: str,
+    whole: bool = False,
+    legend: bool = False,
+) -> None:
+    """A histogram of shares of the bodies."""
+    weights = np.full(values.size, 1.0 / values.size)
+    axes.hist(values, bins=bins, weights=weights, color=colour("gas"), label="single bodies")
+    if mean is not None:
+        axes.axvline(mean, **_MEAN)
+    if whole:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=6, min_n_ticks=1))
+    axes.set(xlabel=label, ylabel="share of the bodies [-]")
+    if legend:
+        style.legend_above(axes)

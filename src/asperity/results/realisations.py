@@ -1,0 +1,103 @@
+"""What the first impacts of many single bodies have in common: shares with intervals, quantiles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+CONFIDENCE = 0.95
+"""Of the intervals that are given."""
+
+QUANTILES = (0.1, 0.5, 0.9)
+"""Shares of the bodies below the quantiles that are given."""
+
+KINDS = {
+    "restitution": ("1", "coefficient of restitution, 0 where captured"),
+    "contacting": ("1", "summits that touch at the turn"),
+    "loaded": ("1", "effective number of loaded summits at the turn, (sum F)^2 / sum F^2"),
+    "maximum_force": ("N", "contact force at the turn"),
+    "pull_off": ("N", "largest tension on the way out"),
+    "closest_approach": ("m", "rigid separation at the turn"),
+}
+"""Unit and meaning of what is known of each body."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Realisations:
+    """First impacts of bodies on summits at random places, one by one.
+
+    Parameters
+    ----------
+    captured : numpy.ndarray
+        Whether each body is captured, shape (bodies,).
+    values : dict of str to numpy.ndarray
+        What is known of each, by the names of `KINDS`; as long as ``captured``.
+    lost : dict of str to numpy.ndarray
+        Energy [J] that its bonds take, once all are broken, by mechanism; likewise.
+    """
+
+    captured: np.ndarray
+    values: dict[str, np.ndarray]
+    lost: dict[str, np.ndarray]
+
+    @property
+    def size(self) -> int:
+        """Number of bodies."""
+        return int(self.captured.size)
+
+    @property
+    def capture_probability(self) -> float:
+        """Share of the bodies that are captured at their first impact."""
+        return float(np.mean(self.captured))
+
+    @property
+    def capture_interval(self) -> tuple[float, float]:
+        """Interval of that probability at a confidence of 95 %."""
+        return clopper_pearson(int(np.sum(self.captured)), self.size)
+
+    def quantiles(self, name: str) -> list[float]:
+        """The `QUANTILES` of one of the ``values`` or, by its mechanism, of an energy ``lost``."""
+        found = self.values[name] if name in self.values else self.lost[name]
+        return [float(x) for x in np.quantile(found, QUANTILES)]
+
+    def plain(self) -> dict[str, Any]:
+        """Numbers of all bodies together, in SI."""
+        return {
+            "realisations": self.size,
+            "captured": int(np.sum(self.captured)),
+            "capture_probability": self.capture_probability,
+            "capture_interval": list(self.capture_interval),
+            "shares": list(QUANTILES),
+            "quantiles": {name: self.quantiles(name) for name in self.values},
+            "mean_restitution": float(np.mean(self.values["restitution"])),
+            "lost": {name: self.quantiles(name) for name in self.lost},
+        }
+
+
+def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Interval of a probability after some trials; it holds it at least as often as it says.
+
+    Parameters
+    ----------
+    hits, trials
+        How often it happened, of how many times.
+    confidence
+        Of the interval.
+
+    Notes
+    -----
+    Clopper and Pearson, Biometrika 26 (1934) 404, by quantiles of the beta distribution.
+    """
+    from scipy.special import betaincinv
+
+    tail = 0.5 * (1.0 - confidence)
+    low = betaincinv(hits, trials - hits + 1, tail) if hits else 0.0
+    high = betaincinv(hits + 1, trials - hits, 1.0 - tail) if hits < trials else 1.0
+    return float(low), float(high)
+
+
+def percent(share: float) -> str:
+    """A share in per cent, at as many digits as tell it from none and from all."""
+    return f"{100.0 * share:.3g}"

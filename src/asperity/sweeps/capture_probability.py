@@ -1,0 +1,125 @@
+"""Probability of capture against speed: single bodies, launched at every speed."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from ..dynamics.problem import Problem
+from ..dynamics.single_impact import Launch, SingleImpact
+from ..integration import Report, silently
+from ..results.realisations import QUANTILES, clopper_pearson
+from ..single_bodies import SingleBodies
+
+_HALVINGS = 8  # of the stretch between two speeds where the share falls below a half
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CaptureProbability:
+    """What single bodies do at their first impact, at each of some speeds.
+
+    Parameters
+    ----------
+    bodies : int
+        How many were launched at each speed.
+    probability, low, high : numpy.ndarray
+        Share of them that is captured, and its interval at 95 %, shape (speeds,).
+    restitution : numpy.ndarray
+        Quantiles of their restitution, 0 where captured, shape (speeds, 3); see
+        `asperity.results.realisations.QUANTILES`.
+    half_velocity : float, optional
+        Speed from which less than half are captured [m/s]. None where that is none of those tried.
+    half_interval : tuple of float
+        Its interval at 95 % [m/s]: the speeds at which a half lies within that of the share. None
+        for an end that is none of those tried.
+    """
+
+    bodies: int
+    probability: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    restitution: np.ndarray
+    half_velocity: float | None
+    half_interval: tuple[float | None, float | None]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Columns of a table over the speeds, by their headings."""
+        quantiles = dict(zip(QUANTILES, self.restitution.T, strict=True))
+        return {
+            "captured share [-]": self.probability,
+            "its lower bound [-]": self.low,
+            "its upper bound [-]": self.high,
+            **{f"restitution, quantile {q:g} [-]": values for q, values in quantiles.items()},
+        }
+
+
+def capture_probability(
+    problem: Problem,
+    speeds: np.ndarray,
+    report: Report = silently,
+    stop: threading.Event | None = None,
+) -> CaptureProbability:
+    """Launch the single bodies of a case at every speed.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case with ``placement = "random"``.
+    speeds
+        Speeds where the forces on each body begin [m/s], ascending.
+    report, stop
+        As for :func:`asperity.integration.integrate`.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :meth:`asperity.single_bodies.SingleBodies.impacts`.
+    """
+    placed, body = problem.inputs.placement, problem.body
+    assert placed is not None
+    bodies, count = SingleBodies(problem, placed.seed), placed.realisations
+    mass, weight = float(body.mass), float(body.weight)
+
+    def launched(speed: float) -> SingleImpact:
+        kinetic = np.full(count, 0.5 * mass * speed**2)
+        launches = Launch(kinetic, np.full(count, np.inf), np.full(count, weight))
+        return bodies.impacts(launches, stop, pulls=False)
+
+    hits, kept = [], []
+    for number, speed in enumerate(speeds[::-1].tolist()):  # the table for the fastest serves all
+        report(number / speeds.size, f"{count} single bodies, {number} of {speeds.size} speeds")
+        found = launched(speed)
+        hits.append(int(np.sum(found.captured)))
+        kept.append(np.quantile(found.restitution, QUANTILES))
+    hits, kept = hits[::-1], kept[::-1]
+    low, high = np.array([clopper_pearson(hit, count) for hit in hits]).T
+    report(1.0, "where half of the single bodies are captured")
+
+    def crossing(level: int) -> float | None:
+        """The speed from which fewer bodies than a number are captured."""
+        enough = np.flatnonzero(np.array(hits) >= level)
+        if not enough.size or enough[-1] == speeds.size - 1:
+            return None
+        slower, faster = speeds[enough[-1] : enough[-1] + 2].tolist()
+        for _ in range(_HALVINGS):
+            middle = sqrt(slower * faster)
+            if np.sum(launched(middle).captured) >= level:
+                slower = middle
+            else:
+                faster = middle
+        return sqrt(slower * faster)
+
+    half, *interval = (crossing(level) for level in _levels(count))
+    return CaptureProbability(
+        count, np.array(hits) / count, low, high, np.stack(kept), half, (interval[0], interval[1])
+    )
+
+
+def _levels(count: int) -> tuple[int, int, int]:
+    """Numbers of captured bodies: a half; the least and the most that speak for more and less."""
+    intervals = [clopper_pearson(hit, count) for hit in range(count + 1)]
+    more = next((hit for hit, (low, _) in enumerate(intervals) if low > 0.5), count + 1)
+    return -(-count // 2), more, count - more + 1

@@ -1,0 +1,158 @@
+"""First impacts of single bodies: against a smooth body's, and against energies summed finely."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from asperity._jax import jnp
+from asperity.contact import SmoothContact
+from asperity.contact.asperity_table import asperity_table
+from asperity.dynamics import Body, simulate
+from asperity.dynamics.single_impact import Launch, single_impacts
+from asperity.errors import Tolerance
+from asperity.interface.summit_field import SummitField
+from asperity.laws import Dmt, Hertz, Jkr, Maugis, Meniscus
+from asperity.laws.law import Sum, as_float64, terms
+from chosen import long_but
+
+TIP, MODULUS, WORK = 450e-9, 6.6e10, 0.05  # m, Pa, J/m^2
+LAWS = {
+    "dry": Sum([Hertz(TIP, MODULUS), Dmt(TIP, WORK)]),
+    "jkr": Jkr(TIP, MODULUS, WORK),
+    "maugis": Maugis(TIP, MODULUS, WORK, 3e-10),
+    "jkr, wet": Sum([Jkr(TIP, MODULUS, WORK), Meniscus(TIP, 0.072, 0.2, 5e-10)]),
+}
+SLOW, FAST = 2e-3, 8e-3  # m/s
+RADIUS = 25e-6  # m
+MASS = 4.0 / 3.0 * pi * RADIUS**3 * 2200.0  # kg
+GAP = 60e-9  # m
+
+
+def launched(speeds, weight=0.0, release=GAP, mass=MASS):
+    speeds = np.asarray(speeds, float)
+    return Launch(
+        0.5 * mass * speeds**2, np.full(speeds.shape, release), np.full(speeds.shape, weight)
+    )
+
+
+def impacts(law, launches, offsets):
+    return single_impacts(asperity_table(law, as_float64(1e-11)), launches, jnp.asarray(offsets))
+
+
+@pytest.mark.parametrize("name", long_but(LAWS, "jkr, wet"))
+def test_one_summit_is_a_smooth_body(name):
+    """Whose motion is integrated over panels of its force."""
+    law, mass = LAWS[name], MASS * (2.0 / 25.0) ** 3
+    speeds = np.array([0.03, 0.1, 0.3, 1.0])
+    offsets = np.full((4, 16), -1.0)  # all others far away
+    offsets[:, 0] = 0.0
+    found = impacts(law, launched(speeds, mass=mass), offsets)
+    for k, speed in enumerate(speeds):
+        body = Body(mass, 0.0, GAP, speed)
+        motion = simulate(SmoothContact(law), body, tolerance=Tolerance(max_impacts=1))
+        left = float(motion.impacts.leaving[0]) / (0.5 * mass * speed**2)
+        assert bool(found.captured[k]) == (left < 0.0)
+        assert float(found.restitution[k]) == pytest.approx(max(left, 0.0) ** 0.5, rel=1e-9)
+        assert float(found.closest_approach[k]) == pytest.approx(
+            float(motion.impacts.closest_approach[0]), rel=1e-9
+        )
+
+
+def summed(law, offsets, speed, weight):
+    """Capture and restitution from energies of every summit at 30,000 separations."""
+    gaps = np.linspace(-12e-9, 4e-9, 400_001)
+    free = np.asarray(sum(one.energy(jnp.asarray(gaps)) for one in terms(law)))
+    top = offsets[0] + float(asperity_table(law, as_float64(1e-11)).reach)
+    places = np.linspace(top, offsets[0] - 11e-9, 30_001)
+    each = places[:, None] - offsets
+    left = 0.5 * MASS * speed**2 + weight * (GAP - places)
+    left = left - np.interp(each, gaps, free).sum(axis=1)
+    bonds = []
+    for one in (one for one in terms(law) if one.hysteretic):
+        held = one.bonded_energy(jnp.asarray(gaps)) - one.energy(jnp.asarray(gaps))
+        held = np.where(gaps < float(one.breaking_gap), held, float(one.rupture_loss))
+        bonds.append((one, np.interp(each, gaps, np.asarray(held) + float(one.formation_loss))))
+    inward = left - sum(
+        np.where(each <= float(one.forming_gap), held, 0.0).sum(axis=1) for one, held in bonds
+    )
+    turn = int(np.argmax(inward < 0.0))
+    outward = left - sum(
+        held[:, each[turn] <= float(one.forming_gap)].sum(axis=1) for one, held in bonds
+    )
+    captured = outward[: turn - 5].min() < 0.0
+    return captured, 0.0 if captured else np.sqrt(max(outward[0], 0.0) / inward[0]), places[turn]
+
+
+@pytest.mark.parametrize("name", long_but([*LAWS][1:], "jkr, wet"))
+@pytest.mark.parametrize("speed", [SLOW, FAST])
+def test_many_summits_are_the_sum_of_all(name, speed):
+    """Some captured and some not; a bond more or less would be a hundred times what is allowed."""
+    law, weight = LAWS[name], 9.81 * MASS
+    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(1, 0, 16)[:32]
+    found = impacts(law, launched(np.full(32, speed), weight), offsets)
+    assert np.all(np.asarray(found.within_reach) < 16)
+    for k, row in enumerate(offsets):
+        captured, restitution, turn = summed(law, row, speed, weight)
+        assert bool(found.captured[k]) == captured
+        assert float(found.restitution[k]) == pytest.approx(restitution, abs=1e-6)
+        assert float(found.closest_approach[k]) == pytest.approx(turn, abs=5e-13)
+
+
+def test_dry_elastic_summits_lose_nothing():
+    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(2, 0, 16)
+    found = impacts(LAWS["dry"], launched(np.full(256, FAST), 9.81 * MASS), offsets)
+    np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
+    assert not np.any(found.captured)
+    assert found.lost.shape == (256, 0)
+
+
+def test_losses_and_restitution_are_one_balance():
+    """What a body keeps and what its bonds took are what it came with, for every body."""
+    law = LAWS["jkr, wet"]
+    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(3, 0, 16)
+    found = impacts(law, launched(np.full(256, FAST)), offsets)
+    energy = 0.5 * MASS * FAST**2
+    free = ~np.asarray(found.captured)
+    kept = energy * np.asarray(found.restitution)[free] ** 2
+    np.testing.assert_allclose(kept + np.sum(found.lost, axis=1)[free], energy, rtol=1e-6)
+
+
+def test_pull_off_of_one_summit_is_its_laws():
+    offsets = np.full((2, 16), -1.0)
+    offsets[:, 0] = 1e-9
+    found = impacts(LAWS["jkr"], launched([0.1, 0.2]), offsets)
+    np.testing.assert_allclose(found.pull_off, 1.5 * pi * WORK * TIP, rtol=1e-5)
+    np.testing.assert_allclose(found.contacting, 1.0)
+    np.testing.assert_allclose(found.loaded, 1.0)
+
+
+def test_like_summits_are_as_many_loaded_ones():
+    offsets = np.full((1, 16), -1.0)
+    offsets[:, :5] = 0.0
+    found = impacts(LAWS["dry"], launched([0.1]), offsets)
+    assert float(found.loaded[0]) == pytest.approx(5.0, rel=1e-12)
+    assert float(found.contacting[0]) == 5.0
+
+
+def test_a_body_with_as_many_summits_as_were_given_says_so():
+    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(1, 0, 4)
+    found = impacts(LAWS["jkr"], launched(np.full(256, 0.1)), offsets)
+    assert np.all(np.asarray(found.within_reach) == 4)
+
+
+def test_looks_twice_as_close_find_the_same(monkeypatch):
+    """The looks along the way miss neither a turn nor the least energy."""
+    from asperity.dynamics import single_impact
+
+    law, table = LAWS["jkr, wet"], asperity_table(LAWS["jkr, wet"], as_float64(1e-11))
+    offsets = jnp.asarray(SummitField(RADIUS, 2e13, 1.2e-9).offsets(4, 0, 16))
+    launches = launched(np.full(256, SLOW), 9.81 * MASS)
+    found = impacts(law, launches, offsets)
+    monkeypatch.setattr(single_impact, "_SHARES", np.linspace(0.0, 1.0, 257))
+    finer = single_impact.Program(single_impact._impacts, {"xla_cpu_use_fusion_emitters": True})
+    again = finer(table, launches, offsets)
+    assert 0.05 < np.mean(found.captured) < 0.95
+    np.testing.assert_array_equal(found.captured, again.captured)
+    np.testing.assert_allclose(found.restitution, again.restitution, rtol=1e-12)
+    np.testing.assert_allclose(found.pull_off, again.pull_off, rtol=1e-4)

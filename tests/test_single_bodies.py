@@ -1,0 +1,172 @@
+"""Single bodies of a case: from its text to probabilities, files and pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import asperity
+from asperity import single_bodies
+from asperity.cli import app
+from asperity.config import load
+from asperity.config.resolve import resolve
+from asperity.dynamics.single_impact import Launch
+from asperity.errors import InputError
+from asperity.model import build
+from asperity.single_bodies import SingleBodies
+
+CASE = """
+[body]
+material = "silica"
+radius = "25 um"
+[counterface]
+material = "silicon carbide"
+deformation = "rigid"
+[roughness]
+asperity_density = "6.3e13 1/m^2"
+asperity_radius = "450 nm"
+rms_height = "1.64 nm"
+placement = "random"
+realisations = 300
+seed = 3
+[adhesion]
+model = "dmt"
+work = "50 mJ/m^2"
+equilibrium_spacing = "0.3 nm"
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.5
+contact_angle = "20 deg"
+temperature = "20 degC"
+[impact]
+speed = "3 mm/s"
+[numerics]
+max_impacts = 5
+"""
+
+
+@pytest.fixture(scope="module")
+def result():
+    return asperity.solve(load(CASE))
+
+
+def bodies_of(text=CASE):
+    problem = build(resolve(load(text)))
+    return problem, SingleBodies(problem, problem.inputs.placement.seed)
+
+
+def launches(problem, count, speed=3e-3):
+    mass, weight = float(problem.body.mass), float(problem.body.weight)
+    return Launch(np.full(count, 0.5 * mass * speed**2), np.full(count, np.inf),
+                  np.full(count, weight))  # fmt: skip
+
+
+def test_a_run_answers_with_the_probability_of_capture(result):
+    found = result.realisations
+    assert found.size == 300
+    low, high = found.capture_interval
+    assert low < found.capture_probability < high
+    # Of a hundred thousand others 63.87 %.
+    assert found.capture_probability == pytest.approx(0.6387, abs=4.0 * np.sqrt(0.23 / 300))
+    assert f"{100 * found.capture_probability:.3g} % are captured" in result.summary()
+    assert "no verdict" not in result.summary()
+    assert set(found.lost) == {"capillary"}
+
+
+def test_a_body_falls_until_something_carries_it(result):
+    """Every body turns on a summit at least, where the mean field expects 1.5."""
+    assert result.realisations.values["contacting"].min() >= 1.0
+    assert result.regime["contacting_asperities"] == pytest.approx(1.475, abs=0.01)
+    assert result.realisations.quantiles("pull_off")[1] > 5.0 * result.measures["pull_off"]
+
+
+def test_a_record_holds_every_body(result, tmp_path: Path):
+    result.save(tmp_path)
+    again = asperity.read(tmp_path / "record.nc").realisations
+    np.testing.assert_array_equal(again.captured, result.realisations.captured)
+    for name, values in result.realisations.values.items():
+        np.testing.assert_array_equal(again.values[name], values)
+    np.testing.assert_array_equal(again.lost["capillary"], result.realisations.lost["capillary"])
+    assert (tmp_path / "bodies.png").read_bytes().startswith(b"\x89PNG")
+    assert result.dataset()["body_restitution"].dims == ("realisation",)
+
+
+def test_the_same_seed_gives_the_same_bodies_in_any_number_and_order():
+    problem, bodies = bodies_of()
+    few = bodies.impacts(launches(problem, 40))
+    bodies.impacts(launches(problem, 300, 20e-3))  # which meet more summits
+    many = bodies.impacts(launches(problem, 300))
+    np.testing.assert_allclose(few.restitution, many.restitution[:40], rtol=1e-12)
+    other = SingleBodies(problem, 4).impacts(launches(problem, 40))
+    assert np.any(np.asarray(other.closest_approach) != np.asarray(few.closest_approach))
+
+
+def test_without_placement_nothing_is_drawn():
+    text = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
+    assert resolve(load(text)).placement is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('placement = "random"\n', "", "`realisations` must be absent without placement"),
+        ("seed = 3", "seed = 1.5", "`seed` must be a whole number"),
+        ("seed = 3", "seed = -1", "`seed` must"),
+        ("realisations = 300", "realisations = 0", "`realisations` must"),
+        ('"rigid"', '"half-space"', "`deformation` must be 'rigid' with placement = 'random'"),
+        (
+            '"equilibrium"',
+            '"kelvin-filling"\nsurface_rms_height = "2 nm"',
+            "`model` must not be 'kelvin-filling'",
+        ),
+        (
+            "[impact]",
+            '[suspension]\nstiffness = "1 N/m"\nrest_gap = "10 nm"\n[impact]',
+            "a [suspension] table must be absent",
+        ),
+        ('"random"', '"strewn"', "`placement` must be"),
+    ],
+)
+def test_what_single_bodies_do_not_have_is_refused(old, new, words):
+    with pytest.raises(InputError) as told:
+        load(CASE.replace(old, new))
+    assert words in str(told.value)
+
+
+def test_too_many_summits_are_refused_with_their_number(monkeypatch):
+    monkeypatch.setattr(single_bodies, "MOST_SUMMITS", 8)
+    with pytest.raises(InputError, match=r"up to 8 summits under a body; some \d+\.?\d* lie"):
+        asperity.solve(load(CASE))
+
+
+def test_a_study_has_no_single_bodies_yet():
+    with pytest.raises(InputError, match="`placement` must be 'mean' in a study"):
+        asperity.sweep(load(CASE), {"impact.speed": [1e-3, 2e-3]})
+    mean = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
+    with pytest.raises(InputError, match="`placement` must be 'mean' in a study"):
+        asperity.sweep(load(mean), {"roughness.placement": ["mean", "random"]})
+
+
+def test_restitution_draws_the_share_that_is_captured(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+    speeds = "1 mm/s, 10 mm/s"
+    asked = ["restitution", "case.toml", "--speeds", speeds, "--points", "7"]
+    ran = CliRunner().invoke(app, asked)
+    assert ran.exit_code == 0, ran.output
+    told = json.loads(Path("case-out/restitution.json").read_text())["single_bodies"]
+    share = np.array(told["probability"])
+    assert share[0] == 1.0
+    assert share[-1] == 0.0
+    assert np.all(np.array(told["low"]) <= share)
+    assert np.all(share <= told["high"])
+    low, high = told["half_interval"]
+    assert 2e-3 < low <= told["half_velocity"] <= high < 6e-3
+    assert "half are captured at" in ran.output
+    table = np.genfromtxt("case-out/restitution.csv", delimiter=",", skip_header=1)
+    np.testing.assert_array_equal(table[:, 3], share)
