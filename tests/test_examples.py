@@ -39,6 +39,7 @@ def test_there_is_an_example_for_each_question():
         "jkr-stick",
         "measured-surface",
         "published-exact",
+        "single-bodies",
         "switch",
         "wet-drop",
         "wet-surface",

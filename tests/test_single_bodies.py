@@ -170,3 +170,24 @@ def test_restitution_draws_the_share_that_is_captured(tmp_path: Path, monkeypatc
     assert "half are captured at" in ran.output
     table = np.genfromtxt("case-out/restitution.csv", delimiter=",", skip_header=1)
     np.testing.assert_array_equal(table[:, 3], share)
+
+
+def test_rebounds_follow_one_another_as_impacts_do(result):
+    """Bodies captured at their second impact flew for as long as their first one lets them."""
+    rebounds, flight = (result.realisations.values[name] for name in ("rebounds", "flight_time"))
+    np.testing.assert_array_equal(rebounds == 0.0, result.realisations.captured)
+    problem, _ = bodies_of()
+    mass, weight = float(problem.body.mass), float(problem.body.weight)
+    once = np.flatnonzero(rebounds == 1.0)
+    assert once.size > 20
+    energy = result.realisations.values["restitution"][once] ** 2 * 0.5 * mass * 3e-3**2
+    speed = np.sqrt(2.0 * energy / mass)
+    # The fall from the release adds 2 % to the speed.
+    np.testing.assert_allclose(flight[once], 2.0 * speed * mass / weight, rtol=0.03)
+
+
+def test_without_weight_a_body_leaves_for_good():
+    text = CASE.replace('speed = "3 mm/s"', 'speed = "3 mm/s"\ngravity = "0 m/s^2"')
+    found = asperity.solve(load(text), critical=False).realisations
+    assert set(found.values["rebounds"]) == {0.0, np.inf}
+    assert f"{100 * found.capture_probability:.3g}" not in ("0", "100")

@@ -11,6 +11,7 @@ import numpy as np
 from ._jax import jax, jnp
 from .contact.asperity_table import AsperityTable, asperity_table
 from .contact.rigid import RigidContact
+from .dynamics import Body
 from .dynamics.problem import Problem
 from .dynamics.single_impact import Launch, SingleImpact, single_impacts
 from .errors import InputError, SimulationError
@@ -24,6 +25,9 @@ from .surfaces.heights.distribution import Gaussian
 
 MOST_SUMMITS = 2048
 """Summits under one body that are followed one by one."""
+
+REBOUNDS = 20
+"""Rebounds of a single body that are followed until it is captured."""
 
 _FIRST = 16  # summits that are tried, and twice as many until all within reach are among them
 _DEEPER = 4.0  # times the energy at the release, to which the table of an asperity reaches
@@ -187,13 +191,43 @@ def realised(
     launch = Launch(*(np.asarray(x) for x in (body.kinetic, body.release, body.weight)))
     bodies.refuse_many(launch, float(np.asarray(mean.motion.impacts.closest_approach)[0]))
     launches = Launch(*(np.full(placed.realisations, value) for value in launch))
-    return realisations_of(bodies, bodies.impacts(launches, stop))
-
-
-def realisations_of(bodies: SingleBodies, found: SingleImpact) -> Realisations:
-    """Their first impacts, as a user reads them."""
+    first = bodies.impacts(launches, stop)
+    most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)
+    report(0.9, "rebounds of single bodies")
+    rebounds, flight = _until_captured(bodies, body, first, most, stop)
     lost: dict[str, np.ndarray] = {}
-    for name, energy in zip(bodies.mechanisms, np.asarray(found.lost).T, strict=True):
+    for name, energy in zip(bodies.mechanisms, np.asarray(first.lost).T, strict=True):
         lost[name] = lost.get(name, 0.0) + energy
-    values = {name: np.asarray(getattr(found, name)) for name in KINDS}
-    return Realisations(np.asarray(found.captured), values, lost)
+    values = {name: np.asarray(getattr(first, name)) for name in KINDS if hasattr(first, name)}
+    values |= {"rebounds": rebounds, "flight_time": flight}
+    return Realisations(np.asarray(first.captured), values, lost)
+
+
+def _until_captured(
+    bodies: SingleBodies,
+    body: Body,
+    first: SingleImpact,
+    most: int,
+    stop: threading.Event | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rebounds of each body before it is captured, and the time [s] that they take in flight.
+
+    Infinite where that takes more than ``most`` rebounds, and without weight where it leaves. A
+    rigid body falls on the same summits each time, and all their bonds are broken while it flies.
+    """
+    rebounds = np.where(first.captured, 0.0, np.inf)
+    flight = np.zeros(rebounds.shape)
+    weight, found = float(body.weight), first
+    for made in range(1, most + 1 if weight > 0.0 else 1):
+        flying = np.isinf(rebounds)
+        if not np.any(flying):
+            break
+        kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
+        speed = np.sqrt(2.0 * kinetic / float(body.mass))
+        flight += np.where(flying, 2.0 * speed * float(body.mass) / weight, 0.0)
+        # Those that were captured fall once more with what they had: they no longer count.
+        kinetic = np.where(flying, kinetic, found.impact_energy)
+        launches = Launch(kinetic, np.full(kinetic.shape, np.inf), np.full(kinetic.shape, weight))
+        found = bodies.impacts(launches, stop, pulls=False)
+        rebounds[flying & np.asarray(found.captured)] = made
+    return rebounds, np.where(np.isinf(rebounds), np.inf, flight)

@@ -51,8 +51,10 @@ class SingleImpact(NamedTuple):
         Separation [m] at which it turns.
     captured
         Whether it does not come out of the reach of its summits.
+    impact_energy
+        Kinetic energy where forces begin, on the way in [J].
     restitution
-        Square root of the ratio of kinetic energies after and before; 0 where it is captured.
+        Square root of the ratio of that on the way out, to it; 0 where the body is captured.
     contacting
         Summits that touch at the turn.
     maximum_force
@@ -71,6 +73,7 @@ class SingleImpact(NamedTuple):
 
     closest_approach: jax.Array
     captured: jax.Array
+    impact_energy: jax.Array
     restitution: jax.Array
     contacting: jax.Array
     maximum_force: jax.Array
@@ -116,14 +119,15 @@ def _impact(table: AsperityTable, pulls: bool, launch: Launch, offsets: jax.Arra
     left = _least(on_way_out, places, step, (even[0], top))
     after = on_way_out(top)
     captured = jnp.minimum(left, after) < 0.0
-    ratio = jnp.maximum(after, 0.0) / on_way_in(top)
+    before = on_way_in(top)
     each = -jax.jvp(table.work, (gaps,), (jnp.ones_like(gaps),))[1]
     squares = jnp.sum(each**2)
     bonds = jnp.sum(held, axis=1).astype(float)
     return SingleImpact(
         closest_approach=turn,
         captured=captured,
-        restitution=jnp.where(captured, 0.0, jnp.sqrt(ratio)),
+        impact_energy=before,
+        restitution=jnp.where(captured, 0.0, jnp.sqrt(jnp.maximum(after, 0.0) / before)),
         contacting=jnp.sum(gaps < 0.0).astype(float),
         maximum_force=jnp.sum(each),
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),

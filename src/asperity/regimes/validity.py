@@ -163,15 +163,8 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
         return []
     out = []
     contacting = max(at_depth.contacting, 0.0)
-    if contacting < 1.0:
-        out.append(_hardly_one(contacting))
-    elif contacting < FEW:
-        scatter = 100.0 / np.sqrt(contacting)
-        out.append(
-            f"only {contacting:.2g} asperities are expected to touch at closest approach: the "
-            f"result is a mean over many places, single impacts scatter by about {scatter:.0f} % "
-            "in that number (Poisson)"
-        )
+    if contacting < FEW and inputs.placement is None:
+        out.append(_few(contacting) + _single_bodies(inputs))
     share = covered_share(rough, at_depth.central)
     if share > 0.1:
         out.append(
@@ -181,13 +174,26 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
     return out
 
 
-def _hardly_one(contacting: float) -> str:
-    """What a mean of fewer than one contacting asperity means."""
+def _few(contacting: float) -> str:
+    """What a mean of few contacting asperities means."""
+    so_many = f"only {contacting:.2g} asperities are expected to touch at closest approach"
+    if contacting < 1.0:
+        return (
+            f"{so_many}: {missed(contacting)}, and the numbers are means over many bodies, which "
+            "none of them shows"
+        )
+    scatter = 100.0 / np.sqrt(contacting)
     return (
-        f"only {contacting:.2g} asperities are expected to touch at closest approach: "
-        f"{missed(contacting)}, and the numbers are means over many bodies, which none of them "
-        "shows"
+        f"{so_many}: the result is a mean over many places, single impacts scatter by about "
+        f"{scatter:.0f} % in that number (Poisson)"
     )
+
+
+def _single_bodies(inputs: Inputs) -> str:
+    """Where the distribution over single bodies can be had."""
+    if inputs.structure.deformation != "rigid" or inputs.structure.heights != "gaussian":
+        return ""
+    return "; `placement` = 'random' in [roughness] has single bodies beside it"
 
 
 def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
@@ -202,7 +208,7 @@ def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
     held
         Expected number of asperities that touch or are bonded there.
     """
-    if inputs.asperities is None or not pull_off > 0.0 or held >= 1.0:
+    if inputs.asperities is None or not pull_off > 0.0 or held >= 1.0 or inputs.placement:
         return []
     if inputs.structure.liquid == "kelvin-filling":
         return []  # liquid between the mean planes holds the body, and no bond of an asperity

@@ -20,6 +20,8 @@ KINDS = {
     "maximum_force": ("N", "contact force at the turn"),
     "pull_off": ("N", "largest tension on the way out"),
     "closest_approach": ("m", "rigid separation at the turn"),
+    "rebounds": ("1", "rebounds before the impact that captures, infinite where none is found"),
+    "flight_time": ("s", "time that these rebounds take in flight, likewise"),
 }
 """Unit and meaning of what is known of each body."""
 
@@ -60,7 +62,8 @@ class Realisations:
     def quantiles(self, name: str) -> list[float]:
         """The `QUANTILES` of one of the ``values`` or, by its mechanism, of an energy ``lost``."""
         found = self.values[name] if name in self.values else self.lost[name]
-        return [float(x) for x in np.quantile(found, QUANTILES)]
+        # Of infinite values too, which no other method has in order.
+        return [float(x) for x in np.quantile(found, QUANTILES, method="inverted_cdf")]
 
     def plain(self) -> dict[str, Any]:
         """Numbers of all bodies together, in SI."""
@@ -96,6 +99,11 @@ def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> t
     low = betaincinv(hits, trials - hits + 1, tail) if hits else 0.0
     high = betaincinv(hits + 1, trials - hits, 1.0 - tail) if hits < trials else 1.0
     return float(low), float(high)
+
+
+def kept(restitution: float) -> str:
+    """A restitution at as many digits as tell it from 1."""
+    return f"{restitution:.{3 if restitution < 0.9995 else 6}g}"
 
 
 def percent(share: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from asperity.config.amounts import amount as amount
 from asperity.config.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
 from asperity.results.impact_table import cell_text, impact_table
-from asperity.results.realisations import KINDS, percent
+from asperity.results.realisations import KINDS, kept, percent
 from asperity.results.shares import share_texts
 from asperity.results.verdict import sentence
 
@@ -185,11 +186,15 @@ def _bodies(result: ResultData) -> list[tuple[str, str]]:
         "loaded": "loaded, effectively",
         "maximum_force": "largest force",
         "pull_off": "pull-off force",
+        "rebounds": "rebounds until captured",
+        "flight_time": "time in flight until then",
     }
     captured = f"{percent(found.capture_probability)} %  (95 % interval: {low} to {high} %)"
     rows = [("bodies", str(found.size)), ("captured at first impact", captured)]
     for name, label in labels.items():
-        rows.append((label, _spread(found.quantiles(name), KINDS[name][0], mean.get(name))))
+        quantiles = found.quantiles(name)
+        if isfinite(quantiles[0]):  # of rebounds none, where no body was captured in those followed
+            rows.append((label, _spread(quantiles, KINDS[name][0], mean.get(name))))
     lost = result.ledger.get("lost") or {}
     once = len(measures.get("restitution") or []) == 1
     for name in found.lost:
@@ -200,9 +205,14 @@ def _bodies(result: ResultData) -> list[tuple[str, str]]:
 
 def _spread(quantiles: Sequence[float], unit: str, mean: float | None) -> str:
     """The median, what lies 10 % below and above, and the mean field's value."""
-    unit = "" if unit == "1" else unit
-    low, median, high = (amount(value, unit) for value in quantiles)
-    beside = "" if mean is None else f"; mean field: {amount(mean, unit)}"
+
+    def told(value: float) -> str:
+        if unit == "1" and 0.9995 <= value < 1.0:
+            return kept(value)
+        return amount(value, "" if unit == "1" else unit) if isfinite(value) else "more"
+
+    low, median, high = (told(value) for value in quantiles)
+    beside = "" if mean is None else f"; mean field: {told(mean)}"
     return f"{median}  ({low} to {high}{beside})"
 
 

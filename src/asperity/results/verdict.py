@@ -9,6 +9,7 @@ import numpy as np
 from asperity.errors import Outcome
 from asperity.regimes import missed
 from asperity.results.realisations import Realisations, percent
+from asperity.results.realisations import kept as kept_text
 
 if TYPE_CHECKING:
     from asperity.results.result_data import ResultData
@@ -72,10 +73,10 @@ def sentence(result: ResultData) -> str:
 def _bodies(found: Realisations) -> str:
     """What single bodies do at their first impact."""
     low, high = (percent(share) for share in found.capture_interval)
-    kept = found.quantiles("restitution")[1]
+    median = found.quantiles("restitution")[1]
     return (
         f"Of single bodies {percent(found.capture_probability)} % are captured at the first impact "
-        f"(95 % interval: {low} to {high} %); their median restitution is {kept:.3g}"
+        f"(95 % interval: {low} to {high} %); their median restitution is {kept_text(median)}"
     )
 
 
@@ -86,7 +87,7 @@ def _first(measures: dict[str, Any]) -> str:
         return "is captured at the first impact"
     if kept is None:
         return ""
-    return f"leaves the first impact with e = {kept:.{3 if kept < 0.9995 else 6}g}"
+    return f"leaves the first impact with e = {kept_text(kept)}"
 
 
 def unjudged(result: ResultData) -> bool:

@@ -1,0 +1,45 @@
+"""Single bodies and the mean field: they differ as one over the number of summits that touch."""
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.config import load
+from asperity.config.resolve import resolve
+from asperity.dynamics.single_impact import Launch
+from asperity.model import build
+from asperity.single_bodies import SingleBodies
+from chosen import long_but
+from test_single_bodies import CASE
+
+SPEED = 0.012  # m/s
+FAST = CASE.replace('speed = "3 mm/s"', f'speed = "{SPEED} m/s"\ngravity = "0 m/s^2"')
+
+
+@pytest.fixture(scope="module")
+def mean_field():
+    """Restitution of the first impact; it is the same where density and energy grow alike."""
+    text = FAST.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
+    return asperity.solve(load(text), critical=False).measures["restitution"][0]
+
+
+def launched(density, count):
+    """First impacts with so many times the density and the energy: as much on each summit."""
+    problem = build(resolve(load(FAST)))
+    bodies = SingleBodies(problem, 0)
+    bodies.field = bodies.field._replace(density=density * bodies.field.density)
+    energy = density * 0.5 * float(problem.body.mass) * SPEED**2
+    launches = Launch(np.full(count, energy), np.full(count, np.inf), np.zeros(count))
+    return bodies.impacts(launches, pulls=False)
+
+
+@pytest.mark.parametrize(
+    ("density", "count"), long_but([(1, 4096), (3, 4096), (10, 20480), (100, 2048)], (3, 4096))
+)
+def test_the_mean_field_is_off_by_one_over_the_number_that_touch(density, count, mean_field):
+    found = launched(density, count)
+    squares, touching = np.asarray(found.restitution) ** 2, np.mean(found.contacting)
+    scatter = touching * np.std(squares) / np.sqrt(count)
+    apart = touching * (np.mean(squares) - mean_field**2)
+    assert apart == pytest.approx(-0.35, abs=0.05 + 3.0 * scatter)
+    assert touching * np.var(squares) == pytest.approx(0.102, rel=0.03 + 4.0 * np.sqrt(2 / count))
