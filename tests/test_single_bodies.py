@@ -57,7 +57,7 @@ def result():
 
 def bodies_of(text=CASE):
     problem = build(resolve(load(text)))
-    return problem, SingleBodies(problem, problem.inputs.placement.seed)
+    return problem, SingleBodies(problem, 2e-9)
 
 
 def launches(problem, count, speed=3e-3):
@@ -102,7 +102,7 @@ def test_the_same_seed_gives_the_same_bodies_in_any_number_and_order():
     bodies.impacts(launches(problem, 300, 20e-3))  # which meet more summits
     many = bodies.impacts(launches(problem, 300))
     np.testing.assert_allclose(few.restitution, many.restitution[:40], rtol=1e-12)
-    other = SingleBodies(problem, 4).impacts(launches(problem, 40))
+    other = bodies_of(CASE.replace("seed = 3", "seed = 4"))[1].impacts(launches(problem, 40))
     assert np.any(np.asarray(other.closest_approach) != np.asarray(few.closest_approach))
 
 
@@ -118,7 +118,7 @@ def test_without_placement_nothing_is_drawn():
         ("seed = 3", "seed = 1.5", "`seed` must be a whole number"),
         ("seed = 3", "seed = -1", "`seed` must"),
         ("realisations = 300", "realisations = 0", "`realisations` must"),
-        ('"rigid"', '"half-space"', "`deformation` must be 'rigid' with placement = 'random'"),
+        ('"rigid"', '"half-space"', "`deformation` must be 'rigid' with single bodies"),
         (
             '"equilibrium"',
             '"kelvin-filling"\nsurface_rms_height = "2 nm"',
@@ -140,7 +140,7 @@ def test_what_single_bodies_do_not_have_is_refused(old, new, words):
 
 def test_too_many_summits_are_refused_with_their_number(monkeypatch):
     monkeypatch.setattr(single_bodies, "MOST_SUMMITS", 8)
-    with pytest.raises(InputError, match=r"up to 8 summits under a body; some \d+\.?\d* lie"):
+    with pytest.raises(InputError, match=r"up to 8 summits in reach; some \d+\.?\d* lie"):
         asperity.solve(load(CASE))
 
 
@@ -191,3 +191,46 @@ def test_without_weight_a_body_leaves_for_good():
     found = asperity.solve(load(text), critical=False).realisations
     assert set(found.values["rebounds"]) == {0.0, np.inf}
     assert f"{100 * found.capture_probability:.3g}" not in ("0", "100")
+
+
+@pytest.fixture(scope="module")
+def maps(tmp_path_factory):
+    """A map that is wide enough for bodies to be put down on it."""
+    folder = tmp_path_factory.mktemp("maps")
+    shape = ["--rms-height", "2 nm", "--roll-off", "1 um", "--cut-off", "150 nm", "--points", "256"]
+    for name, size in (("wide", "6 um x 6 um"), ("small", "2 um x 2 um")):
+        ran = CliRunner().invoke(
+            app, ["generate", str(folder / f"{name}.nc"), "--size", size, *shape]
+        )
+        assert ran.exit_code == 0, ran.output
+    return folder
+
+
+def on_map(file, placement):
+    numbers = CASE[CASE.index("asperity_density") : CASE.index("realisations")]
+    given = f'files = ["{file}"]\nsource = "summits"\nplacement = "{placement}"\n'
+    return CASE.replace(numbers, given).replace("25 um", "10 um").replace("3 mm/s", "10 mm/s")
+
+
+def test_measured_summits_are_drawn_with_their_radii_or_left_where_they_are(maps: Path):
+    """Every body meets some of them, at other depths where they stand as they do on the map."""
+    found = {}
+    for placement in ("random", "measured"):
+        text = on_map(maps / "wide.nc", placement)
+        result = asperity.solve(load(text), critical=False)
+        found[placement] = result.realisations.values
+        assert result.realisations.values["contacting"].min() >= 1.0
+    random, measured = (found[name]["closest_approach"] for name in ("random", "measured"))
+    assert np.std(measured) == pytest.approx(np.std(random), rel=0.5)
+    assert not np.any(random == measured)
+
+
+def test_a_map_smaller_than_the_summits_in_reach_is_refused(maps: Path):
+    text = on_map(maps / "small.nc", "measured").replace("10 um", "100 um")
+    with pytest.raises(InputError, match=r"the map is smaller than the summits in reach"):
+        asperity.solve(load(text), critical=False)
+
+
+def test_measured_places_need_a_map():
+    with pytest.raises(InputError, match="`placement` must be 'random' without `files`"):
+        load(CASE.replace('"random"', '"measured"'))

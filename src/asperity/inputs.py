@@ -194,12 +194,15 @@ class Placement(NamedTuple):
 
     Attributes
     ----------
+    measured
+        Whether they stand where they were measured, or at random places.
     realisations
         Bodies, each on summits of its own.
     seed
         Of their places.
     """
 
+    measured: bool
     realisations: int
     seed: int
 
@@ -292,7 +295,7 @@ class Inputs:
     release
         How the body is let go; None where only curves can be asked for.
     placement
-        Single bodies on summits at random places; None where the mean over all is asked for alone.
+        Single bodies on summits of their own; None where the mean over all is asked for alone.
     published
         What the publication assumes; None in every other case.
     tolerance

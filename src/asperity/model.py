@@ -102,7 +102,7 @@ def _contact(inputs: Inputs, resolved: Resolution | None) -> Contact:
     if rough is None and inputs.yields:
         return SmoothPlasticContact(_smooth_plastic(inputs), Sum(_beside(inputs, inputs.radius)))
     if rough is None:
-        return SmoothContact(_law(inputs, inputs.radius))
+        return SmoothContact(asperity_law(inputs, inputs.radius))
     if inputs.published is not None:
         return _published(inputs, rough)
     interface, shape = _interface(inputs, rough), Sphere(inputs.radius)
@@ -162,7 +162,7 @@ def _class_error(inputs: Inputs) -> float:
 def _law_of_radius(inputs: Inputs, radii: np.ndarray) -> Callable[[Any], Law]:
     """The laws of one asperity of any of the radii [m]."""
     smallest = float(radii.min())
-    return lambda radius: _law(inputs, radius, smallest)
+    return lambda radius: asperity_law(inputs, radius, smallest)
 
 
 def _delayed(inputs: Inputs, contact: Contact) -> DelayedContact | None:
@@ -196,7 +196,9 @@ def _asperities(inputs: Inputs, rough: Asperities) -> RoughPlanes:
             law = plastic_law(inputs, inputs.structure.plasticity)
             beside = Sum(_beside(inputs, rough.asperity_radius))
             return PlasticInterface(law, beside, heights, rough.asperity_density)
-        return Interface(_law(inputs, rough.asperity_radius), heights, rough.asperity_density)
+        return Interface(
+            asperity_law(inputs, rough.asperity_radius), heights, rough.asperity_density
+        )
     return measured_surface(
         _law_of_radius(inputs, summits.radii),
         summits.heights,
@@ -256,8 +258,18 @@ def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:
     )
 
 
-def _law(inputs: Inputs, tip: float, smallest: float | None = None) -> Law:
-    """The laws of one asperity, side by side; ``smallest`` is the least radius [m] among all."""
+def asperity_law(inputs: Inputs, tip: float, smallest: float | None = None) -> Law:
+    """The laws of one asperity, side by side.
+
+    Parameters
+    ----------
+    inputs
+        The quantities of a case.
+    tip
+        Its tip radius [m].
+    smallest
+        The least radius [m] among all asperities, where they differ.
+    """
     model, work, modulus = inputs.structure.adhesion, inputs.work_of_adhesion, inputs.modulus
     contact: Law = Hertz(tip, modulus)
     if model == "jkr":

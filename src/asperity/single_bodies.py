@@ -1,4 +1,4 @@
-"""First impacts of single bodies on summits at random places, beside their mean."""
+"""First impacts of single bodies, each on summits of its own, beside the mean over all."""
 
 from __future__ import annotations
 
@@ -15,13 +15,20 @@ from .dynamics import Body
 from .dynamics.problem import Problem
 from .dynamics.single_impact import Launch, SingleImpact, single_impacts
 from .errors import InputError, SimulationError
+from .inputs import Inputs
 from .integration import Report, silently
-from .interface.interface import Interface
-from .interface.summit_field import WIDTH, SummitField
-from .laws.law import as_float64, terms
+from .interface.radius_classes import members
+from .interface.summit_field import (
+    WIDTH,
+    GaussianField,
+    MeasuredField,
+    SampledField,
+    SummitField,
+)
+from .laws.law import Law, as_float64, terms
+from .model import asperity_law
 from .results.conversion import Solution
 from .results.realisations import KINDS, Realisations
-from .surfaces.heights.distribution import Gaussian
 
 MOST_SUMMITS = 2048
 """Summits under one body that are followed one by one."""
@@ -29,8 +36,9 @@ MOST_SUMMITS = 2048
 REBOUNDS = 20
 """Rebounds of a single body that are followed until it is captured."""
 
+_BELOW = 5.0  # rms heights that a body may turn below the mean over all
 _FIRST = 16  # summits that are tried, and twice as many until all within reach are among them
-_DEEPER = 4.0  # times the energy at the release, to which the table of an asperity reaches
+_DEEPER = 2.0  # times the energy at the release, to which the table of an asperity reaches
 
 
 class SingleBodies:
@@ -39,29 +47,26 @@ class SingleBodies:
     Parameters
     ----------
     problem
-        A rigid contact with Gaussian heights and one tip radius, and the body.
-    seed
-        Of the draw.
+        What was built from a case with single bodies.
+    turn
+        Separation [m] at which the mean over all bodies turns.
 
     Raises
     ------
     InputError
-        Where the contact is another, or has no asperity within reach.
+        If a map is too small for bodies that turn there.
     """
 
-    def __init__(self, problem: Problem, seed: int) -> None:
-        contact = problem.contact
+    def __init__(self, problem: Problem, turn: float) -> None:
+        inputs, contact = problem.inputs, problem.contact
+        assert inputs.placement is not None
         assert isinstance(contact, RigidContact)
-        interface = contact.interface
-        assert isinstance(interface, Interface)
-        assert isinstance(interface.heights, Gaussian)
-        self._law, heights = interface.law, interface.heights
-        self.mechanisms = tuple(one.mechanism for one in terms(self._law) if one.hysteretic)
-        self.field = SummitField(
-            float(contact.shape.radius), float(interface.density),
-            float(heights.rms_height), float(heights.mean_height),
-        )  # fmt: skip
-        self._seed, self._count = seed, _FIRST
+        self._inputs, self._rms = inputs, float(contact.interface.scale.rms)
+        self._lowest = turn - float(contact.interface.interaction_range) - _BELOW * self._rms
+        self.field, self._laws = _field(inputs, self._lowest)
+        every = [one for one in terms(self._laws[0]) if one.hysteretic]
+        self.mechanisms = tuple(one.mechanism for one in every)
+        self._seed, self._count = inputs.placement.seed, _FIRST
         self._table: tuple[float, AsperityTable] | None = None
 
     def impacts(
@@ -89,8 +94,25 @@ class SingleBodies:
         SimulationError
             If they were stopped.
         """
-        bodies = np.size(launches.kinetic)
         table = self._reaching(launches)
+        while True:
+            found = self._all(table, launches, stop, pulls=pulls)
+            lowest = float(np.min(found.closest_approach)) - float(np.max(table.reach))
+            if lowest >= self._lowest or not isinstance(self.field, MeasuredField):
+                return found
+            # They came so deep that summits beyond the edges of the map would have been in reach.
+            self._lowest = lowest - self._rms
+            self.field, _ = _field(self._inputs, self._lowest)
+
+    def _all(
+        self,
+        table: AsperityTable,
+        launches: Launch,
+        stop: threading.Event | None,
+        *,
+        pulls: bool,
+    ) -> SingleImpact:
+        bodies = np.size(launches.kinetic)
 
         def block(number: int) -> SingleImpact:
             if stop is not None and stop.is_set():
@@ -132,7 +154,7 @@ class SingleBodies:
         fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
         energy = _DEEPER * float(np.max(launches.kinetic + launches.weight * np.abs(fall)))
         if self._table is None or self._table[0] < energy:
-            self._table = energy, asperity_table(self._law, as_float64(energy))
+            self._table = energy, asperity_table(self._laws, energy)
         return self._table[1]
 
     def _block(
@@ -141,8 +163,10 @@ class SingleBodies:
         """WIDTH bodies, each with as many summits as are in reach of the one that meets most."""
         count = self._count
         while True:
-            offsets = self.field.offsets(self._seed, number, count)
-            found = single_impacts(table, launches, jnp.asarray(offsets), pulls)
+            offsets, kinds = self.field.summits(self._seed, number, count)
+            found = single_impacts(table, launches, as_float64(offsets), jnp.asarray(kinds), pulls)
+            if not np.all(np.isfinite(found.closest_approach)):
+                raise SimulationError("a single body came deeper than its summits are tabulated")
             most = int(np.max(found.within_reach))
             if most < count:
                 return found
@@ -151,15 +175,60 @@ class SingleBodies:
 
     def _refuse_many(self, table: AsperityTable, turn: float) -> None:
         """Refuse a body that has too many summits within reach where it turns [m]."""
-        reach = float(table.reach)
+        reach = float(np.max(table.reach))
         expected = float(self.field.expected_above(turn - reach))
         if expected > MOST_SUMMITS:
             raise InputError(
-                f"`placement` = 'random' is for up to {MOST_SUMMITS} summits under a body; some "
+                f"single bodies (`placement`) have up to {MOST_SUMMITS} summits in reach; some "
                 f"{expected:.3g} lie within the {reach * 1e9:.3g} nm that their forces reach: take "
                 "'mean'",
                 key="roughness.placement",
             )
+
+
+def _field(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law]]:
+    """The summits of a case, those with offsets above the lowest [m], and their laws by class."""
+    rough, placed = inputs.asperities, inputs.placement
+    assert rough is not None
+    assert placed is not None
+    radius, density = inputs.radius, rough.asperity_density
+    if rough.summits is None or not (placed.measured or inputs.structure.heights == "summits"):
+        law = asperity_law(inputs, rough.asperity_radius)
+        return GaussianField(radius, density, rough.rms_height, rough.mean_height), [law]
+    found = rough.summits
+    order = np.argsort(-found.heights, kind="stable")
+    classes = np.zeros(found.count, np.int32)
+    laws = []
+    for number, chosen in enumerate(members(found.radii, inputs.radius_classes)):
+        classes[chosen] = number
+        mean = float(found.radii[chosen].mean())
+        laws.append(asperity_law(inputs, mean, float(found.radii.min())))
+    heights, classes = found.heights[order], classes[order]
+    if not placed.measured:
+        return SampledField(radius, density, heights, classes), laws
+    rows, columns = found.positions[order].T
+    positions = np.stack([columns * found.pixel_size[0], rows * found.pixel_size[1]], axis=1)
+    assert rough.surface is not None
+    within = _places(rough.surface.physical_size, (2.0 * radius * (heights[0] - lowest)) ** 0.5)
+    return MeasuredField(radius, density, heights, classes, positions, within), laws
+
+
+def _places(size: tuple[float, float], away: float) -> np.ndarray:
+    """Where a body can be put down on a map [m]: as far from its edges as forces reach.
+
+    Raises
+    ------
+    InputError
+        If there is no such place.
+    """
+    if min(size) <= 2.0 * away:
+        raise InputError(
+            "`placement` must be 'random' where the map is smaller than the summits in reach of a "
+            f"body spread, {2e6 * away:.3g} um; got one of {size[0] * 1e6:.3g} um x "
+            f"{size[1] * 1e6:.3g} um",
+            key="roughness.placement",
+        )
+    return np.array([[away, away], [size[0] - away, size[1] - away]])
 
 
 def realised(
@@ -173,7 +242,7 @@ def realised(
     Parameters
     ----------
     problem
-        What was built from a case with ``placement = "random"``.
+        What was built from a case with single bodies.
     mean
         Its motion under the mean over all bodies.
     report, stop
@@ -187,9 +256,10 @@ def realised(
     placed, body = problem.inputs.placement, mean.body or problem.body
     assert placed is not None
     report(0.9, f"{placed.realisations} single bodies")
-    bodies = SingleBodies(problem, placed.seed)
+    turn = float(np.asarray(mean.motion.impacts.closest_approach)[0])
+    bodies = SingleBodies(problem, turn)
     launch = Launch(*(np.asarray(x) for x in (body.kinetic, body.release, body.weight)))
-    bodies.refuse_many(launch, float(np.asarray(mean.motion.impacts.closest_approach)[0]))
+    bodies.refuse_many(launch, turn)
     launches = Launch(*(np.full(placed.realisations, value) for value in launch))
     first = bodies.impacts(launches, stop)
     most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)

@@ -11,9 +11,9 @@ from asperity.contact.asperity_table import asperity_table
 from asperity.dynamics import Body, simulate
 from asperity.dynamics.single_impact import Launch, single_impacts
 from asperity.errors import Tolerance
-from asperity.interface.summit_field import SummitField
+from asperity.interface.summit_field import GaussianField
 from asperity.laws import Dmt, Hertz, Jkr, Maugis, Meniscus
-from asperity.laws.law import Sum, as_float64, terms
+from asperity.laws.law import Sum, terms
 from chosen import long_but
 
 TIP, MODULUS, WORK = 450e-9, 6.6e10, 0.05  # m, Pa, J/m^2
@@ -37,7 +37,8 @@ def launched(speeds, weight=0.0, release=GAP, mass=MASS):
 
 
 def impacts(law, launches, offsets):
-    return single_impacts(asperity_table(law, as_float64(1e-11)), launches, jnp.asarray(offsets))
+    kinds = jnp.zeros(offsets.shape, jnp.int32)
+    return single_impacts(asperity_table([law], 1e-11), launches, jnp.asarray(offsets), kinds)
 
 
 @pytest.mark.parametrize("name", long_but(LAWS, "jkr, wet"))
@@ -63,7 +64,7 @@ def summed(law, offsets, speed, weight):
     """Capture and restitution from energies of every summit at 30,000 separations."""
     gaps = np.linspace(-12e-9, 4e-9, 400_001)
     free = np.asarray(sum(one.energy(jnp.asarray(gaps)) for one in terms(law)))
-    top = offsets[0] + float(asperity_table(law, as_float64(1e-11)).reach)
+    top = offsets[0] + float(asperity_table([law], 1e-11).reach[0])
     places = np.linspace(top, offsets[0] - 11e-9, 30_001)
     each = places[:, None] - offsets
     left = 0.5 * MASS * speed**2 + weight * (GAP - places)
@@ -89,7 +90,7 @@ def summed(law, offsets, speed, weight):
 def test_many_summits_are_the_sum_of_all(name, speed):
     """Some captured and some not; a bond more or less would be a hundred times what is allowed."""
     law, weight = LAWS[name], 9.81 * MASS
-    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(1, 0, 16)[:32]
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:32]
     found = impacts(law, launched(np.full(32, speed), weight), offsets)
     assert np.all(np.asarray(found.within_reach) < 16)
     for k, row in enumerate(offsets):
@@ -100,7 +101,7 @@ def test_many_summits_are_the_sum_of_all(name, speed):
 
 
 def test_dry_elastic_summits_lose_nothing():
-    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(2, 0, 16)
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(2, 0, 16)[0]
     found = impacts(LAWS["dry"], launched(np.full(256, FAST), 9.81 * MASS), offsets)
     np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
     assert not np.any(found.captured)
@@ -110,7 +111,7 @@ def test_dry_elastic_summits_lose_nothing():
 def test_losses_and_restitution_are_one_balance():
     """What a body keeps and what its bonds took are what it came with, for every body."""
     law = LAWS["jkr, wet"]
-    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(3, 0, 16)
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(3, 0, 16)[0]
     found = impacts(law, launched(np.full(256, FAST)), offsets)
     energy = 0.5 * MASS * FAST**2
     free = ~np.asarray(found.captured)
@@ -136,7 +137,7 @@ def test_like_summits_are_as_many_loaded_ones():
 
 
 def test_a_body_with_as_many_summits_as_were_given_says_so():
-    offsets = SummitField(RADIUS, 2e13, 1.2e-9).offsets(1, 0, 4)
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 4)[0]
     found = impacts(LAWS["jkr"], launched(np.full(256, 0.1)), offsets)
     assert np.all(np.asarray(found.within_reach) == 4)
 
@@ -145,13 +146,13 @@ def test_looks_twice_as_close_find_the_same(monkeypatch):
     """The looks along the way miss neither a turn nor the least energy."""
     from asperity.dynamics import single_impact
 
-    law, table = LAWS["jkr, wet"], asperity_table(LAWS["jkr, wet"], as_float64(1e-11))
-    offsets = jnp.asarray(SummitField(RADIUS, 2e13, 1.2e-9).offsets(4, 0, 16))
+    law, table = LAWS["jkr, wet"], asperity_table([LAWS["jkr, wet"]], 1e-11)
+    offsets = jnp.asarray(GaussianField(RADIUS, 2e13, 1.2e-9).summits(4, 0, 16)[0])
     launches = launched(np.full(256, SLOW), 9.81 * MASS)
     found = impacts(law, launches, offsets)
     monkeypatch.setattr(single_impact, "_SHARES", np.linspace(0.0, 1.0, 257))
     finer = single_impact.Program(single_impact._impacts, {"xla_cpu_use_fusion_emitters": True})
-    again = finer(table, launches, offsets)
+    again = finer(table, launches, offsets, jnp.zeros(offsets.shape, jnp.int32))
     assert 0.05 < np.mean(found.captured) < 0.95
     np.testing.assert_array_equal(found.captured, again.captured)
     np.testing.assert_allclose(found.restitution, again.restitution, rtol=1e-12)

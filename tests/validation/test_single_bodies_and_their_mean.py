@@ -1,5 +1,7 @@
 """Single bodies and the mean field: they differ as one over the number of summits that touch."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -26,8 +28,8 @@ def mean_field():
 def launched(density, count):
     """First impacts with so many times the density and the energy: as much on each summit."""
     problem = build(resolve(load(FAST)))
-    bodies = SingleBodies(problem, 0)
-    bodies.field = bodies.field._replace(density=density * bodies.field.density)
+    bodies = SingleBodies(problem, 0.0)
+    bodies.field = dataclasses.replace(bodies.field, density=density * bodies.field.density)
     energy = density * 0.5 * float(problem.body.mass) * SPEED**2
     launches = Launch(np.full(count, energy), np.full(count, np.inf), np.zeros(count))
     return bodies.impacts(launches, pulls=False)

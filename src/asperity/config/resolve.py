@@ -186,9 +186,10 @@ def _release(case: CaseTables) -> Release | None:
 
 
 def _placement(table: Roughness | None) -> Placement | None:
-    if table is None or table.placement != "random":
+    if table is None or not table.single_bodies:
         return None
-    return Placement(table.realisations or REALISATIONS, table.seed or 0)
+    count = table.realisations or REALISATIONS
+    return Placement(table.placement == "measured", count, table.seed or 0)
 
 
 def _tolerance(case: CaseTables) -> Tolerance:

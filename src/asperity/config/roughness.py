@@ -84,15 +84,16 @@ class Roughness(Table):
         default=None,
     )  # fmt: skip
 
-    placement: Literal["mean", "random"] | None = entry(
+    placement: Literal["mean", "random", "measured"] | None = entry(
         "", "Summits: their 'mean' over all bodies (default), or beside it single bodies, each on "
-        "summits at 'random' places.", "random", default=None,
+        "summits at 'random' places, or put down at a random place of a 'measured' map.", "random",
+        default=None,
     )  # fmt: skip
     realisations: Annotated[int, Number("[1, 1000000]", whole=True)] | None = entry(
-        "1", "With placement = 'random': single bodies; 1000.", 1000, default=None
+        "1", "Without placement = 'mean': single bodies; 1000.", 1000, default=None
     )
     seed: Annotated[int, Number("[0, 4294967295]", whole=True)] | None = entry(
-        "1", "With placement = 'random': seed of the places; 0.", 0, default=None
+        "1", "Without placement = 'mean': seed of the places; 0.", 0, default=None
     )
 
     of_files: ClassVar[tuple[str, ...]] = (
@@ -117,15 +118,21 @@ class Roughness(Table):
                 f"{self.radius_classes}",
                 key="radius_classes",
             )
-        if self.placement != "random":
+        if not self.single_bodies:
             refuse_all(
                 InputError(
-                    f"`{key}` must be absent without placement = 'random', which it is for; got "
-                    f"{getattr(self, key)}",
+                    f"`{key}` must be absent without placement = 'random' or 'measured', which it "
+                    f"is for; got {getattr(self, key)}",
                     key=key,
                 )
                 for key in ("realisations", "seed")
                 if getattr(self, key) is not None
+            )
+        if self.placement == "measured" and self.files is None:
+            raise InputError(
+                "`placement` must be 'random' without `files`, whose summits have places; got "
+                "'measured'",
+                key="placement",
             )
         if self.size is not None:
             lengths(self.size, 2, "size")
@@ -146,6 +153,11 @@ class Roughness(Table):
         )
 
     @property
+    def single_bodies(self) -> bool:
+        """Whether single bodies are asked for beside the mean."""
+        return self.placement in ("random", "measured")
+
+    @property
     def preparation(self) -> Preparation:
         """What is done to the files' maps."""
         # Here, since few cases have files, and SciPy's filters take 0.2 s to import.
@@ -163,11 +175,10 @@ class Roughness(Table):
         return width, length
 
     def check_beside(self, case: Any) -> None:
-        if self.placement != "random":
+        if not self.single_bodies:
             return
         others = {
             "counterface.deformation": case.counterface.deformation != "rigid",
-            "roughness.source": self.source == "summits",
             "capillary.model": case.capillary.model == "kelvin-filling",
             "capillary.formation_time": bool(case.capillary.formation_time),
             "plasticity.model": _on(case.plasticity),
@@ -177,7 +188,7 @@ class Roughness(Table):
             "publication": case.publication is not None,
         }
         refuse_all(
-            InputError(f"{_BESIDE[key]} with placement = 'random'; {why}", key=key)
+            InputError(f"{_BESIDE[key]} with single bodies (`placement`): {why}", key=key)
             for key, found in others.items()
             if found
             for why in (_WHY.get(key, _NO_OTHER),)
@@ -186,7 +197,6 @@ class Roughness(Table):
 
 _BESIDE = {
     "counterface.deformation": "`deformation` must be 'rigid'",
-    "roughness.source": "`source` must be 'gaussian'",
     "capillary.model": "`model` must not be 'kelvin-filling'",
     "capillary.formation_time": "`formation_time` must be absent",
     "plasticity.model": "`model` must be 'none' in [plasticity]",
@@ -195,11 +205,8 @@ _BESIDE = {
     "suspension": "a [suspension] table must be absent",
     "publication": "a [publication] table must be absent",
 }
-_WHY = {
-    "counterface.deformation": "summits that feel one another through a half-space are not solved",
-    "roughness.source": "all summits of single bodies have one tip radius",
-}
-_NO_OTHER = "single bodies have the elastic forces, adhesion and menisci of their summits alone"
+_NO_OTHER = "they have the elastic forces, adhesion and menisci of their summits alone"
+_WHY = {"counterface.deformation": "how summits press on one another is not solved"}
 
 
 def _on(table: Any) -> bool:

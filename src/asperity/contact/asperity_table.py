@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
-from ..laws.law import Law, Real, terms
+from ..laws.law import Law, Real, as_float64, terms
 from ..numerics.compilation import AT_ONCE, Program, kept
 from .smooth import kinks_of
 
 _CELLS = 512  # between two gaps at which a law is not smooth
 _POINTS = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(4))
 _TO_POWERS = np.linalg.inv(np.vander(_POINTS, increasing=True)).T
+_OTHERS = 4096  # asperities that may draw one in, with all that each has to give
 _BEYOND = 1.01  # times where forces end: there, the table ends with none
 _EMPTY = 1e-9  # y: a stretch between two gaps that are one is passed within it
 _LADDER = -1e-15 * 2.0 ** np.arange(0.0, 80.0)  # m, down to where a gap needs the largest energy
@@ -25,7 +27,7 @@ APPROACH = -1
 
 @kept
 class AsperityTable(NamedTuple):
-    """Energies of the laws of one asperity as cubics on cells of its gap.
+    """Energies of one asperity as cubics on cells of its gap, for classes of tip radius.
 
     Cells are even in y, |gap|/scale = exp |y| - 1 with the sign of the gap; their ends are gaps at
     which a law is not smooth. An energy holds what was lost on the way: at any gap it is the work
@@ -34,21 +36,21 @@ class AsperityTable(NamedTuple):
     Attributes
     ----------
     scale
-        Length [m] below which cells are even in the gap itself.
+        Length [m] below which cells are even in the gap itself, shape (classes,).
     borders
-        y at both ends and where a law is not smooth, ascending.
+        y at both ends and where a law is not smooth, ascending, shape (classes, borders).
     rates
-        Cells over y from each of these to the next, shape (borders - 1,).
+        Cells over y from each of these to the next, shape (classes, borders - 1).
     energy, slope
-        Energy [J] and its slope with the gap [N], shape (rows, cells, 4): coefficients of powers of
-        the share of a cell. There is a row for each set of laws whose bond was formed, and the last
-        is that on approach, where each forms in its turn.
+        Energy [J] and its slope with the gap [N], shape (classes, rows, cells, 4): coefficients of
+        powers of the share of a cell. There is a row for each set of laws whose bond was formed,
+        and the last is that on approach, where each forms in its turn.
     forming, breaking
-        Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (laws,).
+        Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (classes, laws).
     lost
-        Energy [J] that each loses once made and broken, shape (laws,).
+        Energy [J] that each loses once made and broken, shape (classes, laws).
     pulling
-        Gap [m] at which an asperity with all bonds pulls most.
+        Gap [m] at which an asperity with all bonds pulls most, shape (classes,).
     """
 
     scale: jax.Array
@@ -63,34 +65,68 @@ class AsperityTable(NamedTuple):
 
     @property
     def reach(self) -> jax.Array:
-        """Gap [m] beyond which an asperity feels nothing."""
+        """Gap [m] beyond which an asperity feels nothing, shape (classes,)."""
+        return self.scale * _stretched(self.borders[:, -1])
+
+    def of(self, kind: jax.Array) -> Asperities:
+        """Asperities of some classes, shape (n,)."""
+        shared = ("energy", "slope")
+        rest = [leaf[kind].T for name, leaf in self._asdict().items() if name not in shared]
+        return Asperities(kind, self.energy, self.slope, *rest)
+
+
+class Asperities(NamedTuple):
+    """What an :class:`AsperityTable` holds of some asperities: with them as the last axis.
+
+    Attributes
+    ----------
+    kind
+        Class of each, shape (n,).
+    """
+
+    kind: jax.Array
+    energy: jax.Array
+    slope: jax.Array
+    scale: jax.Array
+    borders: jax.Array
+    rates: jax.Array
+    forming: jax.Array
+    breaking: jax.Array
+    lost: jax.Array
+    pulling: jax.Array
+
+    @property
+    def reach(self) -> jax.Array:
+        """Gap [m] beyond which each feels nothing, shape (n,)."""
         return self.scale * _stretched(self.borders[-1])
 
     @property
     def cells(self) -> int:
         """Number of cells. Without values."""
-        return self.energy.shape[1]
+        return self.energy.shape[2]
 
-    def gap(self, cells: np.ndarray) -> jax.Array:
-        """Gap [m] at a number of cells from the lowest on, shape (n,)."""
-        widths = jnp.diff(self.borders)
+    def first_gap(self, cells: np.ndarray) -> jax.Array:
+        """Gap [m] of the first at a number of cells from the lowest on, shape (m,)."""
+        borders = self.borders[:, 0]
+        widths = jnp.diff(borders)
         shares = np.clip(cells[:, None] / _CELLS - np.arange(widths.size), 0.0, 1.0)
-        return self.scale * _stretched(self.borders[0] + shares @ widths)
+        return self.scale[0] * _stretched(borders[0] + shares @ widths)
 
     def between(
         self, start: jax.Array, end: jax.Array, origin: jax.Array, shares: np.ndarray
     ) -> jax.Array:
-        """Places [m] from one to another, spaced as cells are about a gap of 0 at an ``origin``."""
-        low, high = (_even((place - origin) / self.scale) for place in (start, end))
-        return origin + self.scale * _stretched(low + (high - low) * shares)
+        """Separations [m] from one to another, spaced as the cells of the first about an origin."""
+        scale = self.scale[0]
+        low, high = (_even((place - origin) / scale) for place in (start, end))
+        return origin + scale * _stretched(low + (high - low) * shares)
 
     def row(self, gap: jax.Array) -> jax.Array:
-        """Row of an asperity that came to a gap [m] and leaves again; any shape."""
-        formed = gap <= self.forming.reshape(-1, *(1,) * gap.ndim)
+        """Row of each that came to a gap [m] and leaves again, shape (n,)."""
+        formed = gap <= self.forming
         return jnp.tensordot(2 ** np.arange(formed.shape[0]), formed, axes=1)
 
     def work(self, gap: jax.Array, row: jax.Array | int = APPROACH) -> jax.Array:
-        """Work [J] from far away to a gap [m]; any shape."""
+        """Work [J] of each from far away to a gap [m], shape (n,)."""
         return _work(self, gap, jnp.asarray(row))
 
 
@@ -104,29 +140,31 @@ def _even(gap: jax.Array) -> jax.Array:
 
 
 @jax.custom_jvp
-def _work(table: AsperityTable, gap: jax.Array, row: jax.Array) -> jax.Array:
-    return _read(table.energy, row, *_cell(table, gap))
+def _work(some: Asperities, gap: jax.Array, row: jax.Array) -> jax.Array:
+    return _read(some.energy, some.kind, row, *_cell(some, gap))
 
 
 @_work.defjvp
 def _work_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
     """With respect to the gap alone."""
-    table, gap, row = primals
-    at = _cell(table, gap)
-    return _read(table.energy, row, *at), _read(table.slope, row, *at) * tangents[1]
+    some, gap, row = primals
+    at = (some.kind, row, *_cell(some, gap))
+    return _read(some.energy, *at), _read(some.slope, *at) * tangents[1]
 
 
-def _cell(table: AsperityTable, gap: jax.Array) -> tuple[jax.Array, jax.Array]:
+def _cell(some: Asperities, gap: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Cell of a gap, and the share of it that lies below."""
-    place, number = _even(gap / table.scale), jnp.zeros_like(gap)
-    for low, rate in zip(table.borders, table.rates, strict=False):
+    place, number = _even(gap / some.scale), jnp.zeros_like(gap)
+    for low, rate in zip(some.borders, some.rates, strict=False):
         number = number + jnp.clip((place - low) * rate, 0.0, _CELLS)
-    cell = jnp.clip(number.astype(jnp.int32), 0, table.cells - 1)
+    cell = jnp.clip(number.astype(jnp.int32), 0, some.cells - 1)
     return cell, number - cell
 
 
-def _read(values: jax.Array, row: jax.Array, cell: jax.Array, share: jax.Array) -> jax.Array:
-    powers = values[row, cell]
+def _read(
+    values: jax.Array, kind: jax.Array, row: jax.Array, cell: jax.Array, share: jax.Array
+) -> jax.Array:
+    powers = values[kind, row, cell]
     value = powers[..., 3]
     for k in (2, 1, 0):
         value = value * share + powers[..., k]
@@ -147,7 +185,7 @@ def _stretches(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
 
 
 def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
-    """The table of a law, down to a gap that needs more than an energy [J]."""
+    """The table of a law, down to a gap that needs more than an energy [J] and others can give."""
     every = terms(law)
     hysteretic = [one for one in every if one.hysteretic]
 
@@ -163,7 +201,8 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         return total
 
     ladder = jnp.asarray(_LADDER)
-    low = ladder[jnp.argmax(work(ladder, None) > energy)]
+    needed = work(ladder, None)
+    low = ladder[jnp.argmax(needed > energy - _OTHERS * jnp.minimum(jnp.min(needed), 0.0))]
     scale, borders = _stretches(law, low)
     widths = jnp.diff(borders)
     steps = np.arange(_CELLS)[:, None] + _POINTS
@@ -193,4 +232,18 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
     )
 
 
-asperity_table = Program(_table_of, AT_ONCE)
+_tables = Program(jax.vmap(_table_of, in_axes=(0, None)), AT_ONCE)
+
+
+def asperity_table(laws: Sequence[Law], energy: float) -> AsperityTable:
+    """The energies of one asperity of each class, by its laws.
+
+    Parameters
+    ----------
+    laws
+        The laws of each class, alike but for their values.
+    energy
+        Energy [J] that no body comes with.
+    """
+    together = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *laws)
+    return _tables(together, as_float64(energy))

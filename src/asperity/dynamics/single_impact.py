@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from ..contact.asperity_table import AsperityTable
+from ..contact.asperity_table import Asperities, AsperityTable
 from ..laws.law import Real
 from ..numerics.compilation import Program, kept
 from ..numerics.roots import root_between
@@ -48,7 +48,7 @@ class SingleImpact(NamedTuple):
     Attributes
     ----------
     closest_approach
-        Separation [m] at which it turns.
+        Separation [m] at which it turns; NaN where none is found in the table.
     captured
         Whether it does not come out of the reach of its summits.
     impact_energy
@@ -84,45 +84,46 @@ class SingleImpact(NamedTuple):
     within_reach: jax.Array
 
 
-def _impact(table: AsperityTable, pulls: bool, launch: Launch, offsets: jax.Array) -> SingleImpact:
+def _impact(
+    table: AsperityTable, pulls: bool, launch: Launch, offsets: jax.Array, kinds: jax.Array
+) -> SingleImpact:
     """One body, on summits with descending ``offsets`` [m]; its pull-off force where it ``pulls``.
 
     Bodies do not deform in bulk, so that all summits move alike: the energy is the sum of theirs.
     """
-    top = jnp.minimum(launch.release, offsets[0] + table.reach)
+    summits = table.of(kinds)
+    top = jnp.minimum(launch.release, jnp.max(offsets + summits.reach))
     begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
 
     def fallen(place: jax.Array) -> jax.Array:
         return launch.kinetic + launch.weight * (begin - place)
 
     def on_way_in(place: jax.Array) -> jax.Array:
-        return fallen(place) - jnp.sum(table.work(place - offsets))
+        return fallen(place) - jnp.sum(summits.work(place - offsets))
 
-    turn = _turn(table, on_way_in, offsets, top)
+    turn = _turn(summits, on_way_in, offsets, top)
     gaps = turn - offsets
-    row = table.row(gaps)
+    row = summits.row(gaps)
 
     def on_way_out(place: jax.Array) -> jax.Array:
-        return fallen(place) - jnp.sum(table.work(place - offsets, row))
+        return fallen(place) - jnp.sum(summits.work(place - offsets, row))
 
     def force(place: jax.Array) -> jax.Array:
         return jax.jvp(on_way_out, (place,), (jnp.ones_like(place),))[1] + launch.weight
 
-    held = gaps <= table.forming[:, None]
-    ends = jnp.where(held, offsets + table.breaking[:, None], top).ravel()
-    # Closest together at the turn, and where the first summit has its forces.
-    near = [table.between(turn, top, origin, _SHARES[2::2]) for origin in (turn, offsets[0])]
-    even = jnp.sort(jnp.concatenate(near))
+    held = gaps <= summits.forming
+    ends = jnp.where(held, offsets + summits.breaking, top).ravel()
     ends = ends - _CLOSE * jnp.abs(ends)  # just before they break
+    # Closest together at the turn, and where the first summit has its forces.
+    near = [summits.between(turn, top, origin, _SHARES[2::2]) for origin in (turn, offsets[0])]
+    even = jnp.sort(jnp.concatenate(near))
     places = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
     step = jnp.interp(places, even, jnp.diff(even, prepend=turn))
     left = _least(on_way_out, places, step, (even[0], top))
-    after = on_way_out(top)
+    before, after = on_way_in(top), on_way_out(top)
     captured = jnp.minimum(left, after) < 0.0
-    before = on_way_in(top)
-    each = -jax.jvp(table.work, (gaps,), (jnp.ones_like(gaps),))[1]
+    each = -jax.jvp(summits.work, (gaps,), (jnp.ones_like(gaps),))[1]
     squares = jnp.sum(each**2)
-    bonds = jnp.sum(held, axis=1).astype(float)
     return SingleImpact(
         closest_approach=turn,
         captured=captured,
@@ -131,36 +132,39 @@ def _impact(table: AsperityTable, pulls: bool, launch: Launch, offsets: jax.Arra
         contacting=jnp.sum(gaps < 0.0).astype(float),
         maximum_force=jnp.sum(each),
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
-        bonds=bonds,
-        lost=bonds * table.lost,
-        pull_off=_pull(table, force, offsets, places, step) if pulls else jnp.asarray(jnp.nan),
-        within_reach=jnp.sum(gaps <= table.reach),
+        bonds=jnp.sum(held, axis=1).astype(float),
+        lost=jnp.sum(held * summits.lost, axis=1),
+        pull_off=_pull(summits, force, offsets, places, step) if pulls else jnp.asarray(jnp.nan),
+        within_reach=jnp.sum(gaps <= summits.reach),
     )
 
 
 Along = Callable[[jax.Array], jax.Array]
 
 
-def _turn(table: AsperityTable, energy: Along, offsets: jax.Array, top: jax.Array) -> jax.Array:
+def _turn(summits: Asperities, energy: Along, offsets: jax.Array, top: jax.Array) -> jax.Array:
     """The first separation [m] on the way in at which the energy is spent."""
-    gaps = table.gap(table.cells * (1.0 - _SHARES))
-    places = jnp.minimum(offsets[0] + gaps, top)
+    gaps = summits.first_gap(summits.cells * (1.0 - _SHARES))
+    places = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
+    found = jnp.asarray(True)
     for _ in range(2):
         spent = jax.vmap(energy)(places) < 0.0
+        found = found & jnp.any(spent)
         after = jnp.maximum(jnp.argmax(spent), 1)
         inner, outer = places[after - 1], places[after]
         places = inner + (outer - inner) * np.linspace(0.0, 1.0, _FINER + 1)
-    return root_between(energy, inner, outer, _CLOSE * (jnp.abs(outer) + table.reach))
+    turn = root_between(energy, inner, outer, _CLOSE * (jnp.abs(outer) + summits.reach[0]))
+    return jnp.where(found, turn, jnp.nan)
 
 
 def _pull(
-    table: AsperityTable, force: Along, offsets: jax.Array, places: jax.Array, step: jax.Array
+    summits: Asperities, force: Along, offsets: jax.Array, places: jax.Array, step: jax.Array
 ) -> jax.Array:
     """The largest tension on the way out [N]; there are about as many as there are summits."""
-    widest = jnp.max(jnp.append(table.breaking, jnp.abs(table.pulling)))
+    widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pulling)))
     about = (offsets[:, None] + widest * _ABOUT).ravel()
     within = jnp.min(places), jnp.max(places)
-    more = jnp.clip(jnp.concatenate([offsets + table.pulling, about]), *within)
+    more = jnp.clip(jnp.concatenate([offsets + summits.pulling, about]), *within)
     steps = jnp.minimum(jnp.append(step, jnp.full(more.shape, widest)), widest)
     return -jnp.minimum(_least(force, jnp.append(places, more), steps, within), 0.0)
 
@@ -183,20 +187,25 @@ def _least(
 
 
 def _impacts(
-    table: AsperityTable, launches: Launch, offsets: jax.Array, pulls: bool = True
+    table: AsperityTable,
+    launches: Launch,
+    offsets: jax.Array,
+    kinds: jax.Array,
+    pulls: bool = True,
 ) -> SingleImpact:
     bodies, summits = offsets.shape
     together = bodies
     while together > 1 and together * 2 * _LOOKS * summits > _AT_ONCE:
         together //= 2
     jobs = jax.tree_util.tree_map(
-        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), (launches, offsets)
+        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), (launches, offsets, kinds)
     )
     found = jax.lax.map(lambda job: jax.vmap(partial(_impact, table, pulls))(*job), jobs)
     return jax.tree_util.tree_map(lambda leaf: leaf.reshape(bodies, *leaf.shape[2:]), found)
 
 
 single_impacts = Program(_impacts, {})
-"""First impacts of many bodies: their launches of shape (bodies,), offsets of their summits [m],
-descending, of shape (bodies, summits), and whether their pull-off forces are wanted (static). The
-number of bodies is a power of two."""
+"""First impacts of many bodies, whose number is a power of two.
+
+By their launches of shape (bodies,), the offsets [m] of their summits, descending, and the classes
+of these, of shape (bodies, summits), and whether their pull-off forces are wanted (static)."""

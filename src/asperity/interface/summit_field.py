@@ -1,9 +1,10 @@
-"""Summits at random places under a paraboloid, from the first to touch to the last."""
+"""Summits under a paraboloid, from the first to touch to the last: random, or measured."""
 
 from __future__ import annotations
 
+import abc
+from dataclasses import dataclass
 from math import pi
-from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtr
@@ -13,40 +14,41 @@ WIDTH = 256
 
 _GRID = np.linspace(9.0, -60.0, 6901)  # heights over the rms height, from where next to none is
 _NEWTON = 3
+_FAR = -1.0  # m, where there are no more summits
 
 
-class SummitField(NamedTuple):
-    r"""A Poisson field of summits with Gaussian heights under a body of radius R.
+@dataclass(frozen=True)
+class SummitField(abc.ABC):
+    """What stands under bodies of radius R.
 
     A summit of height z at the distance r from the axis meets a plane when the separation has
-    fallen to its *offset* x = z - r^2/(2 R). Offsets are a Poisson process of their own: above x
-    lie on average :math:`2 \pi R n \int_x^\infty (z - x)\,\phi(z)\,\mathrm{d}z` of them. From
-    the highest down they are those of a process of rate 1, mapped by the inverse of that mean
-    (Kingman, Poisson Processes, 1993, section 2.3).
+    fallen to its *offset* x = z - r^2/(2 R).
 
-    Attributes
+    Parameters
     ----------
     radius
-        Radius R of the body [m].
+        Radius R of the bodies [m].
     density
         Summits per area n [1/m^2].
-    rms_height, mean_height
-        Of their heights [m], above the plane that separations count from.
     """
 
     radius: float
     density: float
-    rms_height: float
-    mean_height: float = 0.0
 
     def expected_above(self, offset: np.ndarray | float) -> np.ndarray:
-        """Mean number of summits with a larger offset than one [m], any shape."""
-        x = (np.asarray(offset) - self.mean_height) / self.rms_height
-        found: np.ndarray = self._scale * _above(x)
-        return found
+        r"""Mean number of summits with a larger offset than one [m], any shape.
 
-    def offsets(self, seed: int, block: int, count: int) -> np.ndarray:
-        """Offsets [m] of the highest summits under WIDTH bodies, descending.
+        :math:`2 \pi R n \int_x^\infty (z - x)\,\phi(z)\,\mathrm{d}z` of them.
+        """
+        return 2.0 * pi * self.radius * self.density * self._mean_above(np.asarray(offset))
+
+    @abc.abstractmethod
+    def _mean_above(self, offset: np.ndarray) -> np.ndarray:
+        """Mean height [m] above an offset of a summit, cut off there."""
+
+    @abc.abstractmethod
+    def summits(self, seed: int, block: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """The highest summits under WIDTH bodies.
 
         Parameters
         ----------
@@ -59,24 +61,131 @@ class SummitField(NamedTuple):
 
         Returns
         -------
-        Array of shape (WIDTH, count).
+        Offsets [m], descending, and classes of tip radius, both of shape (WIDTH, count).
         """
+
+
+class RandomField(SummitField):
+    """A Poisson field: offsets are a Poisson process too.
+
+    From the highest down they are those of a process of rate 1, mapped by the inverse of
+    :meth:`expected_above` (Kingman, Poisson Processes, 1993, section 2.3).
+    """
+
+    def summits(self, seed: int, block: int, count: int) -> tuple[np.ndarray, np.ndarray]:
         draws = np.random.default_rng([seed, block]).standard_exponential((count, WIDTH))
-        return self.mean_height + self.rms_height * self._inverse(np.cumsum(draws, axis=0)).T
+        number = np.cumsum(draws, axis=0).T
+        offsets = self._inverse(number / (2.0 * pi * self.radius * self.density))
+        return offsets, self._classes(np.random.default_rng([seed, block, 1]), offsets)
 
-    @property
-    def _scale(self) -> float:
-        return 2.0 * pi * self.radius * self.density * self.rms_height
+    @abc.abstractmethod
+    def _inverse(self, mean: np.ndarray) -> np.ndarray:
+        """The offset [m] of which a mean height above it [m] is that."""
 
-    def _inverse(self, number: np.ndarray) -> np.ndarray:
-        """Offset over the rms height above which so many are expected: Newton's method."""
-        wanted = number / self._scale
+    def _classes(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        """Class of tip radius of the summits with some offsets."""
+        return np.zeros(offsets.shape, np.int32)
+
+
+@dataclass(frozen=True)
+class GaussianField(RandomField):
+    """A Poisson field of summits with Gaussian heights and one tip radius.
+
+    Parameters
+    ----------
+    rms_height, mean_height
+        Of their heights [m], above the plane that separations count from.
+    """
+
+    rms_height: float
+    mean_height: float = 0.0
+
+    def _mean_above(self, offset: np.ndarray) -> np.ndarray:
+        return self.rms_height * _above((offset - self.mean_height) / self.rms_height)
+
+    def _inverse(self, mean: np.ndarray) -> np.ndarray:
+        """By Newton's method."""
+        wanted = mean / self.rms_height
         x = np.interp(np.log(wanted), np.log(_above(_GRID)), _GRID)
         x = np.where(wanted > -_GRID[-1], -wanted, x)  # so far down all heights are above
         for _ in range(_NEWTON):
             share = ndtr(-x)
             x = x + (_above(x) - wanted) / np.where(share > 0.0, share, 1.0)
-        return x
+        return self.mean_height + self.rms_height * x
+
+
+@dataclass(frozen=True)
+class SampledField(RandomField):
+    """A Poisson field of summits whose heights and radii are drawn from those that were measured.
+
+    Parameters
+    ----------
+    heights
+        Their heights [m] above the plane that separations count from, descending, shape (n,).
+    classes
+        Class of tip radius of each, likewise.
+    """
+
+    heights: np.ndarray
+    classes: np.ndarray
+
+    def _mean_above(self, offset: np.ndarray) -> np.ndarray:
+        mean = np.interp(-offset, -self.heights, self._at_heights)
+        found: np.ndarray = np.where(
+            offset < self.heights[-1], np.mean(self.heights) - offset, mean
+        )
+        return found
+
+    @property
+    def _at_heights(self) -> np.ndarray:
+        """Mean height above each of the heights; it is linear in between."""
+        number = np.arange(1.0, self.heights.size + 1.0)
+        found: np.ndarray = (np.cumsum(self.heights) - number * self.heights) / number.size
+        return found
+
+    def _inverse(self, mean: np.ndarray) -> np.ndarray:
+        known = self._at_heights
+        between = np.interp(mean, known, self.heights)
+        found: np.ndarray = np.where(mean > known[-1], np.mean(self.heights) - mean, between)
+        return found
+
+    def _classes(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        """Of all summits that are higher any one is as likely."""
+        higher = np.maximum(np.searchsorted(-self.heights, -offsets), 1)
+        draws = random.random(offsets.shape[::-1]).T  # a summit's is the same for any number
+        return self.classes[(draws * higher).astype(int)]
+
+
+@dataclass(frozen=True)
+class MeasuredField(SampledField):
+    """The summits of a map where they are, with the bodies put down at random places of it.
+
+    Parameters
+    ----------
+    positions
+        Of the summits on the map [m], shape (n, 2), in the order of ``heights``.
+    within
+        Least and largest coordinates of the places [m], shape (2, 2): as far from the edges as
+        forces reach.
+    """
+
+    positions: np.ndarray
+    within: np.ndarray
+
+    def summits(self, seed: int, block: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+        places = np.random.default_rng([seed, block]).uniform(
+            self.within[0], self.within[1], (WIDTH, 2)
+        )
+        offsets = np.full((WIDTH, count), _FAR)
+        classes = np.zeros((WIDTH, count), np.int32)
+        kept = min(count, self.heights.size)
+        for body, place in enumerate(places):
+            squares = np.sum((self.positions - place) ** 2, axis=1)
+            all_offsets = self.heights - squares / (2.0 * self.radius)
+            highest = np.argsort(-all_offsets, kind="stable")[:kept]
+            offsets[body, :kept] = all_offsets[highest]
+            classes[body, :kept] = self.classes[highest]
+        return offsets, classes
 
 
 def _above(x: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact
 from ..integration import Report, silently
+from ..results.conversion import Solution
 from ..results.realisations import QUANTILES, clopper_pearson
 from ..single_bodies import SingleBodies
 
@@ -58,16 +59,19 @@ class CaptureProbability:
 
 def capture_probability(
     problem: Problem,
+    mean: Solution,
     speeds: np.ndarray,
     report: Report = silently,
     stop: threading.Event | None = None,
-) -> CaptureProbability:
-    """Launch the single bodies of a case at every speed.
+) -> CaptureProbability | None:
+    """Launch the single bodies of a case at every speed; None where it has none.
 
     Parameters
     ----------
     problem
-        What was built from a case with ``placement = "random"``.
+        What was built from a case.
+    mean
+        A motion of the mean over all.
     speeds
         Speeds where the forces on each body begin [m/s], ascending.
     report, stop
@@ -79,8 +83,10 @@ def capture_probability(
         As :meth:`asperity.single_bodies.SingleBodies.impacts`.
     """
     placed, body = problem.inputs.placement, problem.body
-    assert placed is not None
-    bodies, count = SingleBodies(problem, placed.seed), placed.realisations
+    if placed is None:
+        return None
+    turn = float(np.asarray(mean.motion.impacts.closest_approach)[0])
+    bodies, count = SingleBodies(problem, turn), placed.realisations
     mass, weight = float(body.mass), float(body.weight)
 
     def launched(speed: float) -> SingleImpact:

@@ -276,9 +276,8 @@ def restitution_curve(
     if not known:
         raise SimulationError("no first impact could be computed at any of the speeds")
     warnings = [*about.warnings, *_left_out(len(rebounds) - len(known), len(rebounds))]
-    speed, bodies = np.array([rebound.speed for rebound in known]), None
-    if inputs.placement is not None:
-        bodies = capture_probability(problem, speed, lambda _, text: report(0.99, text), stop)
+    speed = np.array([rebound.speed for rebound in known])
+    bodies = capture_probability(problem, solution, speed, lambda _, t: report(0.99, t), stop)
     report(1.0, "done")
     return RestitutionCurve(
         case=case,

@@ -25,7 +25,7 @@ def refuse_unusable(study: StudyDefinition) -> None:
     _ = study.columns
     rough = study.base.roughness
     if any(place(axis.key)[1] in _OF_BODIES for axis in study.axes) or (
-        rough is not None and rough.placement == "random"
+        rough is not None and rough.single_bodies
     ):
         raise InputError(
             "`placement` must be 'mean' in a study, which keeps the mean over all bodies: single "
