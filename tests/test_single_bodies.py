@@ -10,14 +10,13 @@ import pytest
 from typer.testing import CliRunner
 
 import asperity
-from asperity import single_bodies
 from asperity.cli import app
 from asperity.config import load
 from asperity.config.resolve import resolve
 from asperity.dynamics.single_impact import Launch
 from asperity.errors import InputError
 from asperity.model import build
-from asperity.single_bodies import SingleBodies
+from asperity.single_bodies import SingleBodies, launching
 
 CASE = """
 [body]
@@ -85,6 +84,15 @@ def test_a_body_falls_until_something_carries_it(result):
     assert result.realisations.quantiles("pull_off")[1] > 5.0 * result.measures["pull_off"]
 
 
+def test_the_first_body_stands_on_its_summits(result):
+    """Where they are, their heights and its turning point make their gaps."""
+    first, values = result.realisations.first, result.realisations.values
+    assert np.sum(first["gap"] < 0.0) == values["contacting"][0]
+    offsets = values["closest_approach"][0] - first["gap"]
+    heights = offsets + (first["x"] ** 2 + first["y"] ** 2) / (2.0 * 25e-6)
+    assert np.all(np.abs(heights) < 6.0 * 1.64e-9)
+
+
 def test_a_record_holds_every_body(result, tmp_path: Path):
     result.save(tmp_path)
     again = asperity.read(tmp_path / "record.nc").realisations
@@ -92,7 +100,10 @@ def test_a_record_holds_every_body(result, tmp_path: Path):
     for name, values in result.realisations.values.items():
         np.testing.assert_array_equal(again.values[name], values)
     np.testing.assert_array_equal(again.lost["capillary"], result.realisations.lost["capillary"])
-    assert (tmp_path / "bodies.png").read_bytes().startswith(b"\x89PNG")
+    for name, values in result.realisations.first.items():
+        np.testing.assert_array_equal(again.first[name], values)
+    for name in ("bodies", "summits"):
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     assert result.dataset()["body_restitution"].dims == ("realisation",)
 
 
@@ -139,8 +150,8 @@ def test_what_single_bodies_do_not_have_is_refused(old, new, words):
 
 
 def test_too_many_summits_are_refused_with_their_number(monkeypatch):
-    monkeypatch.setattr(single_bodies, "MOST_SUMMITS", 8)
-    with pytest.raises(InputError, match=r"up to 8 summits in reach; some \d+\.?\d* lie"):
+    monkeypatch.setattr(launching, "MOST_SUMMITS", 8)
+    with pytest.raises(InputError, match=r"up to 8 summits within range; some \d+\.?\d* lie"):
         asperity.solve(load(CASE))
 
 
@@ -170,6 +181,8 @@ def test_restitution_draws_the_share_that_is_captured(tmp_path: Path, monkeypatc
     assert "half are captured at" in ran.output
     table = np.genfromtxt("case-out/restitution.csv", delimiter=",", skip_header=1)
     np.testing.assert_array_equal(table[:, 3], share)
+    np.testing.assert_array_equal(table[:, 6], told["mean"])
+    assert np.all(table[:, 6] <= 1.0 - share + 1e-12)  # each rebound keeps less than all
 
 
 def test_rebounds_follow_one_another_as_impacts_do(result):
@@ -225,9 +238,9 @@ def test_measured_summits_are_drawn_with_their_radii_or_left_where_they_are(maps
     assert not np.any(random == measured)
 
 
-def test_a_map_smaller_than_the_summits_in_reach_is_refused(maps: Path):
+def test_a_map_smaller_than_the_summits_within_range_is_refused(maps: Path):
     text = on_map(maps / "small.nc", "measured").replace("10 um", "100 um")
-    with pytest.raises(InputError, match=r"the map is smaller than the summits in reach"):
+    with pytest.raises(InputError, match=r"the map is smaller than the summits within range"):
         asperity.solve(load(text), critical=False)
 
 

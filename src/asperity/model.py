@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .asperity_laws import asperity_law, formation, laws_beside, plastic_law
 from .contact import (
     Contact,
     ElasticContact,
@@ -37,30 +38,15 @@ from .interface.measured_summits import loss_error, measured_surface
 from .interface.plastic_interface import PlasticInterface
 from .interface.rough_planes import RoughPlanes
 from .laws import (
-    Bradley,
-    ByContact,
-    ByKelvinGap,
-    ConstantVolume,
-    Dmt,
     HeightFunctions,
-    Hertz,
-    Jkr,
     KelvinFilling,
     Law,
-    LennardJones,
-    Maugis,
-    Meniscus,
     PublishedPressure,
 )
 from .laws.law import Sum
-from .laws.liquid.constant_volume import EDGE_ANGLE, EDGE_HOLDS
-from .laws.liquid.meniscus import Formation
 from .laws.plastic import (
     AdhesiveThorntonNing,
-    JacksonGreen,
-    KogutEtsion,
     PlasticContact,
-    ThorntonNing,
 )
 from .laws.published_pressures import FINE
 from .surfaces.heights import Gaussian
@@ -100,7 +86,9 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
 def _contact(inputs: Inputs, resolved: Resolution | None) -> Contact:
     rough = inputs.asperities
     if rough is None and inputs.yields:
-        return SmoothPlasticContact(_smooth_plastic(inputs), Sum(_beside(inputs, inputs.radius)))
+        return SmoothPlasticContact(
+            _smooth_plastic(inputs), Sum(laws_beside(inputs, inputs.radius))
+        )
     if rough is None:
         return SmoothContact(asperity_law(inputs, inputs.radius))
     if inputs.published is not None:
@@ -110,25 +98,6 @@ def _contact(inputs: Inputs, resolved: Resolution | None) -> Contact:
         kind = RigidPlasticContact if interface.yields else RigidContact
         return kind(interface, shape, resolved)
     return ElasticContact(interface, shape, inputs.modulus, inputs.tolerance.rings, resolved)
-
-
-def plastic_law(inputs: Inputs, name: str) -> PlasticContact:
-    """The law of one contact that yields, without adhesion, by its name in a case.
-
-    Parameters
-    ----------
-    inputs
-        The quantities of a case in which the strength of a solid is known.
-    name
-        "kogut-etsion", "jackson-green" or "thornton-ning".
-    """
-    soft, tip, modulus = inputs.yielding, inputs.tip_radius, inputs.modulus
-    assert soft is not None
-    if name == "kogut-etsion":
-        return KogutEtsion(tip, modulus, soft.hardness, soft.poisson)
-    if name == "jackson-green":
-        return JacksonGreen(tip, modulus, soft.yield_strength, soft.poisson)
-    return ThorntonNing(tip, modulus, soft.yield_pressure)
 
 
 def _smooth_plastic(inputs: Inputs) -> PlasticContact | AdhesiveThorntonNing:
@@ -180,7 +149,7 @@ def _interface(inputs: Inputs, rough: Asperities) -> RoughPlanes:
         return asperities
     assert inputs.liquid is not None
     tension, angle, radius = inputs.liquid.tension, inputs.contact_angle, inputs.liquid_radius
-    filling = KelvinFilling(tension, angle, radius, _formation(inputs))
+    filling = KelvinFilling(tension, angle, radius, formation(inputs))
     liquid_layer = Interface(filling, Gaussian(inputs.surface_rms_height), 1.0)
     if isinstance(asperities, Layers):
         return Layers((*asperities.parts, liquid_layer))
@@ -194,7 +163,7 @@ def _asperities(inputs: Inputs, rough: Asperities) -> RoughPlanes:
         heights = Gaussian(rough.rms_height, rough.mean_height)
         if inputs.yields:
             law = plastic_law(inputs, inputs.structure.plasticity)
-            beside = Sum(_beside(inputs, rough.asperity_radius))
+            beside = Sum(laws_beside(inputs, rough.asperity_radius))
             return PlasticInterface(law, beside, heights, rough.asperity_density)
         return Interface(
             asperity_law(inputs, rough.asperity_radius), heights, rough.asperity_density
@@ -256,59 +225,3 @@ def _published(inputs: Inputs, rough: Asperities) -> PublishedContact:
     return PublishedContact(
         pressure, Sphere(inputs.radius), float(assumed.attraction_during_retraction_only)
     )
-
-
-def asperity_law(inputs: Inputs, tip: float, smallest: float | None = None) -> Law:
-    """The laws of one asperity, side by side.
-
-    Parameters
-    ----------
-    inputs
-        The quantities of a case.
-    tip
-        Its tip radius [m].
-    smallest
-        The least radius [m] among all asperities, where they differ.
-    """
-    model, work, modulus = inputs.structure.adhesion, inputs.work_of_adhesion, inputs.modulus
-    contact: Law = Hertz(tip, modulus)
-    if model == "jkr":
-        contact = Jkr(tip, modulus, work)
-    elif model == "maugis":
-        contact = Maugis(tip, modulus, work, inputs.equilibrium_spacing)
-    elif model == "lennard-jones":
-        contact = LennardJones(tip, modulus, work, inputs.equilibrium_spacing)
-    beside = _beside(inputs, tip, smallest)
-    return Sum([contact, *beside]) if beside else contact
-
-
-def _beside(inputs: Inputs, tip: float, smallest: float | None = None) -> list[Law]:
-    """The laws of one asperity that act beside its contact."""
-    model, work = inputs.structure.adhesion, inputs.work_of_adhesion
-    menisci = _menisci(inputs, tip, smallest or tip)
-    if model == "dmt":
-        return [Dmt(tip, work), *menisci]
-    if model == "bradley":
-        return [Bradley(tip, work, inputs.equilibrium_spacing), *menisci]
-    return menisci
-
-
-def _menisci(inputs: Inputs, tip: float, smallest: float) -> list[Law]:
-    """The meniscus of one asperity, or of the smooth body; none where liquid is on the surface."""
-    if inputs.liquid is None:
-        return []
-    model, formation = inputs.structure.liquid, _formation(inputs)
-    tension, angle, radius = inputs.liquid.tension, inputs.contact_angle, inputs.liquid_radius
-    if model == "constant-volume":
-        bridge = ConstantVolume(tip, tension, angle, radius, formation)
-        volume = pi * smallest * inputs.liquid_span**2
-        tested = volume <= EDGE_HOLDS * smallest**3 and angle <= EDGE_ANGLE
-        edge = tested and isinstance(formation, ByContact)
-        return [dataclasses.replace(bridge, edge=edge)]
-    if model == "kelvin-filling" and inputs.asperities is not None:
-        return []
-    return [Meniscus(tip, tension, angle, radius, formation)]
-
-
-def _formation(inputs: Inputs) -> Formation:
-    return ByContact() if inputs.structure.formation == "on-contact" else ByKelvinGap()

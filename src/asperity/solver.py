@@ -22,7 +22,7 @@ from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
 from .results.conversion import Solution, first_restitution, result_of
 from .results.result import Curve, Result
-from .single_bodies import realised
+from .single_bodies import realise
 
 
 def solve(
@@ -158,7 +158,14 @@ def _result(
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
     bodies = None
     if problem.inputs.placement is not None and not stopped:
-        bodies = realised(problem, solution, lambda _, text: report(0.9, text), stop)
+        try:
+            bodies = realise(
+                problem, solution, lambda _, text: report(0.9, text), stop, rebounds=most is None
+            )
+        except SimulationError:
+            if stop is None or not stop.is_set():
+                raise
+            solution = solution._replace(outcome=Outcome.INTERRUPTED)
     return result_of(case, name, problem, solution, elastic, most, bodies)
 
 

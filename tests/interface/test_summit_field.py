@@ -11,20 +11,21 @@ FIELD = GaussianField(radius=5e-6, density=2e13, rms_height=2e-9, mean_height=0.
 
 
 def strewn(field, bodies, lowest, rng):
-    """Offsets of the three highest summits of bodies whose summits are strewn over a disc."""
+    """Offsets and heights of the three highest summits of bodies on a disc that is strewn."""
     far = np.sqrt(2.0 * field.radius * (field.mean_height + 6.0 * field.rms_height - lowest))
     rows = []
     for _ in range(bodies):
         count = rng.poisson(field.density * np.pi * far**2)
         heights = rng.normal(field.mean_height, field.rms_height, count)
-        squares = rng.uniform(0.0, far**2, count)
-        rows.append(np.sort(heights - squares / (2.0 * field.radius))[::-1][:3])
-    return np.array(rows)
+        offsets = heights - rng.uniform(0.0, far**2, count) / (2.0 * field.radius)
+        highest = np.argsort(-offsets)[:3]
+        rows.append((offsets[highest], heights[highest]))
+    return np.moveaxis(rows, 1, 0)
 
 
 def test_offsets_are_those_of_summits_strewn_over_a_plane():
     drawn = np.concatenate([FIELD.summits(5, block, 3)[0] for block in range(8)])
-    placed = strewn(FIELD, 2000, -20e-9, np.random.default_rng(1))
+    placed, _ = strewn(FIELD, 2000, -20e-9, np.random.default_rng(1))
     for k in range(3):
         assert ks_2samp(drawn[:, k], placed[:, k]).pvalue > 1e-3
 
@@ -100,3 +101,24 @@ def test_a_map_gives_its_summits_where_they_are():
     # Strewn evenly, they are a Poisson field but for their number, which is given.
     random = SampledField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES).summits(9, 0, 5)[0]
     assert np.mean(offsets[:, 0]) == pytest.approx(np.mean(random[:, 0]), abs=0.5e-9)
+
+
+def test_positions_make_the_offsets():
+    """With the heights that the highest of strewn summits have."""
+    heights = []
+    for seed in range(200):
+        offsets, positions = FIELD.summits(seed, 0, 3)[0][0], FIELD.positions(seed, 3)
+        heights.append(offsets + np.sum(positions**2, axis=1) / (2.0 * FIELD.radius))
+    drawn = np.array(heights)[:, 0]
+    _, placed = strewn(FIELD, 2000, -20e-9, np.random.default_rng(1))
+    assert ks_2samp(drawn, placed[:, 0]).pvalue > 1e-3
+
+
+def test_a_map_gives_the_positions_of_its_summits():
+    rng = np.random.default_rng(5)
+    measured = rng.uniform(0.0, 4e-6, (400, 2))
+    within = np.array([[1e-6, 1e-6], [3e-6, 3e-6]])
+    field = MeasuredField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES, measured, within)
+    offsets, positions = field.summits(9, 0, 5)[0][0], field.positions(9, 5)
+    heights = offsets + np.sum(positions**2, axis=1) / (2.0 * 5e-6)
+    assert np.all(np.min(np.abs(heights[:, None] - HEIGHTS), axis=1) < 1e-16)

@@ -32,7 +32,7 @@ def launched(density, count):
     bodies.field = dataclasses.replace(bodies.field, density=density * bodies.field.density)
     energy = density * 0.5 * float(problem.body.mass) * SPEED**2
     launches = Launch(np.full(count, energy), np.full(count, np.inf), np.zeros(count))
-    return bodies.impacts(launches, pulls=False)
+    return bodies.impacts(launches, with_pull_off=False)
 
 
 @pytest.mark.parametrize(

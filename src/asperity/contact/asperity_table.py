@@ -16,13 +16,13 @@ from .smooth import kinks_of
 _CELLS = 512  # between two gaps at which a law is not smooth
 _POINTS = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(4))
 _TO_POWERS = np.linalg.inv(np.vander(_POINTS, increasing=True)).T
-_OTHERS = 4096  # asperities that may draw one in, with all that each has to give
+_OTHERS = 4096  # asperities that may attract one, with all that each has to give
 _BEYOND = 1.01  # times where forces end: there, the table ends with none
-_EMPTY = 1e-9  # y: a stretch between two gaps that are one is passed within it
+_EMPTY = 1e-9  # y: a segment between two gaps that are one
 _LADDER = -1e-15 * 2.0 ** np.arange(0.0, 80.0)  # m, down to where a gap needs the largest energy
 
 APPROACH = -1
-"""Row of an asperity that comes from far away."""
+"""Branch of an asperity that comes from far away."""
 
 
 @kept
@@ -42,15 +42,15 @@ class AsperityTable(NamedTuple):
     rates
         Cells over y from each of these to the next, shape (classes, borders - 1).
     energy, slope
-        Energy [J] and its slope with the gap [N], shape (classes, rows, cells, 4): coefficients of
-        powers of the share of a cell. There is a row for each set of laws whose bond was formed,
-        and the last is that on approach, where each forms in its turn.
+        Energy [J] and its slope with the gap [N], shape (classes, branches, cells, 4): coefficients
+        of powers of the share of a cell. There is a branch for each set of laws whose bond is
+        formed, and the last is approach, on which each forms in its turn.
     forming, breaking
         Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (classes, laws).
     lost
         Energy [J] that each loses once made and broken, shape (classes, laws).
-    pulling
-        Gap [m] at which an asperity with all bonds pulls most, shape (classes,).
+    pull_off_gap
+        Gap [m] of the largest tension of an asperity with all bonds, shape (classes,).
     """
 
     scale: jax.Array
@@ -61,18 +61,18 @@ class AsperityTable(NamedTuple):
     forming: jax.Array
     breaking: jax.Array
     lost: jax.Array
-    pulling: jax.Array
+    pull_off_gap: jax.Array
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which an asperity feels nothing, shape (classes,)."""
         return self.scale * _stretched(self.borders[:, -1])
 
-    def of(self, kind: jax.Array) -> Asperities:
+    def of(self, size_class: jax.Array) -> Asperities:
         """Asperities of some classes, shape (n,)."""
         shared = ("energy", "slope")
-        rest = [leaf[kind].T for name, leaf in self._asdict().items() if name not in shared]
-        return Asperities(kind, self.energy, self.slope, *rest)
+        rest = [leaf[size_class].T for name, leaf in self._asdict().items() if name not in shared]
+        return Asperities(size_class, self.energy, self.slope, *rest)
 
 
 class Asperities(NamedTuple):
@@ -80,11 +80,11 @@ class Asperities(NamedTuple):
 
     Attributes
     ----------
-    kind
+    size_class
         Class of each, shape (n,).
     """
 
-    kind: jax.Array
+    size_class: jax.Array
     energy: jax.Array
     slope: jax.Array
     scale: jax.Array
@@ -93,10 +93,10 @@ class Asperities(NamedTuple):
     forming: jax.Array
     breaking: jax.Array
     lost: jax.Array
-    pulling: jax.Array
+    pull_off_gap: jax.Array
 
     @property
-    def reach(self) -> jax.Array:
+    def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which each feels nothing, shape (n,)."""
         return self.scale * _stretched(self.borders[-1])
 
@@ -105,7 +105,7 @@ class Asperities(NamedTuple):
         """Number of cells. Without values."""
         return self.energy.shape[2]
 
-    def first_gap(self, cells: np.ndarray) -> jax.Array:
+    def gaps_of_first(self, cells: np.ndarray) -> jax.Array:
         """Gap [m] of the first at a number of cells from the lowest on, shape (m,)."""
         borders = self.borders[:, 0]
         widths = jnp.diff(borders)
@@ -117,17 +117,17 @@ class Asperities(NamedTuple):
     ) -> jax.Array:
         """Separations [m] from one to another, spaced as the cells of the first about an origin."""
         scale = self.scale[0]
-        low, high = (_even((place - origin) / scale) for place in (start, end))
+        low, high = (_even((position - origin) / scale) for position in (start, end))
         return origin + scale * _stretched(low + (high - low) * shares)
 
-    def row(self, gap: jax.Array) -> jax.Array:
-        """Row of each that came to a gap [m] and leaves again, shape (n,)."""
+    def branch(self, gap: jax.Array) -> jax.Array:
+        """Branch of each that came to a gap [m] and leaves again, shape (n,)."""
         formed = gap <= self.forming
         return jnp.tensordot(2 ** np.arange(formed.shape[0]), formed, axes=1)
 
-    def work(self, gap: jax.Array, row: jax.Array | int = APPROACH) -> jax.Array:
+    def work(self, gap: jax.Array, branch: jax.Array | int = APPROACH) -> jax.Array:
         """Work [J] of each from far away to a gap [m], shape (n,)."""
-        return _work(self, gap, jnp.asarray(row))
+        return _work(self, gap, jnp.asarray(branch))
 
 
 def _stretched(y: jax.Array) -> jax.Array:
@@ -140,52 +140,52 @@ def _even(gap: jax.Array) -> jax.Array:
 
 
 @jax.custom_jvp
-def _work(some: Asperities, gap: jax.Array, row: jax.Array) -> jax.Array:
-    return _read(some.energy, some.kind, row, *_cell(some, gap))
+def _work(some: Asperities, gap: jax.Array, branch: jax.Array) -> jax.Array:
+    return _read(some.energy, some.size_class, branch, *_cell(some, gap))
 
 
 @_work.defjvp
 def _work_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
     """With respect to the gap alone."""
-    some, gap, row = primals
-    at = (some.kind, row, *_cell(some, gap))
+    some, gap, branch = primals
+    at = (some.size_class, branch, *_cell(some, gap))
     return _read(some.energy, *at), _read(some.slope, *at) * tangents[1]
 
 
 def _cell(some: Asperities, gap: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Cell of a gap, and the share of it that lies below."""
-    place, number = _even(gap / some.scale), jnp.zeros_like(gap)
+    position, number = _even(gap / some.scale), jnp.zeros_like(gap)
     for low, rate in zip(some.borders, some.rates, strict=False):
-        number = number + jnp.clip((place - low) * rate, 0.0, _CELLS)
+        number = number + jnp.clip((position - low) * rate, 0.0, _CELLS)
     cell = jnp.clip(number.astype(jnp.int32), 0, some.cells - 1)
     return cell, number - cell
 
 
 def _read(
-    values: jax.Array, kind: jax.Array, row: jax.Array, cell: jax.Array, share: jax.Array
+    values: jax.Array, size_class: jax.Array, branch: jax.Array, cell: jax.Array, share: jax.Array
 ) -> jax.Array:
-    powers = values[kind, row, cell]
+    powers = values[size_class, branch, cell]
     value = powers[..., 3]
     for k in (2, 1, 0):
         value = value * share + powers[..., k]
     return value
 
 
-def _stretches(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Scale of a table from a gap ``low`` on, and the borders of the stretches of its cells."""
+def _segments(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Scale of a table from a gap ``low`` on, and the borders of its segments."""
     every, kinks = terms(law), kinks_of(law)
     sizes = jnp.stack([*jnp.abs(kinks), *(jnp.asarray(one.length, float) for one in every)])
     shortest = jnp.min(jnp.where((sizes > 0.0) & jnp.isfinite(sizes), sizes, jnp.inf))
     scale = jnp.minimum(shortest, -1e-3 * low)
     ranges = [jnp.asarray(one.interaction_range, float) for one in every]
-    reach = _BEYOND * jnp.max(jnp.stack([scale, jnp.max(kinks), *ranges]))
-    outer = jnp.stack([low, reach])
+    interaction_range = _BEYOND * jnp.max(jnp.stack([scale, jnp.max(kinks), *ranges]))
+    outer = jnp.stack([low, interaction_range])
     gaps = jnp.sort(jnp.concatenate([jnp.clip(kinks, *outer), outer]))
     return scale, _even(gaps / scale)
 
 
 def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
-    """The table of a law, down to a gap that needs more than an energy [J] and others can give."""
+    """The table of a law, down to a gap that needs more energy [J] than a body and others give."""
     every = terms(law)
     hysteretic = [one for one in every if one.hysteretic]
 
@@ -203,11 +203,11 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
     ladder = jnp.asarray(_LADDER)
     needed = work(ladder, None)
     low = ladder[jnp.argmax(needed > energy - _OTHERS * jnp.minimum(jnp.min(needed), 0.0))]
-    scale, borders = _stretches(law, low)
+    scale, borders = _segments(law, low)
     widths = jnp.diff(borders)
     steps = np.arange(_CELLS)[:, None] + _POINTS
-    places = borders[:-1, None, None] + (widths / _CELLS)[:, None, None] * steps
-    gap = scale * _stretched(places).reshape(-1, _POINTS.size)
+    positions = borders[:-1, None, None] + (widths / _CELLS)[:, None, None] * steps
+    gap = scale * _stretched(positions).reshape(-1, _POINTS.size)
     sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]
 
     def fitted(formed: tuple[bool, ...] | None) -> jax.Array:
@@ -217,7 +217,7 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
     def each(values: list[Real]) -> jax.Array:
         return jnp.stack([jnp.asarray(x, float) for x in values]) if values else jnp.zeros(0)
 
-    pulls = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
+    tension = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
     energy, slope = jnp.stack([fitted(formed) for formed in (*sets, None)], axis=1)
     return AsperityTable(
         scale,
@@ -228,7 +228,7 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         each([one.forming_gap for one in hysteretic]),
         each([one.breaking_gap for one in hysteretic]),
         each([one.formation_loss + one.rupture_loss for one in hysteretic]),
-        gap.ravel()[jnp.argmax(pulls)],
+        gap.ravel()[jnp.argmax(tension)],
     )
 
 

@@ -14,13 +14,13 @@ from ..laws.law import Real
 from ..numerics.compilation import Program, kept
 from ..numerics.roots import root_between
 
-_LOOKS = 48  # at the energy on the way in, and on the way out besides the ends of bonds
-_FINER = 16  # between two of them on the way in
-_ROUNDS, _NEAR = 3, 7  # of looks about the least energy on the way out
-_ABOUT = np.linspace(-1.0, 1.0, 9)  # times the range of bonds, about each summit: where to look
+_SEPARATIONS = 48  # separations on approach, and on retraction besides the ends of bonds
+_FINER = 16  # between two of them on approach
+_ROUNDS, _NEAR = 3, 7  # about the least energy on retraction
+_ABOUT = np.linspace(-1.0, 1.0, 9)  # times the range of bonds, about each summit
 _CLOSE = 1e-14  # of a separation: less is lost in rounding
 _AT_ONCE = 1 << 14  # gaps that are held in memory together: more leave the cache
-_SHARES = np.linspace(0.0, 1.0, _LOOKS + 1)
+_SHARES = np.linspace(0.0, 1.0, _SEPARATIONS + 1)
 
 
 class Launch(NamedTuple):
@@ -48,27 +48,28 @@ class SingleImpact(NamedTuple):
     Attributes
     ----------
     closest_approach
-        Separation [m] at which it turns; NaN where none is found in the table.
+        Separation [m] of the turning point; NaN where none is found in the table.
     captured
-        Whether it does not come out of the reach of its summits.
+        Whether it does not leave the interaction range of its summits.
     impact_energy
-        Kinetic energy where forces begin, on the way in [J].
+        Kinetic energy where forces begin, on approach [J].
     restitution
-        Square root of the ratio of that on the way out, to it; 0 where the body is captured.
+        Square root of the ratio of that on retraction to it; 0 where the body is captured.
     contacting
-        Summits that touch at the turn.
+        Summits in contact at the turning point.
     maximum_force
         Contact force there [N].
     loaded
         Effective number of loaded summits there, (sum F)^2 / sum F^2.
     bonds
-        Bonds of each law at the turn, shape (laws,).
+        Bonds of each law there, shape (laws,).
     lost
         Energy [J] that they take by the time all are broken, shape (laws,).
     pull_off
-        Largest tension on the way out [N]; NaN where it is not asked for.
-    within_reach
-        Summits within reach at the turn; where those are all that were given, there may be more.
+        Largest tension on retraction [N]; NaN where it is not asked for.
+    within_range
+        Summits within their interaction range there; where those are all that were given, there may
+        be more.
     """
 
     closest_approach: jax.Array
@@ -81,51 +82,59 @@ class SingleImpact(NamedTuple):
     bonds: jax.Array
     lost: jax.Array
     pull_off: jax.Array
-    within_reach: jax.Array
+    within_range: jax.Array
 
 
 def _impact(
-    table: AsperityTable, pulls: bool, launch: Launch, offsets: jax.Array, kinds: jax.Array
+    table: AsperityTable, wanted: bool, launch: Launch, offsets: jax.Array, classes: jax.Array
 ) -> SingleImpact:
-    """One body, on summits with descending ``offsets`` [m]; its pull-off force where it ``pulls``.
+    """One body, on summits with descending ``offsets`` [m]; its pull-off force where ``wanted``.
 
     Bodies do not deform in bulk, so that all summits move alike: the energy is the sum of theirs.
     """
-    summits = table.of(kinds)
-    top = jnp.minimum(launch.release, jnp.max(offsets + summits.reach))
+    summits = table.of(classes)
+    top = jnp.minimum(launch.release, jnp.max(offsets + summits.interaction_range))
     begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
 
-    def fallen(place: jax.Array) -> jax.Array:
-        return launch.kinetic + launch.weight * (begin - place)
+    def external(separation: jax.Array) -> jax.Array:
+        return launch.kinetic + launch.weight * (begin - separation)
 
-    def on_way_in(place: jax.Array) -> jax.Array:
-        return fallen(place) - jnp.sum(summits.work(place - offsets))
+    def energy_on_approach(separation: jax.Array) -> jax.Array:
+        return external(separation) - jnp.sum(summits.work(separation - offsets))
 
-    turn = _turn(summits, on_way_in, offsets, top)
-    gaps = turn - offsets
-    row = summits.row(gaps)
+    turning_point = _turning_point(summits, energy_on_approach, offsets, top)
+    gaps = turning_point - offsets
+    branch = summits.branch(gaps)
 
-    def on_way_out(place: jax.Array) -> jax.Array:
-        return fallen(place) - jnp.sum(summits.work(place - offsets, row))
+    def energy_on_retraction(separation: jax.Array) -> jax.Array:
+        return external(separation) - jnp.sum(summits.work(separation - offsets, branch))
 
-    def force(place: jax.Array) -> jax.Array:
-        return jax.jvp(on_way_out, (place,), (jnp.ones_like(place),))[1] + launch.weight
+    def force(separation: jax.Array) -> jax.Array:
+        one = jnp.ones_like(separation)
+        return jax.jvp(energy_on_retraction, (separation,), (one,))[1] + launch.weight
 
     held = gaps <= summits.forming
     ends = jnp.where(held, offsets + summits.breaking, top).ravel()
     ends = ends - _CLOSE * jnp.abs(ends)  # just before they break
-    # Closest together at the turn, and where the first summit has its forces.
-    near = [summits.between(turn, top, origin, _SHARES[2::2]) for origin in (turn, offsets[0])]
-    even = jnp.sort(jnp.concatenate(near))
-    places = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
-    step = jnp.interp(places, even, jnp.diff(even, prepend=turn))
-    left = _least(on_way_out, places, step, (even[0], top))
-    before, after = on_way_in(top), on_way_out(top)
+    # Closest together at the turning point, and where the first summit has its forces.
+    shares = _SHARES[2::2]
+    near_turn, near_first = (
+        summits.between(turning_point, top, origin, shares)
+        for origin in (turning_point, offsets[0])
+    )
+    even = jnp.sort(jnp.append(near_turn, near_first))
+    separations = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
+    step = jnp.interp(separations, even, jnp.diff(even, prepend=turning_point))
+    left = _least(energy_on_retraction, separations, step, (even[0], top))
+    before, after = energy_on_approach(top), energy_on_retraction(top)
     captured = jnp.minimum(left, after) < 0.0
     each = -jax.jvp(summits.work, (gaps,), (jnp.ones_like(gaps),))[1]
     squares = jnp.sum(each**2)
+    pull_off = jnp.asarray(jnp.nan)
+    if wanted:
+        pull_off = _pull_off(summits, force, offsets, separations, step)
     return SingleImpact(
-        closest_approach=turn,
+        closest_approach=turning_point,
         captured=captured,
         impact_energy=before,
         restitution=jnp.where(captured, 0.0, jnp.sqrt(jnp.maximum(after, 0.0) / before)),
@@ -134,73 +143,77 @@ def _impact(
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
         bonds=jnp.sum(held, axis=1).astype(float),
         lost=jnp.sum(held * summits.lost, axis=1),
-        pull_off=_pull(summits, force, offsets, places, step) if pulls else jnp.asarray(jnp.nan),
-        within_reach=jnp.sum(gaps <= summits.reach),
+        pull_off=pull_off,
+        within_range=jnp.sum(gaps <= summits.interaction_range),
     )
 
 
 Along = Callable[[jax.Array], jax.Array]
 
 
-def _turn(summits: Asperities, energy: Along, offsets: jax.Array, top: jax.Array) -> jax.Array:
-    """The first separation [m] on the way in at which the energy is spent."""
-    gaps = summits.first_gap(summits.cells * (1.0 - _SHARES))
-    places = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
+def _turning_point(
+    summits: Asperities, energy: Along, offsets: jax.Array, top: jax.Array
+) -> jax.Array:
+    """The first separation [m] on approach at which the energy is spent."""
+    gaps = summits.gaps_of_first(summits.cells * (1.0 - _SHARES))
+    separations = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
     found = jnp.asarray(True)
     for _ in range(2):
-        spent = jax.vmap(energy)(places) < 0.0
+        spent = jax.vmap(energy)(separations) < 0.0
         found = found & jnp.any(spent)
         after = jnp.maximum(jnp.argmax(spent), 1)
-        inner, outer = places[after - 1], places[after]
-        places = inner + (outer - inner) * np.linspace(0.0, 1.0, _FINER + 1)
-    turn = root_between(energy, inner, outer, _CLOSE * (jnp.abs(outer) + summits.reach[0]))
-    return jnp.where(found, turn, jnp.nan)
+        inner, outer = separations[after - 1], separations[after]
+        separations = inner + (outer - inner) * np.linspace(0.0, 1.0, _FINER + 1)
+    turning_point = root_between(
+        energy, inner, outer, _CLOSE * (jnp.abs(outer) + summits.interaction_range[0])
+    )
+    return jnp.where(found, turning_point, jnp.nan)
 
 
-def _pull(
-    summits: Asperities, force: Along, offsets: jax.Array, places: jax.Array, step: jax.Array
+def _pull_off(
+    summits: Asperities, force: Along, offsets: jax.Array, separations: jax.Array, step: jax.Array
 ) -> jax.Array:
-    """The largest tension on the way out [N]; there are about as many as there are summits."""
-    widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pulling)))
+    """The largest tension on retraction [N]; it has about as many maxima as there are summits."""
+    widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pull_off_gap)))
     about = (offsets[:, None] + widest * _ABOUT).ravel()
-    within = jnp.min(places), jnp.max(places)
-    more = jnp.clip(jnp.concatenate([offsets + summits.pulling, about]), *within)
+    within = jnp.min(separations), jnp.max(separations)
+    more = jnp.clip(jnp.concatenate([offsets + summits.pull_off_gap, about]), *within)
     steps = jnp.minimum(jnp.append(step, jnp.full(more.shape, widest)), widest)
-    return -jnp.minimum(_least(force, jnp.append(places, more), steps, within), 0.0)
+    return -jnp.minimum(_least(force, jnp.append(separations, more), steps, within), 0.0)
 
 
 def _least(
-    value: Along, places: jax.Array, step: jax.Array, within: tuple[jax.Array, jax.Array]
+    value: Along, separations: jax.Array, step: jax.Array, within: tuple[jax.Array, jax.Array]
 ) -> jax.Array:
-    """The least value along a way, looked at ``places`` that are a ``step`` [m] apart."""
+    """The least value at some separations that are a ``step`` [m] apart, and about it."""
 
     def nearer(_: int, now: tuple[jax.Array, ...]) -> tuple[jax.Array, ...]:
-        place, width, _least = now
-        near = jnp.clip(place + width * np.linspace(-1.0, 1.0, _NEAR), *within)
+        separation, width, _least = now
+        near = jnp.clip(separation + width * np.linspace(-1.0, 1.0, _NEAR), *within)
         found = jax.vmap(value)(near)
         best = jnp.argmin(found)
         return near[best], width * 2.0 / (_NEAR - 1), found[best]
 
-    found = jax.vmap(value)(places)
+    found = jax.vmap(value)(separations)
     best = jnp.argmin(found)
-    return jax.lax.fori_loop(0, _ROUNDS, nearer, (places[best], step[best], found[best]))[2]
+    return jax.lax.fori_loop(0, _ROUNDS, nearer, (separations[best], step[best], found[best]))[2]
 
 
 def _impacts(
     table: AsperityTable,
     launches: Launch,
     offsets: jax.Array,
-    kinds: jax.Array,
-    pulls: bool = True,
+    classes: jax.Array,
+    wanted: bool = True,
 ) -> SingleImpact:
     bodies, summits = offsets.shape
     together = bodies
-    while together > 1 and together * 2 * _LOOKS * summits > _AT_ONCE:
+    while together > 1 and together * 2 * _SEPARATIONS * summits > _AT_ONCE:
         together //= 2
     jobs = jax.tree_util.tree_map(
-        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), (launches, offsets, kinds)
+        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), (launches, offsets, classes)
     )
-    found = jax.lax.map(lambda job: jax.vmap(partial(_impact, table, pulls))(*job), jobs)
+    found = jax.lax.map(lambda job: jax.vmap(partial(_impact, table, wanted))(*job), jobs)
     return jax.tree_util.tree_map(lambda leaf: leaf.reshape(bodies, *leaf.shape[2:]), found)
 
 

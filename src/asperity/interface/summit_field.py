@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
 WIDTH = 256
 """Bodies whose summits are drawn together: the numbers depend on nothing else."""
@@ -64,6 +64,20 @@ class SummitField(abc.ABC):
         Offsets [m], descending, and classes of tip radius, both of shape (WIDTH, count).
         """
 
+    @abc.abstractmethod
+    def positions(self, seed: int, count: int) -> np.ndarray:
+        """Where the highest summits under the first body of a draw stand.
+
+        Parameters
+        ----------
+        seed, count
+            As for :meth:`summits`.
+
+        Returns
+        -------
+        Coordinates [m] from the axis of the body, shape (count, 2), in the order of their offsets.
+        """
+
 
 class RandomField(SummitField):
     """A Poisson field: offsets are a Poisson process too.
@@ -77,6 +91,18 @@ class RandomField(SummitField):
         number = np.cumsum(draws, axis=0).T
         offsets = self._inverse(number / (2.0 * pi * self.radius * self.density))
         return offsets, self._classes(np.random.default_rng([seed, block, 1]), offsets)
+
+    def positions(self, seed: int, count: int) -> np.ndarray:
+        """In any direction, at the distance that height and offset make."""
+        offsets = self.summits(seed, 0, count)[0][:1]
+        heights = self._heights(np.random.default_rng([seed, 0, 1]), offsets)
+        distance = np.sqrt(2.0 * self.radius * (heights - offsets))[0]
+        angle = np.random.default_rng([seed, 0, 2]).uniform(0.0, 2.0 * pi, count)
+        return np.stack([distance * np.cos(angle), distance * np.sin(angle)], axis=1)
+
+    @abc.abstractmethod
+    def _heights(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        """Heights [m] of summits with some offsets: all that are higher are as likely."""
 
     @abc.abstractmethod
     def _inverse(self, mean: np.ndarray) -> np.ndarray:
@@ -102,6 +128,11 @@ class GaussianField(RandomField):
 
     def _mean_above(self, offset: np.ndarray) -> np.ndarray:
         return self.rms_height * _above((offset - self.mean_height) / self.rms_height)
+
+    def _heights(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        lowest = ndtr((self.mean_height - offsets) / self.rms_height)
+        shares = lowest * random.random(offsets.shape)
+        return self.mean_height - self.rms_height * ndtri(shares)
 
     def _inverse(self, mean: np.ndarray) -> np.ndarray:
         """By Newton's method."""
@@ -149,43 +180,57 @@ class SampledField(RandomField):
         found: np.ndarray = np.where(mean > known[-1], np.mean(self.heights) - mean, between)
         return found
 
+    def _heights(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        return self.heights[self._which(random, offsets)]
+
     def _classes(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
-        """Of all summits that are higher any one is as likely."""
+        return self.classes[self._which(random, offsets)]
+
+    def _which(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
+        """Which summits they are: of all that are higher any one is as likely."""
         higher = np.maximum(np.searchsorted(-self.heights, -offsets), 1)
-        draws = random.random(offsets.shape[::-1]).T  # a summit's is the same for any number
-        return self.classes[(draws * higher).astype(int)]
+        draws = random.random((offsets.shape[1], WIDTH)).T[: offsets.shape[0]]
+        return (draws * higher).astype(int)
 
 
 @dataclass(frozen=True)
 class MeasuredField(SampledField):
-    """The summits of a map where they are, with the bodies put down at random places of it.
+    """The summits of a map where they are, with the bodies put down at random centres of it.
 
     Parameters
     ----------
-    positions
-        Of the summits on the map [m], shape (n, 2), in the order of ``heights``.
+    measured
+        Coordinates of the summits on the map [m], shape (n, 2), in the order of ``heights``.
     within
-        Least and largest coordinates of the places [m], shape (2, 2): as far from the edges as
+        Least and largest coordinates of the centres [m], shape (2, 2): as far from the edges as
         forces reach.
     """
 
-    positions: np.ndarray
+    measured: np.ndarray
     within: np.ndarray
 
     def summits(self, seed: int, block: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-        places = np.random.default_rng([seed, block]).uniform(
-            self.within[0], self.within[1], (WIDTH, 2)
-        )
+        centres = self._centres(seed, block)
         offsets = np.full((WIDTH, count), _FAR)
         classes = np.zeros((WIDTH, count), np.int32)
         kept = min(count, self.heights.size)
-        for body, place in enumerate(places):
-            squares = np.sum((self.positions - place) ** 2, axis=1)
+        for body, centre in enumerate(centres):
+            squares = np.sum((self.measured - centre) ** 2, axis=1)
             all_offsets = self.heights - squares / (2.0 * self.radius)
             highest = np.argsort(-all_offsets, kind="stable")[:kept]
             offsets[body, :kept] = all_offsets[highest]
             classes[body, :kept] = self.classes[highest]
         return offsets, classes
+
+    def _centres(self, seed: int, block: int) -> np.ndarray:
+        """Where the axes of WIDTH bodies are put down [m], shape (WIDTH, 2)."""
+        low, high = self.within
+        return np.random.default_rng([seed, block]).uniform(low, high, (WIDTH, 2))
+
+    def positions(self, seed: int, count: int) -> np.ndarray:
+        from_axis = self.measured - self._centres(seed, 0)[0]
+        offsets = self.heights - np.sum(from_axis**2, axis=1) / (2.0 * self.radius)
+        return from_axis[np.argsort(-offsets, kind="stable")[:count]]
 
 
 def _above(x: np.ndarray) -> np.ndarray:

@@ -20,8 +20,8 @@ def figure(result: Result | Curve, *parts: str) -> Figure:
     result : Result or Curve
         What to draw.
     *parts : str
-        Of "motion", "forces" and "energy" for a result, and "bodies" where it has single bodies;
-        "curve" for a curve.
+        Of "motion", "forces" and "energy" for a result, and "bodies" and "summits" where it has
+        single bodies; "curve" for a curve.
 
     Raises
     ------
@@ -65,4 +65,5 @@ def _rows(result: Result | Curve) -> dict[str, Row]:
     }
     if result.realisations is not None:
         rows["bodies"] = bodies_plot.panels(result, result.realisations)
+        rows["summits"] = bodies_plot.summits(result.realisations)
     return rows

@@ -59,3 +59,27 @@ def _shares(
     axes.set(xlabel=label, ylabel="share of the bodies [-]")
     if legend:
         style.legend_above(axes)
+
+
+def summits(found: Realisations) -> Row:
+    """The first body seen from above at its turning point, on its summits."""
+    return [Panel(1.0, lambda axes: _from_above(axes, **found.first))]
+
+
+def _from_above(axes: Axes, x: np.ndarray, y: np.ndarray, gap: np.ndarray) -> None:
+    metres, unit = style.scale_of(x, y, unit="m")
+    near = gap < 0.0
+    for chosen, tint, label in (
+        (near, colour("gas"), "summits in contact"),
+        (~near, "none", "within the range of their forces"),
+    ):
+        axes.plot(
+            x[chosen] / metres, y[chosen] / metres, "o", ms=4.0, mec=colour("gas"), mfc=tint,
+            mew=0.8, label=label,
+        )  # fmt: skip
+    axes.plot([0.0], [0.0], "+", ms=5.0, mew=0.8, color=colour("contact"), label="axis")
+    farthest = 1.1 * max(float(np.max(np.hypot(x, y))), 1e-30) / metres
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlim=(-farthest, farthest), ylim=(-farthest, farthest))
+    axes.set(xlabel=style.label("x", unit), ylabel=style.label("y", unit))
+    style.legend_above(axes, rows=2)

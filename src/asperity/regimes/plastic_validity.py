@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from .._jax import jax, jnp
+from ..asperity_laws import plastic_law
 from ..inputs import Inputs
 from ..laws.law import as_float64
 from ..laws.plastic import PlasticContact
 from ..materials.solids import Solid, named
-from ..model import plastic_law
 from ..numerics.compilation import AT_ONCE, Program
 from ..surfaces.heights import Gaussian
 

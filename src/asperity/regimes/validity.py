@@ -191,7 +191,13 @@ def _few(contacting: float) -> str:
 
 def _single_bodies(inputs: Inputs) -> str:
     """Where the distribution over single bodies can be had."""
-    if inputs.structure.deformation != "rigid" or inputs.structure.heights != "gaussian":
+    made_of = inputs.structure
+    elsewhere = (
+        made_of.deformation != "rigid", inputs.yields, made_of.gas, made_of.waves,
+        made_of.published, made_of.suspension != "none", made_of.liquid == "kelvin-filling",
+        inputs.formation_time > 0.0,
+    )  # fmt: skip
+    if any(elsewhere):
         return ""
     return "; `placement` = 'random' in [roughness] has single bodies beside it"
 

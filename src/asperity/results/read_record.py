@@ -102,16 +102,17 @@ def _result(
         events={key: arrays.get(key, nothing) for key in _EVENTS},
         **{key: json.loads(said[key]) for key in ("regime", "measures", "ledger", "warnings")},
         surface=json.loads(said["surface"]) if "surface" in said else None,
-        realisations=_realisations(_below(arrays, record_layout.BODY)),
+        realisations=_realisations(arrays),
     )
 
 
-def _realisations(arrays: dict[str, np.ndarray]) -> Realisations | None:
-    if not arrays:
+def _realisations(arrays: Mapping[str, np.ndarray]) -> Realisations | None:
+    bodies = _below(arrays, record_layout.BODY)
+    if not bodies:
         return None
-    captured, lost = arrays.pop("captured") > 0.5, _below(arrays, "lost_")
-    values = {name: values for name, values in arrays.items() if name in KINDS}
-    return Realisations(captured, values, lost)
+    captured, lost = bodies.pop("captured") > 0.5, _below(bodies, "lost_")
+    values = {name: values for name, values in bodies.items() if name in KINDS}
+    return Realisations(captured, values, lost, _below(arrays, record_layout.SUMMIT))
 
 
 def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:

@@ -15,11 +15,11 @@ QUANTILES = (0.1, 0.5, 0.9)
 
 KINDS = {
     "restitution": ("1", "coefficient of restitution, 0 where captured"),
-    "contacting": ("1", "summits that touch at the turn"),
-    "loaded": ("1", "effective number of loaded summits at the turn, (sum F)^2 / sum F^2"),
-    "maximum_force": ("N", "contact force at the turn"),
-    "pull_off": ("N", "largest tension on the way out"),
-    "closest_approach": ("m", "rigid separation at the turn"),
+    "contacting": ("1", "summits in contact at the turning point"),
+    "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2"),
+    "maximum_force": ("N", "contact force there"),
+    "pull_off": ("N", "largest tension on retraction"),
+    "closest_approach": ("m", "rigid separation of the turning point"),
     "rebounds": ("1", "rebounds before the impact that captures, infinite where none is found"),
     "flight_time": ("s", "time that these rebounds take in flight, likewise"),
 }
@@ -38,11 +38,15 @@ class Realisations:
         What is known of each, by the names of `KINDS`; as long as ``captured``.
     lost : dict of str to numpy.ndarray
         Energy [J] that its bonds take, once all are broken, by mechanism; likewise.
+    first : dict of str to numpy.ndarray
+        The summits within range of the first body at its turning point: "x" and "y", their
+        coordinates from its axis, and their "gap" [m].
     """
 
     captured: np.ndarray
     values: dict[str, np.ndarray]
     lost: dict[str, np.ndarray]
+    first: dict[str, np.ndarray]
 
     @property
     def size(self) -> int:
@@ -101,7 +105,7 @@ def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> t
     return float(low), float(high)
 
 
-def kept(restitution: float) -> str:
+def restitution_text(restitution: float) -> str:
     """A restitution at as many digits as tell it from 1."""
     return f"{restitution:.{3 if restitution < 0.9995 else 6}g}"
 

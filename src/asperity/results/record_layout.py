@@ -22,8 +22,8 @@ KIND = "asperity_record"
 VERSION = 2
 """Version of this layout."""
 
-BODY = "body_"
-"""What the names of variables of single bodies begin with."""
+BODY, SUMMIT = "body_", "summit_"
+"""What the names of variables of single bodies begin with, and those of the first one's summits."""
 
 _FORCES = {
     "weight": "weight",
@@ -221,6 +221,10 @@ def _bodies(found: Realisations) -> list[Variable]:
     for name, values in found.lost.items():
         meaning = f"energy that bonds take from a single body, {name}"
         rows.append(Variable(f"{BODY}lost_{name}", along, values, "J", meaning))
+    summits = {"x": "coordinate from the axis", "y": "other coordinate", "gap": "gap"}
+    for name, meaning in summits.items():
+        meaning += " of a summit under the first body, at its turning point"
+        rows.append(Variable(f"{SUMMIT}{name}", ("summit",), found.first[name], "m", meaning))
     return rows
 
 

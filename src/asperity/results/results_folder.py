@@ -15,7 +15,7 @@ RUN_FILES = (
     "record.nc",
     *(
         f"{name}.{kind}"
-        for name in ("motion", "forces", "energy", "bodies")
+        for name in ("motion", "forces", "energy", "bodies", "summits")
         for kind in ("png", "svg")
     ),
     "summary.txt",

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.config.amounts import amount as amount
 from asperity.config.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
+from asperity.results.bodies_text import bodies_rows
 from asperity.results.impact_table import cell_text, impact_table
-from asperity.results.realisations import KINDS, kept, percent
 from asperity.results.shares import share_texts
 from asperity.results.verdict import sentence
 
@@ -45,7 +44,7 @@ def of_result(
             *_heading(result.name, _ended(result)),
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
-            *_section("Single bodies", _bodies(result)),
+            *_section("Single bodies", bodies_rows(result)),
             *_section("Surface", _surface(result.surface)),
             *_section("Regime", _regime(result.regime)),
             *_chosen(result.regime),
@@ -72,7 +71,7 @@ def brief(result: ResultData, *, published: bool | None = None) -> str:
             f"{result.name}: {result.outcome.value}",
             *_wrapped(_ended(result)),
             *_section("", rows),
-            *_section("Single bodies", _bodies(result)),
+            *_section("Single bodies", bodies_rows(result)),
             *_chosen(result.regime),
             *impact_table(result, FEW, published),
             *warning_lines(result.warnings),
@@ -85,7 +84,7 @@ def shown_of(result: ResultData) -> tuple[str, list[tuple[str, list[tuple[str, s
     parts = {
         "Motion": _motion(result.measures),
         "Energy": _energy(result.ledger),
-        "Single bodies": _bodies(result),
+        "Single bodies": bodies_rows(result),
         "Surface": _surface(result.surface),
     }
     return _ended(result), [(title, _known(rows)) for title, rows in parts.items()]
@@ -165,55 +164,6 @@ def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
     error = ledger.get("energy_balance_error")
     closed = "-" if error is None else f"{error:.1e} of the impact energy"
     return [*rows, ("balance closes to", closed)]
-
-
-def _bodies(result: ResultData) -> list[tuple[str, str]]:
-    """First impacts of single bodies, beside the mean over all."""
-    found = result.realisations
-    if found is None:
-        return []
-    measures, first = result.measures, (result.measures.get("restitution") or [None])[0]
-    low, high = (percent(share) for share in found.capture_interval)
-    mean = {
-        "restitution": first,
-        "contacting": result.regime.get("contacting_asperities"),
-        "maximum_force": measures.get("maximum_force"),
-        "pull_off": measures.get("pull_off"),
-    }
-    labels = {
-        "restitution": "restitution",
-        "contacting": "touching at the turn",
-        "loaded": "loaded, effectively",
-        "maximum_force": "largest force",
-        "pull_off": "pull-off force",
-        "rebounds": "rebounds until captured",
-        "flight_time": "time in flight until then",
-    }
-    captured = f"{percent(found.capture_probability)} %  (95 % interval: {low} to {high} %)"
-    rows = [("bodies", str(found.size)), ("captured at first impact", captured)]
-    for name, label in labels.items():
-        quantiles = found.quantiles(name)
-        if isfinite(quantiles[0]):  # of rebounds none, where no body was captured in those followed
-            rows.append((label, _spread(quantiles, KINDS[name][0], mean.get(name))))
-    lost = result.ledger.get("lost") or {}
-    once = len(measures.get("restitution") or []) == 1
-    for name in found.lost:
-        told = lost.get(name) if once else None
-        rows.append((f"lost to {name}", _spread(found.quantiles(name), "J", told)))
-    return rows
-
-
-def _spread(quantiles: Sequence[float], unit: str, mean: float | None) -> str:
-    """The median, what lies 10 % below and above, and the mean field's value."""
-
-    def told(value: float) -> str:
-        if unit == "1" and 0.9995 <= value < 1.0:
-            return kept(value)
-        return amount(value, "" if unit == "1" else unit) if isfinite(value) else "more"
-
-    low, median, high = (told(value) for value in quantiles)
-    beside = "" if mean is None else f"; mean field: {told(mean)}"
-    return f"{median}  ({low} to {high}{beside})"
 
 
 def _regime(regime: dict[str, Any]) -> list[tuple[str, str]]:

@@ -8,8 +8,7 @@ import numpy as np
 
 from asperity.errors import Outcome
 from asperity.regimes import missed
-from asperity.results.realisations import Realisations, percent
-from asperity.results.realisations import kept as kept_text
+from asperity.results.realisations import Realisations, percent, restitution_text
 
 if TYPE_CHECKING:
     from asperity.results.result_data import ResultData
@@ -76,7 +75,8 @@ def _bodies(found: Realisations) -> str:
     median = found.quantiles("restitution")[1]
     return (
         f"Of single bodies {percent(found.capture_probability)} % are captured at the first impact "
-        f"(95 % interval: {low} to {high} %); their median restitution is {kept_text(median)}"
+        f"(95 % interval: {low} to {high} %); their median restitution is "
+        f"{restitution_text(median)}"
     )
 
 
@@ -87,7 +87,7 @@ def _first(measures: dict[str, Any]) -> str:
         return "is captured at the first impact"
     if kept is None:
         return ""
-    return f"leaves the first impact with e = {kept_text(kept)}"
+    return f"leaves the first impact with e = {restitution_text(kept)}"
 
 
 def unjudged(result: ResultData) -> bool:

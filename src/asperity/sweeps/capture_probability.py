@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
 
@@ -28,6 +29,8 @@ class CaptureProbability:
         How many were launched at each speed.
     probability, low, high : numpy.ndarray
         Share of them that is captured, and its interval at 95 %, shape (speeds,).
+    mean, mean_error : numpy.ndarray
+        Mean restitution, 0 where captured, and its standard error, shape (speeds,).
     restitution : numpy.ndarray
         Quantiles of their restitution, 0 where captured, shape (speeds, 3); see
         `asperity.results.realisations.QUANTILES`.
@@ -42,6 +45,8 @@ class CaptureProbability:
     probability: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    mean: np.ndarray
+    mean_error: np.ndarray
     restitution: np.ndarray
     half_velocity: float | None
     half_interval: tuple[float | None, float | None]
@@ -53,6 +58,8 @@ class CaptureProbability:
             "captured share [-]": self.probability,
             "its lower bound [-]": self.low,
             "its upper bound [-]": self.high,
+            "mean restitution [-]": self.mean,
+            "its standard error [-]": self.mean_error,
             **{f"restitution, quantile {q:g} [-]": values for q, values in quantiles.items()},
         }
 
@@ -85,43 +92,54 @@ def capture_probability(
     placed, body = problem.inputs.placement, problem.body
     if placed is None:
         return None
-    turn = float(np.asarray(mean.motion.impacts.closest_approach)[0])
-    bodies, count = SingleBodies(problem, turn), placed.realisations
+    turning_point = float(np.asarray(mean.motion.impacts.closest_approach)[0])
+    bodies, count = SingleBodies(problem, turning_point), placed.realisations
     mass, weight = float(body.mass), float(body.weight)
 
     def launched(speed: float) -> SingleImpact:
         kinetic = np.full(count, 0.5 * mass * speed**2)
         launches = Launch(kinetic, np.full(count, np.inf), np.full(count, weight))
-        return bodies.impacts(launches, stop, pulls=False)
+        return bodies.impacts(launches, stop, with_pull_off=False)
 
-    hits, kept = [], []
+    rows = []
     for number, speed in enumerate(speeds[::-1].tolist()):  # the table for the fastest serves all
         report(number / speeds.size, f"{count} single bodies, {number} of {speeds.size} speeds")
         found = launched(speed)
-        hits.append(int(np.sum(found.captured)))
-        kept.append(np.quantile(found.restitution, QUANTILES))
-    hits, kept = hits[::-1], kept[::-1]
-    low, high = np.array([clopper_pearson(hit, count) for hit in hits]).T
+        kept = np.asarray(found.restitution)
+        error = np.std(kept) / sqrt(count)
+        rows.append([np.sum(found.captured), np.mean(kept), error, *np.quantile(kept, QUANTILES)])
+    hits, means, errors, *quantiles = np.array(rows[::-1]).T
+    low, high = np.array([clopper_pearson(int(hit), count) for hit in hits]).T
     report(1.0, "where half of the single bodies are captured")
-
-    def crossing(level: int) -> float | None:
-        """The speed from which fewer bodies than a number are captured."""
-        enough = np.flatnonzero(np.array(hits) >= level)
-        if not enough.size or enough[-1] == speeds.size - 1:
-            return None
-        slower, faster = speeds[enough[-1] : enough[-1] + 2].tolist()
-        for _ in range(_HALVINGS):
-            middle = sqrt(slower * faster)
-            if np.sum(launched(middle).captured) >= level:
-                slower = middle
-            else:
-                faster = middle
-        return sqrt(slower * faster)
-
-    half, *interval = (crossing(level) for level in _levels(count))
+    half, *interval = (_crossing(launched, speeds, hits, level) for level in _levels(count))
     return CaptureProbability(
-        count, np.array(hits) / count, low, high, np.stack(kept), half, (interval[0], interval[1])
+        bodies=count,
+        probability=hits / count,
+        low=low,
+        high=high,
+        mean=means,
+        mean_error=errors,
+        restitution=np.stack(quantiles, axis=1),
+        half_velocity=half,
+        half_interval=(interval[0], interval[1]),
     )
+
+
+def _crossing(
+    launched: Callable[[float], SingleImpact], speeds: np.ndarray, hits: np.ndarray, level: int
+) -> float | None:
+    """The speed [m/s] from which fewer bodies than a number are captured."""
+    enough = np.flatnonzero(hits >= level)
+    if not enough.size or enough[-1] == speeds.size - 1:
+        return None
+    slower, faster = speeds[enough[-1] : enough[-1] + 2].tolist()
+    for _ in range(_HALVINGS):
+        middle = sqrt(slower * faster)
+        if np.sum(launched(middle).captured) >= level:
+            slower = middle
+        else:
+            faster = middle
+    return sqrt(slower * faster)
 
 
 def _levels(count: int) -> tuple[int, int, int]:

@@ -19,7 +19,7 @@ from ..config.html_table import card, counted
 from ..config.resolve import resolve
 from ..critical_velocity import Launcher, Rebound, critical_measures
 from ..dynamics import Limits
-from ..errors import InputError, SimulationError
+from ..errors import SimulationError
 from ..integration import Report, integrate, silently
 from ..model import build
 from ..results.assessment import assessment_of
@@ -29,6 +29,7 @@ from ..results.realisations import percent
 from ..results.result import drawing
 from ..results.summary import amount, warning_lines
 from .capture_probability import CaptureProbability, capture_probability
+from .curve_speeds import checked, decades, left_out
 
 if TYPE_CHECKING:
     import xarray
@@ -39,9 +40,7 @@ _PICTURE = "asperity.plots.restitution_plot"
 POINTS, FEWER = 61, 31
 """Speeds that are computed where none are given, besides some close to the edges of capture; and of
 a case with single bodies, a thousand for each speed."""
-_NEAR = np.array([1e-4, 1e-3, 1e-2, 3e-2])  # relative: speeds on both sides of each edge
 _FINER = (4,)  # times as many panels where fast impacts ask for them
-_BELOW, _ABOVE = 0.1, 100.0  # from and to how many critical velocities it is drawn
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -253,7 +252,7 @@ def restitution_curve(
     case = case_of(case)
     name = case.name if name is None else name
     if speeds is not None:
-        speeds = _checked(speeds)
+        speeds = checked(speeds)
     _, report = case.launch, progress or silently
     inputs = resolve(case).one_impact()
     problem, limits = build(inputs), Limits.of(inputs.tolerance)
@@ -267,7 +266,7 @@ def restitution_curve(
     found = critical_measures(launcher.edges(solution))
     if speeds is None:
         usual = POINTS if inputs.placement is None else FEWER
-        speeds = _decades(found["capture_edges"], own, points or usual)
+        speeds = decades(found["capture_edges"], own, points or usual)
     rebounds: list[Rebound] = []
     for number, speed in enumerate(speeds.tolist()):
         report(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")
@@ -275,7 +274,7 @@ def restitution_curve(
     known = sorted((r for r in rebounds if np.isfinite(r.speed)), key=lambda r: r.speed)
     if not known:
         raise SimulationError("no first impact could be computed at any of the speeds")
-    warnings = [*about.warnings, *_left_out(len(rebounds) - len(known), len(rebounds))]
+    warnings = [*about.warnings, *left_out(len(rebounds) - len(known), len(rebounds))]
     speed = np.array([rebound.speed for rebound in known])
     bodies = capture_probability(problem, solution, speed, lambda _, t: report(0.99, t), stop)
     report(1.0, "done")
@@ -292,30 +291,3 @@ def restitution_curve(
         warnings=warnings,
         single_bodies=bodies,
     )
-
-
-def _left_out(missing: int, speeds: int) -> list[str]:
-    """What is to be said of speeds at which nothing could be computed."""
-    if not missing:
-        return []
-    return [
-        f"{missing} of {speeds} speeds are left out: their force curves are not fine enough, or "
-        "their motion could not be solved"
-    ]
-
-
-def _checked(speeds: np.ndarray) -> np.ndarray:
-    """Speeds [m/s] in order, once each."""
-    found = np.unique(np.asarray(speeds, float))
-    if not found.size or not np.all(np.isfinite(found)) or found[0] <= 0.0:
-        raise InputError("`speeds` must be positive and finite, in m/s", key="speeds")
-    return found
-
-
-def _decades(edges: list[float], own: float, points: int) -> np.ndarray:
-    """Speeds [m/s] over decades: about the edges of capture, and about the case's own."""
-    low, high = (edges[0], edges[-1]) if edges else (own, own)
-    first, last = min(_BELOW * low, own), max(_ABOVE * high, own)
-    # Where capture begins or ends restitution falls to 0 as a root does.
-    near = np.outer(edges, 1.0 + np.concatenate([-_NEAR, _NEAR])).ravel()
-    return np.unique(np.concatenate([np.geomspace(first, last, points), near]))

@@ -1,0 +1,180 @@
+"""Bodies on summits of their own, launched together."""
+
+from __future__ import annotations
+
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from math import ceil
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..contact.asperity_table import AsperityTable, asperity_table
+from ..contact.rigid import RigidContact
+from ..dynamics.problem import Problem
+from ..dynamics.single_impact import Launch, SingleImpact, single_impacts
+from ..errors import InputError, SimulationError
+from ..interface.summit_field import WIDTH, MeasuredField
+from ..laws.law import as_float64, terms
+from .placement import place_summits
+
+MOST_SUMMITS = 2048
+"""Summits under one body that are followed one by one."""
+
+_BELOW = 5.0  # rms heights that the turning point of a body may lie below that of the mean
+_FIRST = 16  # summits of each body, at least
+_SCATTER = 4.0  # standard deviations that their number may lie above the expected one
+_FEWER = 8  # times as few are within range where fewer are taken from then on
+_DEEPER = 2.0  # times the energy at the release, to which an asperity is tabulated
+
+
+class SingleBodies:
+    """Bodies that fall on summits of their own.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case with single bodies.
+    turning_point
+        Separation [m] of the turning point of the mean over all bodies.
+
+    Raises
+    ------
+    InputError
+        If more than `MOST_SUMMITS` are within range of them, or a map is too small for bodies that
+        come so deep.
+    """
+
+    def __init__(self, problem: Problem, turning_point: float) -> None:
+        inputs, contact = problem.inputs, problem.contact
+        assert inputs.placement is not None
+        assert isinstance(contact, RigidContact)
+        self._inputs, self._rms = inputs, float(contact.interface.scale.rms)
+        self._range = float(contact.interface.interaction_range)
+        self._lowest = turning_point - self._range - _BELOW * self._rms
+        self.field, self._laws = place_summits(inputs, self._lowest)
+        self._count = self._summits_for(turning_point)
+        every = [one for one in terms(self._laws[0]) if one.hysteretic]
+        self.mechanisms = tuple(one.mechanism for one in every)
+        self._seed = inputs.placement.seed
+        self._table: tuple[float, AsperityTable] | None = None
+
+    def impacts(
+        self, launches: Launch, stop: threading.Event | None = None, *, with_pull_off: bool = True
+    ) -> SingleImpact:
+        """Their first impacts, each on the summits of its number.
+
+        Parameters
+        ----------
+        launches
+            How they come, arrays of shape (bodies,).
+        stop
+            Set from another thread, it ends them early.
+        with_pull_off
+            Whether their pull-off forces are wanted too, which takes twice as long.
+
+        Returns
+        -------
+        Arrays of shape (bodies, ...).
+
+        Raises
+        ------
+        InputError
+            If more than `MOST_SUMMITS` are within range of one.
+        SimulationError
+            If they were stopped.
+        """
+        table = self._tabulated(launches)
+        while True:
+            found = self._all(table, launches, stop, with_pull_off=with_pull_off)
+            lowest = float(np.min(found.closest_approach)) - self._range
+            if lowest >= self._lowest or not isinstance(self.field, MeasuredField):
+                return found
+            # So deep, summits beyond the edges of the map would have been within range.
+            self._lowest = lowest - self._rms
+            self.field, _ = place_summits(self._inputs, self._lowest)
+
+    def _all(
+        self,
+        table: AsperityTable,
+        launches: Launch,
+        stop: threading.Event | None,
+        *,
+        with_pull_off: bool,
+    ) -> SingleImpact:
+        bodies = np.size(launches.kinetic)
+
+        def block(number: int) -> SingleImpact:
+            if stop is not None and stop.is_set():
+                raise SimulationError("stopped before all first impacts of single bodies")
+            # The last block is filled up with bodies that are left out again.
+            some = np.minimum(np.arange(WIDTH) + number * WIDTH, bodies - 1)
+            chosen = Launch(*(np.asarray(x)[some] for x in launches))
+            return self._block(table, chosen, number, with_pull_off)
+
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = list(pool.map(block, range(-(-bodies // WIDTH))))
+        # Bodies that follow are likely to meet about as many. Each number is compiled.
+        most = int(np.median([np.max(some.within_range) for some in found]))
+        if not self._count / _FEWER <= most < self._count:
+            self._count = _power_of_two(most + 1)
+        joined: SingleImpact = jax.tree_util.tree_map(
+            lambda *leaves: np.concatenate(leaves)[:bodies], *found
+        )
+        return joined
+
+    def first(self, found: SingleImpact) -> dict[str, np.ndarray]:
+        """The first body on its summits, as in :class:`Realisations`; ``found`` for all."""
+        count = max(int(np.asarray(found.within_range)[0]), 1)
+        x, y = self.field.positions(self._seed, count).T
+        offsets = self.field.summits(self._seed, 0, count)[0][0]
+        return {"x": x, "y": y, "gap": float(np.asarray(found.closest_approach)[0]) - offsets}
+
+    def _tabulated(self, launches: Launch) -> AsperityTable:
+        """The table of an asperity, deep enough for the energy of such bodies."""
+        fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
+        energy = _DEEPER * float(np.max(launches.kinetic + launches.weight * np.abs(fall)))
+        if self._table is None or self._table[0] < energy:
+            self._table = energy, asperity_table(self._laws, energy)
+        return self._table[1]
+
+    def _block(
+        self, table: AsperityTable, launches: Launch, number: int, with_pull_off: bool
+    ) -> SingleImpact:
+        """WIDTH bodies, each with as many summits as the one that has most within range."""
+        count = self._count
+        while True:
+            offsets, classes = self.field.summits(self._seed, number, count)
+            found = single_impacts(
+                table, launches, as_float64(offsets), jnp.asarray(classes), with_pull_off
+            )
+            if not np.all(np.isfinite(found.closest_approach)):
+                raise SimulationError("a single body came deeper than its summits are tabulated")
+            most = int(np.max(found.within_range))
+            if most < count:
+                return found
+            count = max(2 * count, self._summits_for(float(np.min(found.closest_approach))))
+
+    def _summits_for(self, turning_point: float) -> int:
+        """Summits that a body has within range at its turning point [m], and seldom more.
+
+        Raises
+        ------
+        InputError
+            If these are too many.
+        """
+        expected = float(self.field.expected_above(turning_point - self._range))
+        if expected > MOST_SUMMITS:
+            raise InputError(
+                f"single bodies (`placement`) have up to {MOST_SUMMITS} summits within range; some "
+                f"{expected:.3g} lie within the {self._range * 1e9:.3g} nm of their forces: "
+                "take 'mean'",
+                key="roughness.placement",
+            )
+        return _power_of_two(ceil(expected + _SCATTER * expected**0.5 + _SCATTER))
+
+
+def _power_of_two(number: int) -> int:
+    """The first that is no less, or `_FIRST`."""
+    return max(_FIRST, 1 << (number - 1).bit_length())

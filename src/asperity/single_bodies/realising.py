@@ -1,0 +1,94 @@
+"""The single bodies of a case: their first impacts, and rebounds until they are captured."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+
+from ..dynamics import Body
+from ..dynamics.problem import Problem
+from ..dynamics.single_impact import Launch, SingleImpact
+from ..integration import Report, silently
+from ..results.conversion import Solution
+from ..results.realisations import KINDS, Realisations
+from .launching import SingleBodies
+
+REBOUNDS = 20
+"""Rebounds of a single body that are followed until it is captured."""
+
+
+def realise(
+    problem: Problem,
+    mean: Solution,
+    report: Report = silently,
+    stop: threading.Event | None = None,
+    *,
+    rebounds: bool = True,
+) -> Realisations:
+    """First impacts of the single bodies of a case.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case with single bodies.
+    mean
+        Its motion under the mean over all bodies.
+    report, stop
+        As for :func:`asperity.integration.integrate`.
+    rebounds
+        Whether they are followed until they are captured, which takes some twenty first impacts.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :meth:`SingleBodies.impacts`.
+    """
+    placed, body = problem.inputs.placement, mean.body or problem.body
+    assert placed is not None
+    report(0.9, f"{placed.realisations} single bodies")
+    turning_point = float(np.asarray(mean.motion.impacts.closest_approach)[0])
+    bodies = SingleBodies(problem, turning_point)
+    launch = (np.asarray(x) for x in (body.kinetic, body.release, body.weight))
+    launches = Launch(*(np.full(placed.realisations, value) for value in launch))
+    first = bodies.impacts(launches, stop)
+    lost: dict[str, np.ndarray] = {}
+    for name, energy in zip(bodies.mechanisms, np.asarray(first.lost).T, strict=True):
+        lost[name] = lost.get(name, 0.0) + energy
+    values = {name: np.asarray(getattr(first, name)) for name in KINDS if hasattr(first, name)}
+    if rebounds:
+        report(0.9, "rebounds of single bodies")
+        most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)
+        followed = _until_captured(bodies, body, first, most, stop)
+        values |= dict(zip(("rebounds", "flight_time"), followed, strict=True))
+    return Realisations(np.asarray(first.captured), values, lost, bodies.first(first))
+
+
+def _until_captured(
+    bodies: SingleBodies,
+    body: Body,
+    first: SingleImpact,
+    most: int,
+    stop: threading.Event | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rebounds of each body before it is captured, and the time [s] that they take in flight.
+
+    Infinite where that takes more than ``most`` rebounds, and without weight where it leaves. A
+    rigid body falls on the same summits each time, and all their bonds are broken while it flies.
+    """
+    rebounds = np.where(first.captured, 0.0, np.inf)
+    flight = np.zeros(rebounds.shape)
+    weight, found = float(body.weight), first
+    for made in range(1, most + 1 if weight > 0.0 else 1):
+        flying = np.isinf(rebounds)
+        if not np.any(flying):
+            break
+        kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
+        speed = np.sqrt(2.0 * kinetic / float(body.mass))
+        flight += np.where(flying, 2.0 * speed * float(body.mass) / weight, 0.0)
+        # Those that were captured fall once more with what they had: they no longer count.
+        kinetic = np.where(flying, kinetic, found.impact_energy)
+        launches = Launch(kinetic, np.full(kinetic.shape, np.inf), np.full(kinetic.shape, weight))
+        found = bodies.impacts(launches, stop, with_pull_off=False)
+        rebounds[flying & np.asarray(found.captured)] = made
+    return rebounds, np.where(np.isinf(rebounds), np.inf, flight)
