@@ -23,6 +23,7 @@ from asperity.results.records import (
     CURVE_FILES,
     RESTITUTION_FILES,
     RUN_FILES,
+    SINGLE_BODY_FILES,
     check_folder,
     holds_only_results,
     json_object,
@@ -35,7 +36,11 @@ if TYPE_CHECKING:
 
     Answer = Result | Curve | RestitutionCurve
 
-_FILES = {"solve": RUN_FILES, "curve": CURVE_FILES, "restitution_curve": RESTITUTION_FILES}
+_FILES = {
+    "solve": (*RUN_FILES, *SINGLE_BODY_FILES),
+    "curve": CURVE_FILES,
+    "restitution_curve": RESTITUTION_FILES,
+}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -85,7 +85,10 @@ class Result(ResultData):
             Where the files cannot be written.
         """
         return results_folder.write_folder(
-            directory, self.files(), results_folder.RUN_FILES, force=force
+            directory,
+            self.files(),
+            (*results_folder.RUN_FILES, *results_folder.SINGLE_BODY_FILES),
+            force=force,
         )
 
     def __repr__(self) -> str:

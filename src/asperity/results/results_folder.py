@@ -13,14 +13,15 @@ from asperity.errors import InputError, OutputError
 
 RUN_FILES = (
     "record.nc",
-    *(
-        f"{name}.{kind}"
-        for name in ("motion", "forces", "energy", "bodies", "summits")
-        for kind in ("png", "svg")
-    ),
+    *(f"{name}.{kind}" for name in ("motion", "forces", "energy") for kind in ("png", "svg")),
     "summary.txt",
 )
-"""Names that a run may write."""
+"""Names that a run writes."""
+
+SINGLE_BODY_FILES = tuple(
+    f"{name}.{kind}" for name in ("bodies", "summits") for kind in ("png", "svg")
+)
+"""Names that a run with single bodies writes besides."""
 
 CURVE_FILES = ("curve.nc", "curve.png", "curve.svg", "curve.txt")
 """Names that a curve may write. They stand beside those of a run without touching them."""
@@ -43,7 +44,7 @@ REPRODUCTION_FILES = (
 """Names that `asperity reproduce` may write."""
 
 
-_TOGETHER = (*RUN_FILES, *CURVE_FILES, *RESTITUTION_FILES, *SURFACE_FILES)
+_TOGETHER = (*RUN_FILES, *SINGLE_BODY_FILES, *CURVE_FILES, *RESTITUTION_FILES, *SURFACE_FILES)
 
 
 def holds_only_results(directory: str | os.PathLike[str]) -> bool:
