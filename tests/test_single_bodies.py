@@ -163,6 +163,11 @@ def test_a_study_has_no_single_bodies_yet():
         asperity.sweep(load(mean), {"roughness.placement": ["mean", "random"]})
 
 
+def test_a_curve_says_that_it_is_the_mean():
+    curve = asperity.curve(load(CASE), load=1e-6)
+    assert "this is the mean over all bodies" in curve.warnings[-1]
+
+
 def test_restitution_draws_the_share_that_is_captured(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(CASE)

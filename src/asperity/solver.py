@@ -222,6 +222,8 @@ def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     stiffness = None if spring is None else spring.stiffness
     drawn, held = quasi_static_curve(contact, motion.table, motion.impacts, stiffness)
     warnings += pull_warnings(problem.inputs, drawn["pull_off"], held)
+    if problem.inputs.placement is not None:
+        warnings.append("this is the mean over all bodies; `asperity run` has single ones")
     report(1.0, "done")
     return Curve(case, name, **drawn, warnings=warnings)
 

@@ -17,6 +17,9 @@ from .launching import SingleBodies
 REBOUNDS = 20
 """Rebounds of a single body that are followed until it is captured."""
 
+FOLLOWED = 4096
+"""Bodies whose rebounds are followed; of more, the first impact alone."""
+
 
 def realise(
     problem: Problem,
@@ -37,7 +40,8 @@ def realise(
     report, stop
         As for :func:`asperity.integration.integrate`.
     rebounds
-        Whether they are followed until they are captured, which takes some twenty first impacts.
+        Whether up to `FOLLOWED` of them are followed until they are captured, which takes up to
+        twenty times as long.
 
     Raises
     ------
@@ -56,7 +60,7 @@ def realise(
     for name, energy in zip(bodies.mechanisms, np.asarray(first.lost).T, strict=True):
         lost[name] = lost.get(name, 0.0) + energy
     values = {name: np.asarray(getattr(first, name)) for name in KINDS if hasattr(first, name)}
-    if rebounds:
+    if rebounds and placed.realisations <= FOLLOWED:
         report(0.9, "rebounds of single bodies")
         most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)
         followed = _until_captured(bodies, body, first, most, stop)
