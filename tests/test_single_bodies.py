@@ -150,8 +150,8 @@ def test_what_single_bodies_do_not_have_is_refused(old, new, words):
 
 
 def test_too_many_summits_are_refused_with_their_number(monkeypatch):
-    monkeypatch.setattr(launching, "MOST_SUMMITS", 8)
-    with pytest.raises(InputError, match=r"up to 8 summits within range; some \d+\.?\d* lie"):
+    monkeypatch.setattr(launching, "MOST_SUMMITS", 3)
+    with pytest.raises(InputError, match=r"up to 3 summits within range; some \d+\.?\d* lie"):
         asperity.solve(load(CASE))
 
 
@@ -161,6 +161,13 @@ def test_a_study_has_no_single_bodies_yet():
     mean = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
     with pytest.raises(InputError, match="`placement` must be 'mean' in a study"):
         asperity.sweep(load(mean), {"roughness.placement": ["mean", "random"]})
+
+
+def test_a_release_on_a_summit_is_refused():
+    problem, bodies = bodies_of()
+    low = launches(problem, 300)._replace(release=np.full(300, 4e-9))
+    with pytest.raises(InputError, match="must lie above the highest summit of every single body"):
+        bodies.impacts(low)
 
 
 def test_a_curve_says_that_it_is_the_mean():

@@ -12,7 +12,7 @@ from asperity.dynamics import Body, simulate
 from asperity.dynamics.single_impact import Launch, single_impacts
 from asperity.errors import Tolerance
 from asperity.interface.summit_field import GaussianField
-from asperity.laws import Dmt, Hertz, Jkr, Maugis, Meniscus
+from asperity.laws import Bradley, Dmt, Hertz, Jkr, Maugis, Meniscus
 from asperity.laws.law import Sum, terms
 from chosen import long_but
 
@@ -117,6 +117,15 @@ def test_dry_elastic_summits_lose_nothing():
     np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
     assert not np.any(found.captured)
     assert found.lost.shape == (256, 0)
+
+
+def test_a_body_released_within_range_has_the_energy_that_it_has_there():
+    law = Sum([Hertz(TIP, MODULUS), Bradley(TIP, WORK, 3e-10)])
+    for gap in (2e-10, 1e-6):
+        found = impacts(law, launched([SLOW, FAST], release=gap), np.zeros((2, 1)))
+        energy = 0.5 * MASS * np.array([SLOW, FAST]) ** 2
+        np.testing.assert_allclose(found.impact_energy, energy, rtol=1e-9)
+        np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
 
 
 def test_losses_and_restitution_are_one_balance():

@@ -95,9 +95,10 @@ def _impact(
     summits = table.of(classes)
     top = jnp.minimum(launch.release, jnp.max(offsets + summits.interaction_range))
     begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
+    energy = launch.kinetic + jnp.sum(summits.work(begin - offsets))
 
     def external(separation: jax.Array) -> jax.Array:
-        return launch.kinetic + launch.weight * (begin - separation)
+        return energy + launch.weight * (begin - separation)
 
     def energy_on_approach(separation: jax.Array) -> jax.Array:
         return external(separation) - jnp.sum(summits.work(separation - offsets))

@@ -6,6 +6,7 @@ import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from ..contact.rigid import RigidContact
 from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact, single_impacts
 from ..errors import InputError, SimulationError
+from ..integration.batch_motion import RELEASE_KEY
 from ..interface.summit_field import WIDTH, MeasuredField
 from ..laws.law import as_float64, terms
 from .placement import place_summits
@@ -81,7 +83,7 @@ class SingleBodies:
         Raises
         ------
         InputError
-            If more than `MOST_SUMMITS` are within range of one.
+            If more than `MOST_SUMMITS` are within range of one, or it is released on a summit.
         SimulationError
             If they were stopped.
         """
@@ -146,6 +148,7 @@ class SingleBodies:
         count = self._count
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
+            _refuse_inside(launches.release, offsets[:, 0])
             found = single_impacts(
                 table, launches, as_float64(offsets), jnp.asarray(classes), with_pull_off
             )
@@ -173,6 +176,18 @@ class SingleBodies:
                 key="roughness.placement",
             )
         return _power_of_two(ceil(expected + _SCATTER * expected**0.5 + _SCATTER))
+
+
+def _refuse_inside(release: Any, highest: np.ndarray) -> None:
+    """Refuse bodies that would be released [m] on a summit, by their highest offsets [m]."""
+    inside = np.asarray(release) <= highest
+    if np.any(inside):
+        raise InputError(
+            "`release_separation` must lie above the highest summit of every single body, that of "
+            f"one at {np.max(highest[inside]) * 1e9:.4g} nm; got "
+            f"{np.min(release[inside]) * 1e9:.4g} nm",
+            key=RELEASE_KEY,
+        )
 
 
 def _power_of_two(number: int) -> int:
