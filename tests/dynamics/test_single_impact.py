@@ -72,11 +72,11 @@ def test_one_summit_is_a_smooth_body(name):
 
 
 def summed(law, offsets, speed, weight):
-    """Capture and restitution from energies of every summit at 30,000 separations."""
+    """Capture and restitution from energies of every summit at 20,000 separations."""
     gaps = np.linspace(-12e-9, 4e-9, 400_001)
     free = np.asarray(sum(one.energy(jnp.asarray(gaps)) for one in terms(law)))
     top = offsets[0] + float(asperity_table([law], 1e-11).interaction_range[0])
-    places = np.linspace(top, offsets[0] - 11e-9, 30_001)
+    places = np.linspace(top, offsets[0] - 11e-9, 20_001)
     each = places[:, None] - offsets
     left = 0.5 * MASS * speed**2 + weight * (GAP - places)
     left = left - np.interp(each, gaps, free).sum(axis=1)
@@ -101,14 +101,14 @@ def summed(law, offsets, speed, weight):
 def test_many_summits_are_the_sum_of_all(name, speed):
     """Some captured and some not; a bond more or less would be a hundred times what is allowed."""
     law, weight = LAWS[name], 9.81 * MASS
-    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:32]
-    found = impacts(law, launched(np.full(32, speed), weight), offsets)
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:16]
+    found = impacts(law, launched(np.full(16, speed), weight), offsets)
     assert np.all(np.asarray(found.within_range) < 16)
     for k, row in enumerate(offsets):
         captured, restitution, turn = summed(law, row, speed, weight)
         assert bool(found.captured[k]) == captured
         assert float(found.restitution[k]) == pytest.approx(restitution, abs=1e-6)
-        assert float(found.closest_approach[k]) == pytest.approx(turn, abs=5e-13)
+        assert float(found.closest_approach[k]) == pytest.approx(turn, abs=8e-13)
 
 
 def test_dry_elastic_summits_lose_nothing():
