@@ -74,6 +74,7 @@ def test_a_run_answers_with_the_probability_of_capture(result):
     assert found.capture_probability == pytest.approx(0.6387, abs=4.0 * np.sqrt(0.23 / 300))
     assert f"{100 * found.capture_probability:.3g} % are captured" in result.summary()
     assert "no verdict" not in result.summary()
+    assert "Mean field: The" in " ".join(result.summary().split())
     assert set(found.lost) == {"capillary"}
 
 

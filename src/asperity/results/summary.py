@@ -103,7 +103,8 @@ def _ended(result: ResultData) -> str:
     """The answer in a sentence where there is one, and how the motion ended."""
     if not result.outcome.ok:
         return result.outcome.message
-    return f"{sentence(result)}. {result.outcome.message}"
+    whose = "" if result.realisations is None else "Mean field: "
+    return f"{sentence(result)}. {whose}{result.outcome.message}"
 
 
 def brief_curve(curve: CurveData) -> str:

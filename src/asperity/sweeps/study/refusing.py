@@ -11,7 +11,7 @@ CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""
 
 
-_OF_BODIES = ("placement", "realisations", "seed")
+_OF_BODIES = ("roughness.placement", "roughness.realisations", "roughness.seed")
 
 
 def refuse_unusable(study: StudyDefinition) -> None:
@@ -24,7 +24,7 @@ def refuse_unusable(study: StudyDefinition) -> None:
     """
     _ = study.columns
     rough = study.base.roughness
-    if any(place(axis.key)[1] in _OF_BODIES for axis in study.axes) or (
+    if any(axis.key in _OF_BODIES for axis in study.axes) or (
         rough is not None and rough.single_bodies
     ):
         raise InputError(
