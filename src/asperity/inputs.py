@@ -256,6 +256,8 @@ class Inputs:
         Whether that strength was given in place of a solid's own.
     plasticity_allowed
         Whether a case may have a law of yielding beside its other models.
+    single_bodies_allowed
+        Whether a case may have single bodies beside its other models.
     work_of_adhesion
         Work of adhesion [J/m^2]; 0 without adhesion.
     equilibrium_spacing
@@ -316,6 +318,7 @@ class Inputs:
     yielding: Yielding | None
     strength_given: bool
     plasticity_allowed: bool
+    single_bodies_allowed: bool
     work_of_adhesion: float
     equilibrium_spacing: float
     adhesion_reason: str | None

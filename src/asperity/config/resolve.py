@@ -89,6 +89,7 @@ def resolve(case: CaseTables) -> Inputs:
         yielding=case_yielding(case.plasticity, (body, counterface)),
         strength_given=_strength_given(case),
         plasticity_allowed=_plasticity_allowed(case),
+        single_bodies_allowed=_single_bodies_allowed(case),
         work_of_adhesion=0.0 if adhesion.law == "none" else _given(case.adhesion.work),
         equilibrium_spacing=_or_zero(case.adhesion.equilibrium_spacing),
         adhesion_reason=adhesion.reason,
@@ -217,6 +218,17 @@ def _plasticity_allowed(case: CaseTables) -> bool:
     try:
         table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
         table.refuse_under(case.counterface, case.roughness)
+    except InputError:
+        return False
+    return True
+
+
+def _single_bodies_allowed(case: CaseTables) -> bool:
+    """Whether single bodies could be launched beside the mean."""
+    if case.roughness is None:
+        return False
+    try:
+        case.roughness.model_copy(update={"placement": "random"}).check_beside(case)
     except InputError:
         return False
     return True

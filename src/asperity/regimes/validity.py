@@ -164,7 +164,8 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
     out = []
     contacting = max(at_depth.contacting, 0.0)
     if contacting < FEW and inputs.placement is None:
-        out.append(_few(contacting) + _single_bodies(inputs))
+        allowed = inputs.single_bodies_allowed
+        out.append(_few(contacting) + ("; " + _SINGLE_BODIES if allowed else ""))
     share = covered_share(rough, at_depth.central)
     if share > 0.1:
         out.append(
@@ -172,6 +173,9 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
             "approach: neighbours interact, which the sum over single asperities leaves out"
         )
     return out
+
+
+_SINGLE_BODIES = "`placement` = 'random' in [roughness] has single bodies beside it"
 
 
 def _few(contacting: float) -> str:
@@ -187,19 +191,6 @@ def _few(contacting: float) -> str:
         f"{so_many}: the result is a mean over many places, single impacts scatter by about "
         f"{scatter:.0f} % in that number (Poisson)"
     )
-
-
-def _single_bodies(inputs: Inputs) -> str:
-    """Where the distribution over single bodies can be had."""
-    made_of = inputs.structure
-    elsewhere = (
-        made_of.deformation != "rigid", inputs.yields, made_of.gas, made_of.waves,
-        made_of.published, made_of.suspension != "none", made_of.liquid == "kelvin-filling",
-        inputs.formation_time > 0.0,
-    )  # fmt: skip
-    if any(elsewhere):
-        return ""
-    return "; `placement` = 'random' in [roughness] has single bodies beside it"
 
 
 def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:

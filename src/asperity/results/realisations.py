@@ -65,9 +65,7 @@ class Realisations:
 
     def quantiles(self, name: str) -> list[float]:
         """The `QUANTILES` of one of the ``values`` or, by its mechanism, of an energy ``lost``."""
-        found = self.values[name] if name in self.values else self.lost[name]
-        # Of infinite values too, which no other method has in order.
-        return [float(x) for x in np.quantile(found, QUANTILES, method="inverted_cdf")]
+        return quantiles_of(self.values[name] if name in self.values else self.lost[name])
 
     def plain(self) -> dict[str, Any]:
         """Numbers of all bodies together, in SI."""
@@ -81,6 +79,11 @@ class Realisations:
             "mean_restitution": float(np.mean(self.values["restitution"])),
             "lost": {name: self.quantiles(name) for name in self.lost},
         }
+
+
+def quantiles_of(values: np.ndarray) -> list[float]:
+    """The `QUANTILES` of values, each one of them: some may be infinite."""
+    return [float(x) for x in np.quantile(values, QUANTILES, method="inverted_cdf")]
 
 
 def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> tuple[float, float]:

@@ -59,7 +59,7 @@ def realise(
     lost: dict[str, np.ndarray] = {}
     for name, energy in zip(bodies.mechanisms, np.asarray(first.lost).T, strict=True):
         lost[name] = lost.get(name, 0.0) + energy
-    values = {name: np.asarray(getattr(first, name)) for name in KINDS if hasattr(first, name)}
+    values = {name: np.asarray(getattr(first, name)) for name in KINDS if name in first._fields}
     if rebounds and placed.realisations <= FOLLOWED:
         report(0.9, "rebounds of single bodies")
         most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)

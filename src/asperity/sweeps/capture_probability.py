@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
@@ -13,10 +14,10 @@ from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact
 from ..integration import Report, silently
 from ..results.conversion import Solution
-from ..results.realisations import QUANTILES, clopper_pearson
+from ..results.realisations import QUANTILES, clopper_pearson, quantiles_of
 from ..single_bodies import SingleBodies
 
-_HALVINGS = 8  # of the stretch between two speeds where the share falls below a half
+_HALVINGS = 8  # of the interval between two speeds where the share falls below a half
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,7 +108,7 @@ def capture_probability(
         found = launched(speed)
         kept = np.asarray(found.restitution)
         error = np.std(kept) / sqrt(count)
-        rows.append([np.sum(found.captured), np.mean(kept), error, *np.quantile(kept, QUANTILES)])
+        rows.append([np.sum(found.captured), np.mean(kept), error, *quantiles_of(kept)])
     hits, means, errors, *quantiles = np.array(rows[::-1]).T
     low, high = np.array([clopper_pearson(int(hit), count) for hit in hits]).T
     report(1.0, "where half of the single bodies are captured")
@@ -144,6 +145,5 @@ def _crossing(
 
 def _levels(count: int) -> tuple[int, int, int]:
     """Numbers of captured bodies: a half; the least and the most that speak for more and less."""
-    intervals = [clopper_pearson(hit, count) for hit in range(count + 1)]
-    more = next((hit for hit, (low, _) in enumerate(intervals) if low > 0.5), count + 1)
+    more = bisect_left(range(count + 1), True, key=lambda hit: clopper_pearson(hit, count)[0] > 0.5)
     return -(-count // 2), more, count - more + 1
