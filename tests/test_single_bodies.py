@@ -118,6 +118,18 @@ def test_the_same_seed_gives_the_same_bodies_in_any_number_and_order():
     assert np.any(np.asarray(other.closest_approach) != np.asarray(few.closest_approach))
 
 
+def test_on_a_half_space_summits_feel_one_another():
+    """Fewer touch, deeper down, and a bond loses a little less beside others."""
+    problem, rigid = bodies_of()
+    found = rigid.impacts(launches(problem, 256, 6e-3))
+    problem, soft = bodies_of(CASE.replace('"rigid"', '"half-space"'))
+    coupled = soft.impacts(launches(problem, 256, 6e-3))
+    assert np.mean(coupled.contacting) < 0.97 * np.mean(found.contacting)
+    assert np.mean(coupled.closest_approach) < np.mean(found.closest_approach)
+    assert -0.01 < np.sum(coupled.interaction) / np.sum(coupled.lost) < -1e-5
+    assert not np.any(found.interaction)
+
+
 def test_without_placement_nothing_is_drawn():
     text = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
     assert resolve(load(text)).placement is None
@@ -130,7 +142,6 @@ def test_without_placement_nothing_is_drawn():
         ("seed = 3", "seed = 1.5", "`seed` must be a whole number"),
         ("seed = 3", "seed = -1", "`seed` must"),
         ("realisations = 300", "realisations = 0", "`realisations` must"),
-        ('"rigid"', '"half-space"', "`deformation` must be 'rigid' with single bodies"),
         (
             '"equilibrium"',
             '"kelvin-filling"\nsurface_rms_height = "2 nm"',
@@ -152,7 +163,7 @@ def test_what_single_bodies_do_not_have_is_refused(old, new, words):
 
 def test_too_many_summits_are_refused_with_their_number(monkeypatch):
     monkeypatch.setattr(launching, "MOST_SUMMITS", 3)
-    with pytest.raises(InputError, match=r"up to 3 summits within range; some \d+\.?\d* lie"):
+    with pytest.raises(InputError, match=r"up to 3 summits each that feel a force; here \d"):
         asperity.solve(load(CASE))
 
 

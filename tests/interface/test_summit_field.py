@@ -107,7 +107,7 @@ def test_positions_make_the_offsets():
     """With the heights that the highest of strewn summits have."""
     heights = []
     for seed in range(200):
-        offsets, positions = FIELD.summits(seed, 0, 3)[0][0], FIELD.positions(seed, 3)
+        offsets, positions = FIELD.summits(seed, 0, 3)[0][0], FIELD.positions(seed, 0, 3)[0]
         heights.append(offsets + np.sum(positions**2, axis=1) / (2.0 * FIELD.radius))
     drawn = np.array(heights)[:, 0]
     _, placed = strewn(FIELD, 2000, -20e-9, np.random.default_rng(1))
@@ -119,6 +119,6 @@ def test_a_map_gives_the_positions_of_its_summits():
     measured = rng.uniform(0.0, 4e-6, (400, 2))
     within = np.array([[1e-6, 1e-6], [3e-6, 3e-6]])
     field = MeasuredField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES, measured, within)
-    offsets, positions = field.summits(9, 0, 5)[0][0], field.positions(9, 5)
+    offsets, positions = field.summits(9, 0, 5)[0][0], field.positions(9, 0, 5)[0]
     heights = offsets + np.sum(positions**2, axis=1) / (2.0 * 5e-6)
     assert np.all(np.min(np.abs(heights[:, None] - HEIGHTS), axis=1) < 1e-16)

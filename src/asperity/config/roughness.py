@@ -178,7 +178,6 @@ class Roughness(Table):
         if not self.single_bodies:
             return
         others = {
-            "counterface.deformation": case.counterface.deformation != "rigid",
             "capillary.model": case.capillary.model == "kelvin-filling",
             "capillary.formation_time": bool(case.capillary.formation_time),
             "plasticity.model": _on(case.plasticity),
@@ -188,15 +187,13 @@ class Roughness(Table):
             "publication": case.publication is not None,
         }
         refuse_all(
-            InputError(f"{_BESIDE[key]} with single bodies (`placement`): {why}", key=key)
+            InputError(f"{_BESIDE[key]} with single bodies (`placement`): {_NO_OTHER}", key=key)
             for key, found in others.items()
             if found
-            for why in (_WHY.get(key, _NO_OTHER),)
         )
 
 
 _BESIDE = {
-    "counterface.deformation": "`deformation` must be 'rigid'",
     "capillary.model": "`model` must not be 'kelvin-filling'",
     "capillary.formation_time": "`formation_time` must be absent",
     "plasticity.model": "`model` must be 'none' in [plasticity]",
@@ -206,7 +203,6 @@ _BESIDE = {
     "publication": "a [publication] table must be absent",
 }
 _NO_OTHER = "they have the elastic forces, adhesion and menisci of their summits alone"
-_WHY = {"counterface.deformation": "how summits press on one another is not solved"}
 
 
 def _on(table: Any) -> bool:

@@ -18,6 +18,7 @@ _POINTS = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(4))
 _TO_POWERS = np.linalg.inv(np.vander(_POINTS, increasing=True)).T
 _OTHERS = 4096  # asperities that may attract one, with all that each has to give
 _BEYOND = 1.01  # times where forces end: there, the table ends with none
+_AT_CONTACT = 1e-13  # of the shortest length of a law: a gap at which summits still touch
 _EMPTY = 1e-9  # y: a segment between two gaps that are one
 _LADDER = -1e-15 * 2.0 ** np.arange(0.0, 80.0)  # m, down to where a gap needs the largest energy
 
@@ -51,6 +52,8 @@ class AsperityTable(NamedTuple):
         Energy [J] that each loses once made and broken, shape (classes, laws).
     pull_off_gap
         Gap [m] of the largest tension of an asperity with all bonds, shape (classes,).
+    approach_range
+        Gap [m] beyond which an asperity that never touched feels nothing, shape (classes,).
     """
 
     scale: jax.Array
@@ -62,6 +65,7 @@ class AsperityTable(NamedTuple):
     breaking: jax.Array
     lost: jax.Array
     pull_off_gap: jax.Array
+    approach_range: jax.Array
 
     @property
     def interaction_range(self) -> jax.Array:
@@ -94,11 +98,16 @@ class Asperities(NamedTuple):
     breaking: jax.Array
     lost: jax.Array
     pull_off_gap: jax.Array
+    approach_range: jax.Array
 
     @property
     def interaction_range(self) -> jax.Array:
         """Gap [m] beyond which each feels nothing, shape (n,)."""
-        return self.scale * _stretched(self.borders[-1])
+        return self.gap_of_border(-1)
+
+    def gap_of_border(self, number: int) -> jax.Array:
+        """Gap [m] of a border of the segments: 0 for the lowest of the table, shape (n,)."""
+        return self.scale * _stretched(self.borders[number])
 
     @property
     def cells(self) -> int:
@@ -128,6 +137,26 @@ class Asperities(NamedTuple):
     def work(self, gap: jax.Array, branch: jax.Array | int = APPROACH) -> jax.Array:
         """Work [J] of each from far away to a gap [m], shape (n,)."""
         return _work(self, gap, jnp.asarray(branch))
+
+    def step_at_contact(self) -> jax.Array:
+        """By how much the force of each rises where contact ends [N], with all bonds, shape (n,).
+
+        What DMT's attraction pulls with; 0 of laws whose force goes on beyond contact.
+        """
+        bonded = jnp.asarray(self.slope.shape[1] - 2)
+        touching = -_AT_CONTACT * self.scale
+        apart = jnp.zeros_like(touching)
+        return self.response(touching, bonded)[1] - self.response(apart, bonded)[1]
+
+    def response(self, gap: jax.Array, branch: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
+        """Work [J] of each to a gap [m], its slope [N] and the slope of that [N/m], shape (n,)."""
+        cell, share = _cell(self, gap)
+        at = (self.size_class, branch, cell)
+        powers = self.slope[at]
+        rate = self.rates[cell // _CELLS, np.arange(gap.shape[0])]
+        curvature = powers[:, 1] + share * (2.0 * powers[:, 2] + share * 3.0 * powers[:, 3])
+        curvature = curvature * rate / (self.scale + jnp.abs(gap))
+        return _read(self.energy, *at, share), _read(self.slope, *at, share), curvature
 
 
 def _stretched(y: jax.Array) -> jax.Array:
@@ -217,6 +246,13 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
     def each(values: list[Real]) -> jax.Array:
         return jnp.stack([jnp.asarray(x, float) for x in values]) if values else jnp.zeros(0)
 
+    def range_on_approach(slope: jax.Array) -> jax.Array:
+        """The end of the last segment in which there is a force, or the last gap of a bond."""
+        felt = jnp.any(slope.reshape(-1, _CELLS * _POINTS.size) != 0.0, axis=1)
+        end = jnp.max(jnp.where(felt, borders[1:], borders[0]))
+        gaps = each([one.forming_gap for one in hysteretic])
+        return jnp.max(gaps, initial=scale * _stretched(end))
+
     tension = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
     energy, slope = jnp.stack([fitted(formed) for formed in (*sets, None)], axis=1)
     return AsperityTable(
@@ -229,6 +265,7 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         each([one.breaking_gap for one in hysteretic]),
         each([one.formation_loss + one.rupture_loss for one in hysteretic]),
         gap.ravel()[jnp.argmax(tension)],
+        range_on_approach(slope[-1]),
     )
 
 

@@ -29,7 +29,7 @@ class Launch(NamedTuple):
     Attributes
     ----------
     kinetic
-        Kinetic energy at the release [J].
+        Kinetic energy at the release [J]; NaN for one that stays away.
     release
         Separation there [m]; infinite for one that is launched where the forces on it begin.
     weight
@@ -65,11 +65,14 @@ class SingleImpact(NamedTuple):
         Bonds of each law there, shape (laws,).
     lost
         Energy [J] that they take by the time all are broken, shape (laws,).
+    interaction
+        Energy [J] that changes of bonds take besides, as they move other summits through the
+        half-space; negative where it is set free. 0 on a rigid bulk.
     pull_off
         Largest tension on retraction [N]; NaN where it is not asked for.
     within_range
-        Summits within their interaction range there; where those are all that were given, there may
-        be more.
+        Summits that have felt anything by then; where those are all that were given, there may be
+        more.
     """
 
     closest_approach: jax.Array
@@ -81,6 +84,7 @@ class SingleImpact(NamedTuple):
     loaded: jax.Array
     bonds: jax.Array
     lost: jax.Array
+    interaction: jax.Array
     pull_off: jax.Array
     within_range: jax.Array
 
@@ -93,17 +97,9 @@ def _impact(
     Bodies do not deform in bulk, so that all summits move alike: the energy is the sum of theirs.
     """
     summits = table.of(classes)
-    top = jnp.minimum(launch.release, jnp.max(offsets + summits.interaction_range))
-    begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
-    energy = launch.kinetic + jnp.sum(summits.work(begin - offsets))
-
-    def external(separation: jax.Array) -> jax.Array:
-        return energy + launch.weight * (begin - separation)
-
-    def energy_on_approach(separation: jax.Array) -> jax.Array:
-        return external(separation) - jnp.sum(summits.work(separation - offsets))
-
-    turning_point = _turning_point(summits, energy_on_approach, offsets, top)
+    top = top_of(summits, launch, offsets)
+    external = _external_energy(summits, launch, offsets, top)
+    turning_point = rigid_approach(summits, launch, offsets, top)
     gaps = turning_point - offsets
     branch = summits.branch(gaps)
 
@@ -127,7 +123,8 @@ def _impact(
     separations = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
     step = jnp.interp(separations, even, jnp.diff(even, prepend=turning_point))
     left = _least(energy_on_retraction, separations, step, (even[0], top))
-    before, after = energy_on_approach(top), energy_on_retraction(top)
+    before = external(top) - jnp.sum(summits.work(top - offsets))
+    after = energy_on_retraction(top)
     captured = jnp.minimum(left, after) < 0.0
     each = -jax.jvp(summits.work, (gaps,), (jnp.ones_like(gaps),))[1]
     squares = jnp.sum(each**2)
@@ -144,18 +141,41 @@ def _impact(
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
         bonds=jnp.sum(held, axis=1).astype(float),
         lost=jnp.sum(held * summits.lost, axis=1),
+        interaction=jnp.zeros(()),
         pull_off=pull_off,
-        within_range=jnp.sum(gaps <= summits.interaction_range),
+        within_range=jnp.sum(gaps <= summits.approach_range),
     )
 
 
 Along = Callable[[jax.Array], jax.Array]
 
 
-def _turning_point(
-    summits: Asperities, energy: Along, offsets: jax.Array, top: jax.Array
+def top_of(summits: Asperities, launch: Launch, offsets: jax.Array) -> jax.Array:
+    """The separation [m] at which a body is released, or its first summit begins to pull."""
+    return jnp.minimum(launch.release, jnp.max(offsets + summits.interaction_range))
+
+
+def _external_energy(
+    summits: Asperities, launch: Launch, offsets: jax.Array, top: jax.Array
+) -> Along:
+    """Kinetic energy and work [J] that a body without summits would have at a separation [m]."""
+    begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
+    energy = launch.kinetic + jnp.sum(summits.work(begin - offsets))
+    return lambda separation: energy + launch.weight * (begin - separation)
+
+
+def rigid_approach(
+    summits: Asperities, launch: Launch, offsets: jax.Array, top: jax.Array
 ) -> jax.Array:
-    """The first separation [m] on approach at which the energy is spent."""
+    """The first separation [m] at which a body that does not deform in bulk has spent its energy.
+
+    NaN where there is none in the table.
+    """
+    external = _external_energy(summits, launch, offsets, top)
+
+    def energy(separation: jax.Array) -> jax.Array:
+        return external(separation) - jnp.sum(summits.work(separation - offsets))
+
     gaps = summits.gaps_of_first(summits.cells * (1.0 - _SHARES))
     separations = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
     found = jnp.asarray(True)

@@ -65,17 +65,18 @@ class SummitField(abc.ABC):
         """
 
     @abc.abstractmethod
-    def positions(self, seed: int, count: int) -> np.ndarray:
-        """Where the highest summits under the first body of a draw stand.
+    def positions(self, seed: int, block: int, count: int) -> np.ndarray:
+        """Where the highest summits under WIDTH bodies stand.
 
         Parameters
         ----------
-        seed, count
+        seed, block, count
             As for :meth:`summits`.
 
         Returns
         -------
-        Coordinates [m] from the axis of the body, shape (count, 2), in the order of their offsets.
+        Coordinates [m] from the axis of each body, shape (WIDTH, count, 2), in the order of their
+        offsets.
         """
 
 
@@ -92,13 +93,13 @@ class RandomField(SummitField):
         offsets = self._inverse(number / (2.0 * pi * self.radius * self.density))
         return offsets, self._classes(np.random.default_rng([seed, block, 1]), offsets)
 
-    def positions(self, seed: int, count: int) -> np.ndarray:
+    def positions(self, seed: int, block: int, count: int) -> np.ndarray:
         """In any direction, at the distance that height and offset make."""
-        offsets = self.summits(seed, 0, count)[0][:1]
-        heights = self._heights(np.random.default_rng([seed, 0, 1]), offsets)
-        distance = np.sqrt(2.0 * self.radius * (heights - offsets))[0]
-        angle = np.random.default_rng([seed, 0, 2]).uniform(0.0, 2.0 * pi, count)
-        return np.stack([distance * np.cos(angle), distance * np.sin(angle)], axis=1)
+        offsets, _ = self.summits(seed, block, count)
+        heights = self._heights(np.random.default_rng([seed, block, 1]), offsets)
+        distance = np.sqrt(2.0 * self.radius * (heights - offsets))
+        angle = 2.0 * pi * _shares(np.random.default_rng([seed, block, 2]), count)
+        return np.stack([distance * np.cos(angle), distance * np.sin(angle)], axis=-1)
 
     @abc.abstractmethod
     def _heights(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
@@ -131,7 +132,7 @@ class GaussianField(RandomField):
 
     def _heights(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
         lowest = ndtr((self.mean_height - offsets) / self.rms_height)
-        shares = lowest * random.random(offsets.shape)
+        shares = lowest * _shares(random, offsets.shape[1])
         return self.mean_height - self.rms_height * ndtri(shares)
 
     def _inverse(self, mean: np.ndarray) -> np.ndarray:
@@ -189,8 +190,7 @@ class SampledField(RandomField):
     def _which(self, random: np.random.Generator, offsets: np.ndarray) -> np.ndarray:
         """Which summits they are: of all that are higher any one is as likely."""
         higher = np.maximum(np.searchsorted(-self.heights, -offsets), 1)
-        draws = random.random((offsets.shape[1], WIDTH)).T[: offsets.shape[0]]
-        return (draws * higher).astype(int)
+        return (_shares(random, offsets.shape[1]) * higher).astype(int)
 
 
 @dataclass(frozen=True)
@@ -210,16 +210,12 @@ class MeasuredField(SampledField):
     within: np.ndarray
 
     def summits(self, seed: int, block: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-        centres = self._centres(seed, block)
         offsets = np.full((WIDTH, count), _FAR)
         classes = np.zeros((WIDTH, count), np.int32)
-        kept = min(count, self.heights.size)
-        for body, centre in enumerate(centres):
-            squares = np.sum((self.measured - centre) ** 2, axis=1)
-            all_offsets = self.heights - squares / (2.0 * self.radius)
-            highest = np.argsort(-all_offsets, kind="stable")[:kept]
-            offsets[body, :kept] = all_offsets[highest]
-            classes[body, :kept] = self.classes[highest]
+        for body, centre in enumerate(self._centres(seed, block)):
+            all_offsets, highest = self._highest(centre, count)
+            offsets[body, : highest.size] = all_offsets[highest]
+            classes[body, : highest.size] = self.classes[highest]
         return offsets, classes
 
     def _centres(self, seed: int, block: int) -> np.ndarray:
@@ -227,10 +223,23 @@ class MeasuredField(SampledField):
         low, high = self.within
         return np.random.default_rng([seed, block]).uniform(low, high, (WIDTH, 2))
 
-    def positions(self, seed: int, count: int) -> np.ndarray:
-        from_axis = self.measured - self._centres(seed, 0)[0]
-        offsets = self.heights - np.sum(from_axis**2, axis=1) / (2.0 * self.radius)
-        return from_axis[np.argsort(-offsets, kind="stable")[:count]]
+    def positions(self, seed: int, block: int, count: int) -> np.ndarray:
+        found = np.zeros((WIDTH, count, 2))
+        for body, centre in enumerate(self._centres(seed, block)):
+            highest = self._highest(centre, count)[1]
+            found[body, : highest.size] = self.measured[highest] - centre
+        return found
+
+    def _highest(self, centre: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Offsets [m] of all summits under a body, and which are the highest."""
+        squares = np.sum((self.measured - centre) ** 2, axis=1)
+        offsets = self.heights - squares / (2.0 * self.radius)
+        return offsets, np.argsort(-offsets, kind="stable")[:count]
+
+
+def _shares(random: np.random.Generator, count: int) -> np.ndarray:
+    """Numbers from 0 to 1, shape (WIDTH, count): the first are the same for any count."""
+    return random.random((count, WIDTH)).T
 
 
 def _above(x: np.ndarray) -> np.ndarray:

@@ -12,7 +12,9 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.asperity_table import AsperityTable, asperity_table
-from ..contact.rigid import RigidContact
+from ..contact.elastic import ElasticContact
+from ..contact.rough import RoughContact
+from ..dynamics.coupled_impact import Bulk, coupled_impacts
 from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact, single_impacts
 from ..errors import InputError, SimulationError
@@ -22,7 +24,10 @@ from ..laws.law import as_float64, terms
 from .placement import place_summits
 
 MOST_SUMMITS = 2048
-"""Summits under one body that are followed one by one."""
+"""Summits under one body that are followed one by one, on a rigid bulk."""
+
+MOST_COUPLED = 128
+"""On a half-space, where each feels all others."""
 
 _BELOW = 5.0  # rms heights that the turning point of a body may lie below that of the mean
 _FIRST = 16  # summits of each body, at least
@@ -51,16 +56,19 @@ class SingleBodies:
     def __init__(self, problem: Problem, turning_point: float) -> None:
         inputs, contact = problem.inputs, problem.contact
         assert inputs.placement is not None
-        assert isinstance(contact, RigidContact)
+        assert isinstance(contact, RoughContact)
         self._inputs, self._rms = inputs, float(contact.interface.scale.rms)
         self._range = float(contact.interface.interaction_range)
         self._lowest = turning_point - self._range - _BELOW * self._rms
-        self.field, self._laws = place_summits(inputs, self._lowest)
-        self._count = self._summits_for(turning_point)
+        self.field, self._laws, self._tips = place_summits(inputs, self._lowest)
+        self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
+        self._most = MOST_SUMMITS if self._modulus is None else MOST_COUPLED
+        self._turning_point, self._count = turning_point, 0
         every = [one for one in terms(self._laws[0]) if one.hysteretic]
         self.mechanisms = tuple(one.mechanism for one in every)
         self._seed = inputs.placement.seed
         self._table: tuple[float, AsperityTable] | None = None
+        self._felt = self._range
 
     def impacts(
         self, launches: Launch, stop: threading.Event | None = None, *, with_pull_off: bool = True
@@ -88,14 +96,15 @@ class SingleBodies:
             If they were stopped.
         """
         table = self._tabulated(launches)
+        self._count = self._count or self._summits_for(self._turning_point)
         while True:
             found = self._all(table, launches, stop, with_pull_off=with_pull_off)
-            lowest = float(np.min(found.closest_approach)) - self._range
+            lowest = float(np.nanmin(found.closest_approach)) - self._range
             if lowest >= self._lowest or not isinstance(self.field, MeasuredField):
                 return found
             # So deep, summits beyond the edges of the map would have been within range.
             self._lowest = lowest - self._rms
-            self.field, _ = place_summits(self._inputs, self._lowest)
+            self.field = place_summits(self._inputs, self._lowest)[0]
 
     def _all(
         self,
@@ -110,10 +119,12 @@ class SingleBodies:
         def block(number: int) -> SingleImpact:
             if stop is not None and stop.is_set():
                 raise SimulationError("stopped before all first impacts of single bodies")
-            # The last block is filled up with bodies that are left out again.
-            some = np.minimum(np.arange(WIDTH) + number * WIDTH, bodies - 1)
+            # The last block is filled up with bodies that stay away.
+            numbers = np.arange(WIDTH) + number * WIDTH
+            some = np.minimum(numbers, bodies - 1)
             chosen = Launch(*(np.asarray(x)[some] for x in launches))
-            return self._block(table, chosen, number, with_pull_off)
+            kinetic = np.where(numbers < bodies, chosen.kinetic, np.nan)
+            return self._block(table, chosen._replace(kinetic=kinetic), number, with_pull_off)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             found = list(pool.map(block, range(-(-bodies // WIDTH))))
@@ -128,17 +139,19 @@ class SingleBodies:
 
     def first(self, found: SingleImpact) -> dict[str, np.ndarray]:
         """The first body on its summits, as in :class:`Realisations`; ``found`` for all."""
-        count = max(int(np.asarray(found.within_range)[0]), 1)
-        x, y = self.field.positions(self._seed, count).T
-        offsets = self.field.summits(self._seed, 0, count)[0][0]
-        return {"x": x, "y": y, "gap": float(np.asarray(found.closest_approach)[0]) - offsets}
+        offsets = self.field.summits(self._seed, 0, self._count)[0][0]
+        x, y = self.field.positions(self._seed, 0, self._count)[0].T
+        gaps = float(np.asarray(found.closest_approach)[0]) - offsets
+        within = gaps <= max(self._range, gaps[0])
+        return {"x": x[within], "y": y[within], "gap": gaps[within]}
 
     def _tabulated(self, launches: Launch) -> AsperityTable:
         """The table of an asperity, deep enough for the energy of such bodies."""
         fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
-        energy = _DEEPER * float(np.max(launches.kinetic + launches.weight * np.abs(fall)))
+        energy = _DEEPER * float(np.nanmax(launches.kinetic + launches.weight * np.abs(fall)))
         if self._table is None or self._table[0] < energy:
             self._table = energy, asperity_table(self._laws, energy)
+            self._felt = float(np.max(self._table[1].approach_range))
         return self._table[1]
 
     def _block(
@@ -149,33 +162,48 @@ class SingleBodies:
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
             _refuse_inside(launches.release, offsets[:, 0])
-            found = single_impacts(
-                table, launches, as_float64(offsets), jnp.asarray(classes), with_pull_off
-            )
-            if not np.all(np.isfinite(found.closest_approach)):
-                raise SimulationError("a single body came deeper than its summits are tabulated")
+            summits = launches, as_float64(offsets), jnp.asarray(classes)
+            if self._modulus is None:
+                found = single_impacts(table, *summits, with_pull_off)
+            else:
+                found = coupled_impacts(table, *summits, self._bulk(number, count))
             most = int(np.max(found.within_range))
             if most < count:
+                if not np.all(np.isfinite(found.closest_approach) | np.isnan(launches.kinetic)):
+                    raise SimulationError("the path of a single body was not found")
                 return found
-            count = max(2 * count, self._summits_for(float(np.min(found.closest_approach))))
+            self._refuse_above(count)
+            count = max(2 * count, self._summits_for(float(np.nanmin(found.closest_approach))))
+
+    def _bulk(self, number: int, count: int) -> Bulk:
+        """The half-space that the summits of WIDTH bodies stand on."""
+        positions = self.field.positions(self._seed, number, count)
+        return Bulk(as_float64(positions), as_float64(self._tips), as_float64(self._modulus))
 
     def _summits_for(self, turning_point: float) -> int:
         """Summits that a body has within range at its turning point [m], and seldom more.
+
+        On a half-space these are fewer: it lies lower there, by its own displacement.
 
         Raises
         ------
         InputError
             If these are too many.
         """
-        expected = float(self.field.expected_above(turning_point - self._range))
-        if expected > MOST_SUMMITS:
+        expected = float(self.field.expected_above(turning_point - self._felt))
+        if self._modulus is None:
+            self._refuse_above(expected - 1.0)
+        likely = _power_of_two(ceil(expected + _SCATTER * expected**0.5 + _SCATTER))
+        return min(likely, self._most)
+
+    def _refuse_above(self, number: float) -> None:
+        """Refuse bodies with more summits than that, if they are too many to be followed."""
+        if number >= self._most:
             raise InputError(
-                f"single bodies (`placement`) have up to {MOST_SUMMITS} summits within range; some "
-                f"{expected:.3g} lie within the {self._range * 1e9:.3g} nm of their forces: "
-                "take 'mean'",
+                f"single bodies (`placement`) are followed on up to {self._most} summits each that "
+                f"feel a force; here {number:.3g} or more do: take 'mean'",
                 key="roughness.placement",
             )
-        return _power_of_two(ceil(expected + _SCATTER * expected**0.5 + _SCATTER))
 
 
 def _refuse_inside(release: Any, highest: np.ndarray) -> None:

@@ -12,8 +12,8 @@ from ..interface.summit_field import GaussianField, MeasuredField, SampledField,
 from ..laws.law import Law
 
 
-def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law]]:
-    """The summits of a case, and their laws by class of tip radius.
+def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law], list[float]]:
+    """The summits of a case, and by class of tip radius their laws and that radius [m].
 
     Parameters
     ----------
@@ -33,23 +33,24 @@ def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law]
     radius, density = inputs.radius, rough.asperity_density
     if rough.summits is None or not (placed.measured or inputs.structure.heights == "summits"):
         law = asperity_law(inputs, rough.asperity_radius)
-        return GaussianField(radius, density, rough.rms_height, rough.mean_height), [law]
+        field = GaussianField(radius, density, rough.rms_height, rough.mean_height)
+        return field, [law], [rough.asperity_radius]
     found = rough.summits
     order = np.argsort(-found.heights, kind="stable")
     classes = np.zeros(found.count, np.int32)
-    laws = []
+    laws, tips = [], []
     for number, chosen in enumerate(members(found.radii, inputs.radius_classes)):
         classes[chosen] = number
-        mean = float(found.radii[chosen].mean())
-        laws.append(asperity_law(inputs, mean, float(found.radii.min())))
+        tips.append(float(found.radii[chosen].mean()))
+        laws.append(asperity_law(inputs, tips[-1], float(found.radii.min())))
     heights, classes = found.heights[order], classes[order]
     if not placed.measured:
-        return SampledField(radius, density, heights, classes), laws
+        return SampledField(radius, density, heights, classes), laws, tips
     rows, columns = found.positions[order].T
     positions = np.stack([columns * found.pixel_size[0], rows * found.pixel_size[1]], axis=1)
     assert rough.surface is not None
     within = _positions(rough.surface.physical_size, (2.0 * radius * (heights[0] - lowest)) ** 0.5)
-    return MeasuredField(radius, density, heights, classes, positions, within), laws
+    return MeasuredField(radius, density, heights, classes, positions, within), laws, tips
 
 
 def _positions(size: tuple[float, float], away: float) -> np.ndarray:

@@ -14,6 +14,9 @@ from ..results.conversion import Solution
 from ..results.realisations import KINDS, Realisations
 from .launching import SingleBodies
 
+INTERACTION = "interaction"
+"""Loss of bonds that summits beside them add on a half-space."""
+
 REBOUNDS = 20
 """Rebounds of a single body that are followed until it is captured."""
 
@@ -59,6 +62,8 @@ def realise(
     lost: dict[str, np.ndarray] = {}
     for name, energy in zip(bodies.mechanisms, np.asarray(first.lost).T, strict=True):
         lost[name] = lost.get(name, 0.0) + energy
+    if np.any(first.interaction):
+        lost[INTERACTION] = np.asarray(first.interaction)
     values = {name: np.asarray(getattr(first, name)) for name in KINDS if name in first._fields}
     if rebounds and placed.realisations <= FOLLOWED:
         report(0.9, "rebounds of single bodies")
@@ -90,8 +95,7 @@ def _until_captured(
         kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
         speed = np.sqrt(2.0 * kinetic / float(body.mass))
         flight += np.where(flying, 2.0 * speed * float(body.mass) / weight, 0.0)
-        # Those that were captured fall once more with what they had: they no longer count.
-        kinetic = np.where(flying, kinetic, found.impact_energy)
+        kinetic = np.where(flying, kinetic, np.nan)
         launches = Launch(kinetic, np.full(kinetic.shape, np.inf), np.full(kinetic.shape, weight))
         found = bodies.impacts(launches, stop, with_pull_off=False)
         rebounds[flying & np.asarray(found.captured)] = made

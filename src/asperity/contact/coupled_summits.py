@@ -1,0 +1,160 @@
+"""Summits on an elastic half-space: each is lowered by what the others carry."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .._jax import jax, jnp
+from ..halfspace import hertz_influence
+from ..numerics.roots import fixed_point
+from .asperity_table import Asperities
+
+_ENOUGH = 1e-7  # of the shortest length of a law: the last change of a gap, the next its square
+_STEPS = 40
+_INSIDE = 1e-13  # of that length: within what a bond bears
+_RAMP = 1.5  # times what attractions that end with contact move a summit: over which they rise
+
+
+class SummitEquilibrium(NamedTuple):
+    """Summits under a body at one separation.
+
+    Attributes
+    ----------
+    gaps
+        Gap of each [m], shape (n,).
+    rates
+        Its slope with the separation, shape (n,).
+    forces
+        Force on each [N], positive apart, shape (n,).
+    energy
+        Energy of all and of the half-space [J], with what bonds that hold have lost.
+    """
+
+    gaps: jax.Array
+    rates: jax.Array
+    forces: jax.Array
+    energy: jax.Array
+
+    @property
+    def force(self) -> jax.Array:
+        """Total force [N]."""
+        return jnp.sum(self.forces)
+
+
+class CoupledSummits(NamedTuple):
+    r"""Summits under a body that feel one another through the half-space.
+
+    Attributes
+    ----------
+    summits
+        Their laws.
+    offsets
+        Separation at which each meets the plane [m], shape (n,).
+    influence
+        Displacement of one per load of another [m/N], shape (n, n): symmetric, 0 for itself.
+    steps
+        By how much the force of each rises where contact ends [N], shape (n,).
+    ramp
+        Depth [m] over which that attraction rises as contact begins, shape (n,): of two summits one
+        that let go at once would lower the other and touch again.
+
+    Notes
+    -----
+    The gap of a summit is :math:`g_i = d - x_i + \sum_j C_{ij} F_j(g_j)`. The own displacement of a
+    contact is in its law. Between two changes of bonds forces are smooth, and the energy
+    :math:`\sum_i U_i + F C F/2` has the slope :math:`-\sum_i F_i`.
+    """
+
+    summits: Asperities
+    offsets: jax.Array
+    influence: jax.Array
+    steps: jax.Array
+    ramp: jax.Array
+
+    @classmethod
+    def on(
+        cls, summits: Asperities, offsets: jax.Array, influence: jax.Array, touching: jax.Array
+    ) -> CoupledSummits:
+        """Summits on a half-space of some ``influence``, of which some will be ``touching``."""
+        steps = summits.step_at_contact()
+        moved = influence @ jnp.where(touching, steps, 0.0)
+        ramp = jnp.maximum(_RAMP * moved, _INSIDE * summits.scale)
+        return cls(summits, offsets, influence, steps, ramp)
+
+    @property
+    def pull_off_gaps(self) -> jax.Array:
+        """Gap [m] of the largest tension of each, shape (n,)."""
+        within = jnp.minimum(self.summits.pull_off_gap, -self.ramp)
+        return jnp.where(self.steps > 0.0, within, self.summits.pull_off_gap)
+
+    def equilibrium(
+        self, separation: jax.Array, held: jax.Array, guess: jax.Array
+    ) -> SummitEquilibrium:
+        """At a separation [m], with bonds ``held``, shape (laws, n), by Newton's method.
+
+        From a ``guess`` of the gaps [m]. A law goes on beyond the gap at which its bond forms or
+        breaks as it is there.
+        """
+        rigid, one = separation - self.offsets, jnp.ones_like(guess)
+
+        def step(now: tuple[jax.Array, jax.Array]) -> tuple[tuple[jax.Array, jax.Array], jax.Array]:
+            gaps, _ = now
+            _, forces, slopes = self._response(gaps, held)
+            left = gaps - rigid - self.influence @ forces
+            matrix = jnp.eye(gaps.shape[0]) - self.influence * slopes
+            change, rates = jnp.linalg.solve(matrix, jnp.stack([left, one], axis=1)).T
+            return (gaps - change, rates), jnp.max(jnp.abs(change))
+
+        enough = _ENOUGH * self.summits.scale[0]
+        (gaps, rates), _ = fixed_point(step, (guess, one), enough, _STEPS)
+        work, forces, _ = self._response(gaps, held)
+        energy = jnp.sum(work) + 0.5 * forces @ self.influence @ forces
+        return SummitEquilibrium(gaps, rates, forces, energy)
+
+    def _response(self, gaps: jax.Array, held: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
+        """Work [J], force [N] and its slope [N/m] of each, shape (n,)."""
+        some = self.summits
+        inside = _INSIDE * some.scale
+        low = jnp.max(jnp.where(held, -jnp.inf, some.forming), axis=0, initial=-jnp.inf)
+        high = jnp.min(jnp.where(held, some.breaking - inside, jnp.inf), axis=0, initial=jnp.inf)
+        within = jnp.clip(gaps, low, high)
+        bits = 2 ** jnp.arange(held.shape[0])
+        branch = jnp.tensordot(bits, held.astype(bits.dtype), axes=1)
+        work, slope, curvature = some.response(within, branch)
+        work = work + slope * (gaps - within)
+        curvature = jnp.where(within == gaps, curvature, 0.0)
+        depth = jnp.clip(-within, 0.0, self.ramp)
+        missing = 1.0 - depth / self.ramp
+        rises = (depth > 0.0) & (missing > 0.0)
+        work = work + 0.5 * self.steps * depth * (1.0 + missing)
+        slope = slope - jnp.where(rises, self.steps * missing, 0.0)
+        curvature = curvature - jnp.where(rises, self.steps / self.ramp, 0.0)
+        return work, -slope, -curvature
+
+
+def influence_between(
+    positions: jax.Array, contact_radii: jax.Array, modulus: jax.Array
+) -> jax.Array:
+    """Displacement of summits per load of one another [m/N], shape (n, n).
+
+    Parameters
+    ----------
+    positions
+        Coordinates [m], shape (n, 2).
+    contact_radii
+        Contact radii [m], shape (n,).
+    modulus
+        Contact modulus E* of the bulk [Pa].
+
+    Notes
+    -----
+    Both contacts are as wide as they are: to second order in the radii over the distance, a point
+    load beside a contact of radius sqrt(a_i^2 + a_j^2). Where two are so near that one would sink
+    under the other's load more than under its own, 1/(2 E* a), it sinks by that.
+    """
+    apart = positions[:, None] - positions
+    squares = contact_radii[:, None] ** 2 + contact_radii**2
+    widest = jnp.maximum(contact_radii[:, None], contact_radii)
+    between = hertz_influence(jnp.sqrt(jnp.sum(apart**2, axis=-1)), jnp.sqrt(squares))
+    between = jnp.minimum(between, jnp.where(widest > 0.0, 0.5 / widest, jnp.inf))
+    return jnp.where(jnp.eye(len(positions), dtype=bool), 0.0, between / modulus)

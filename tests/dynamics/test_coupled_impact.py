@@ -1,0 +1,177 @@
+"""Single bodies on a half-space: closed forms, a rigid bulk, and paths followed in small steps."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from asperity._jax import jax, jnp
+from asperity.contact.asperity_table import asperity_table
+from asperity.contact.coupled_summits import influence_between
+from asperity.dynamics.coupled_impact import Bulk, coupled_impacts
+from asperity.dynamics.single_impact import Launch
+from asperity.interface.summit_field import GaussianField
+from asperity.laws.law import terms
+from dynamics.test_single_impact import (
+    FAST,
+    LAWS,
+    MASS,
+    MODULUS,
+    RADIUS,
+    TIP,
+    all_impacts,
+    launched,
+)
+
+SUMMITS, BODIES = 16, 256  # of every test: a program is compiled for each number of laws
+FIELD = GaussianField(RADIUS, 2e13, 1.2e-9)
+
+
+def impacts(law, launches, offsets, positions, modulus=MODULUS):
+    """First impacts of up to so many bodies with up to so many summits, others far away."""
+    count, summits = offsets.shape
+    offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - summits)), constant_values=-1.0)
+    away = 1.0 + np.arange(SUMMITS - summits)[:, None] * np.ones(2)
+    positions = np.concatenate([positions, np.broadcast_to(away, (count, *away.shape))], axis=1)
+    some = np.minimum(np.arange(BODIES), count - 1)
+    launches = Launch(*(jnp.asarray(values)[some] for values in launches))
+    bulk = Bulk(jnp.asarray(positions)[some], jnp.asarray([TIP]), jnp.asarray(modulus))
+    kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
+    table = asperity_table([law], 1e-11)
+    found = coupled_impacts(table, launches, jnp.asarray(offsets)[some], kinds, bulk)
+    return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)
+
+
+def drawn(seed):
+    return FIELD.summits(seed, 0, SUMMITS)[0], FIELD.positions(seed, 0, SUMMITS)
+
+
+def test_two_summits_share_a_load():
+    """Both carry F = k z^(3/2) at an indentation z, and each lowers the other by C F."""
+    apart, energy = 150e-9, 0.5 * MASS * np.array([1e-3, FAST]) ** 2
+    law = LAWS["hertz"]
+    positions = np.broadcast_to([[0.0, 0.0], [apart, 0.0]], (2, 2, 2))
+    found = impacts(law, launched([1e-3, FAST]), np.zeros((2, 2)), positions)
+    stiffness = 4.0 / 3.0 * MODULUS * np.sqrt(TIP)
+    for k in range(2):
+        rigid = (energy[k] / (0.8 * stiffness)) ** 0.4  # the widths of contacts are those
+        radii = jnp.full(2, np.sqrt(TIP * rigid))
+        lowered = float(influence_between(jnp.asarray(positions[k]), radii, MODULUS)[0, 1])
+        assert lowered == pytest.approx(1.0 / (pi * MODULUS * apart), rel=0.03)
+
+        def left(z, lowered=lowered, energy=energy[k]):
+            return 0.8 * stiffness * z**2.5 + lowered * stiffness**2 * z**3 - energy
+
+        z = brentq(left, 0.0, rigid, xtol=1e-25)
+        force = stiffness * z**1.5
+        assert float(found.maximum_force[k]) == pytest.approx(2.0 * force, rel=1e-7)
+        approach = -z - lowered * force
+        assert float(found.closest_approach[k]) == pytest.approx(approach, rel=1e-7)
+    np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["dry", "jkr, wet"])
+def test_a_stiff_bulk_is_a_rigid_one(name):
+    offsets, positions = drawn(3)
+    launches = launched(np.full(BODIES, FAST), 9.81 * MASS)
+    rigid = all_impacts(LAWS[name], launches, offsets)
+    found = impacts(LAWS[name], launches, offsets, positions, 1e20)
+    np.testing.assert_array_equal(found.captured, rigid.captured)
+    np.testing.assert_array_equal(found.bonds, rigid.bonds)
+    np.testing.assert_allclose(found.closest_approach, rigid.closest_approach, rtol=1e-8)
+    np.testing.assert_allclose(found.restitution, rigid.restitution, atol=1e-7)
+    np.testing.assert_allclose(found.lost, rigid.lost, rtol=1e-12)
+    assert np.mean(np.abs(found.pull_off / rigid.pull_off - 1.0)) < 2e-3
+
+
+@pytest.mark.parametrize("name", ["dry", "hertz"])
+def test_elastic_summits_lose_nothing(name):
+    """DMT's attraction rises over the depth by which summits move one another."""
+    found = impacts(LAWS[name], launched(np.full(BODIES, FAST), 9.81 * MASS), *drawn(3))
+    np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
+    assert not np.any(found.captured)
+    assert not np.any(found.interaction)
+
+
+class Path:
+    """Summits on a half-space at small steps of the separation, each solved by iteration."""
+
+    def __init__(self, law, offsets, influence, energy):
+        self.offsets, self.influence = offsets, influence
+        self.gaps = np.linspace(-8e-9, 2e-9, 100_001)
+        some = [one for one in terms(law) if one.hysteretic]
+        self.bonded = [np.asarray(one.bonded_force(jnp.asarray(self.gaps))) for one in some]
+        edges = [(float(one.forming_gap), float(one.breaking_gap)) for one in some]
+        self.forming, self.breaking = np.array(edges).T[:, :, None]
+        self.held = np.zeros((len(some), offsets.size), bool)
+        self.separation = offsets[0] + 1.1e-9
+        self.h, self.kinetic, self.force = self.separation - offsets, energy, 0.0
+
+    def forces(self, h):
+        bonds = [np.interp(h, self.gaps, bond) for bond in self.bonded]
+        return np.sum(np.where(self.held, bonds, 0.0), axis=0)
+
+    def settle(self):
+        """Whether a bond has changed."""
+        before = self.held.copy()
+        while True:
+            for _ in range(200):
+                new = self.separation - self.offsets + self.influence @ self.forces(self.h)
+                change, self.h = np.max(np.abs(new - self.h)), new
+                if change < 1e-17:
+                    break
+            forms = ~self.held & (self.h <= self.forming)
+            changes = forms | (self.held & (self.h >= self.breaking))
+            if not changes.any():
+                return bool(np.any(before != self.held))
+            self.held ^= changes
+
+    def go(self, step, fine):
+        """By a step; where a bond changes on the way, by fine ones."""
+        kept = self.separation, self.h, self.held.copy(), self.kinetic, self.force
+        self.separation += step
+        if self.settle() and abs(step) > fine:
+            self.separation, self.h, self.held, self.kinetic, self.force = kept
+            for _ in range(round(abs(step) / fine)):
+                self.go(np.sign(step) * fine, fine)
+            return
+        new = float(np.sum(self.forces(self.h)))
+        self.kinetic += 0.5 * step * (self.force + new)
+        self.force = new
+
+
+def followed(law, offsets, influence, energy, step, fine):
+    """Restitution of a body that is not captured, and its turning point."""
+    path = Path(law, offsets, influence, energy)
+    while path.kinetic > 0.0:
+        path.go(-step, fine)
+    turn, over = path.separation, path.kinetic
+    while path.held.any():
+        path.go(step, fine)
+        assert path.kinetic > over
+    return np.sqrt(path.kinetic / energy), turn
+
+
+def test_a_path_in_small_steps_gives_the_same():
+    """Each bond that forms or breaks moves the others, whatever order they come in."""
+    law, step = LAWS["jkr, wet"], 2e-12
+    offsets, positions = drawn(7)
+    energy = 0.5 * MASS * FAST**2
+    found = impacts(law, launched(np.full(BODIES, FAST)), offsets, positions)
+    assert np.max(np.abs(found.interaction)) > 1e-3 * np.max(found.lost)
+    for k in np.flatnonzero(np.asarray(found.contacting) > 3.0)[:2]:
+        radii = jnp.sqrt(TIP * jnp.maximum(offsets[k] - rigid_turn(law, offsets[k]), 0.0))
+        influence = np.asarray(influence_between(jnp.asarray(positions[k]), radii, MODULUS))
+        restitution, turn = followed(law, offsets[k], influence, energy, step, 0.02 * step)
+        assert not found.captured[k]
+        assert float(found.restitution[k]) == pytest.approx(restitution, abs=1e-4)
+        assert float(found.closest_approach[k]) == pytest.approx(turn, abs=1.1 * step)
+
+
+def rigid_turn(law, offsets):
+    """Where such a body turns on a rigid bulk [m]."""
+    found = all_impacts(
+        law, launched(np.full(BODIES, FAST)), np.broadcast_to(offsets, (BODIES, SUMMITS))
+    )
+    return float(found.closest_approach[0])
