@@ -153,6 +153,12 @@ def test_without_placement_nothing_is_drawn():
             "a [suspension] table must be absent",
         ),
         ('"random"', '"strewn"', "`placement` must be"),
+        (
+            '"rigid"',
+            '"half-space"\n[viscoelasticity]\nmodel = "standard-linear-solid"\n'
+            'relaxed_modulus_ratio = 0.5\nrelaxation_time = "1 ms"',
+            "`model` must be 'none' in [viscoelasticity]",
+        ),
     ],
 )
 def test_what_single_bodies_do_not_have_is_refused(old, new, words):
@@ -167,12 +173,39 @@ def test_too_many_summits_are_refused_with_their_number(monkeypatch):
         asperity.solve(load(CASE))
 
 
-def test_a_study_has_no_single_bodies_yet():
-    with pytest.raises(InputError, match="`placement` must be 'mean' in a study"):
+def test_a_seed_is_an_axis_of_a_study(result):
+    """Each case has the numbers of its run; where it has no single bodies, none."""
+    keep = ["captured", "capture_probability", "capture_probability_high", "median_pull_off"]
+    found = asperity.sweep(load(CASE), {"roughness.seed": [3, 4]}, keep=keep)
+    first, second = found["capture_probability"].values
+    assert first == result.realisations.capture_probability
+    assert abs(second - 0.6387) < 4.0 * np.sqrt(0.23 / 300)
+    assert second != first
+    high = result.realisations.capture_interval[1]
+    assert float(found["capture_probability_high"][0]) == high
+    assert float(found["median_pull_off"][0]) == pytest.approx(
+        result.realisations.quantiles("pull_off")[1], rel=1e-9
+    )
+    mean = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
+    both = asperity.sweep(load(mean), {"roughness.placement": ["mean", "random"]}, keep=keep)
+    assert np.isnan(both["capture_probability"].values[0])
+    assert both["capture_probability"].values[1] > 0.5
+    assert np.array_equal(both["captured"].values, [0, 0])
+
+
+def test_a_study_whose_single_bodies_cannot_be_launched_says_why(monkeypatch):
+    monkeypatch.setattr(launching, "MOST_SUMMITS", 3)
+    found = asperity.sweep(load(CASE), {"impact.speed": [1e-3, 2e-3]}, keep=["capture_probability"])
+    assert found.attrs["failed"] == 2
+    assert "up to 3 summits each that feel a force" in str(found["reason"].values[0])
+
+
+def test_a_study_keeps_measures_of_single_bodies_where_it_has_some():
+    with pytest.raises(InputError, match="`keep` must name a measure of single bodies, such as"):
         asperity.sweep(load(CASE), {"impact.speed": [1e-3, 2e-3]})
     mean = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
-    with pytest.raises(InputError, match="`placement` must be 'mean' in a study"):
-        asperity.sweep(load(mean), {"roughness.placement": ["mean", "random"]})
+    with pytest.raises(InputError, match="`keep` must not name 'capture_probability' without"):
+        asperity.sweep(load(mean), {"impact.speed": [1e-3, 2e-3]}, keep=["capture_probability"])
 
 
 def test_a_release_on_a_summit_is_refused():

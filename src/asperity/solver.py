@@ -159,9 +159,11 @@ def _result(
     bodies = None
     if problem.inputs.placement is not None and not stopped:
         try:
+            turning_point = float(solution.motion.impacts.closest_approach[0])
             bodies = realise(
-                problem, solution, lambda _, text: report(0.9, text), stop, rebounds=most is None
-            )
+                problem, solution.body or problem.body, turning_point,
+                lambda _, text: report(0.9, text), stop, rebounds=most is None,
+            )  # fmt: skip
         except SimulationError:
             if stop is None or not stop.is_set():
                 raise

@@ -67,6 +67,18 @@ class Realisations:
         """The `QUANTILES` of one of the ``values`` or, by its mechanism, of an energy ``lost``."""
         return quantiles_of(self.values[name] if name in self.values else self.lost[name])
 
+    def columns(self) -> dict[str, float]:
+        """What a study can keep of them, by the names of its measures."""
+        low, high = self.capture_interval
+        medians = ("restitution", "contacting", "loaded", "pull_off")
+        return {
+            "capture_probability": self.capture_probability,
+            "capture_probability_low": low,
+            "capture_probability_high": high,
+            "mean_restitution": float(np.mean(self.values["restitution"])),
+            **{f"median_{name}": self.quantiles(name)[1] for name in medians},
+        }
+
     def plain(self) -> dict[str, Any]:
         """Numbers of all bodies together, in SI."""
         return {

@@ -10,7 +10,6 @@ from ..dynamics import Body
 from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact
 from ..integration import Report, silently
-from ..results.conversion import Solution
 from ..results.realisations import KINDS, Realisations
 from .launching import SingleBodies
 
@@ -26,7 +25,8 @@ FOLLOWED = 4096
 
 def realise(
     problem: Problem,
-    mean: Solution,
+    body: Body,
+    turning_point: float,
     report: Report = silently,
     stop: threading.Event | None = None,
     *,
@@ -38,8 +38,10 @@ def realise(
     ----------
     problem
         What was built from a case with single bodies.
-    mean
-        Its motion under the mean over all bodies.
+    body
+        How each is launched.
+    turning_point
+        Separation [m] of the first turning point of the mean over all.
     report, stop
         As for :func:`asperity.integration.integrate`.
     rebounds
@@ -51,12 +53,11 @@ def realise(
     InputError, SimulationError
         As :meth:`SingleBodies.impacts`.
     """
-    placed, body = problem.inputs.placement, mean.body or problem.body
+    placed = problem.inputs.placement
     assert placed is not None
     report(0.9, f"{placed.realisations} single bodies")
-    turning_point = float(np.asarray(mean.motion.impacts.closest_approach)[0])
     bodies = SingleBodies(problem, turning_point)
-    launch = (np.asarray(x) for x in (body.kinetic, body.release, body.weight))
+    launch = (np.ravel(x)[0] for x in (body.kinetic, body.release, body.weight))
     launches = Launch(*(np.full(placed.realisations, value) for value in launch))
     first = bodies.impacts(launches, stop)
     lost: dict[str, np.ndarray] = {}

@@ -22,6 +22,7 @@ from asperity.solver import solve
 from asperity.sweeps.compute.building import Group, Values, built
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
+from asperity.sweeps.compute.realised import realised
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
 from asperity.sweeps.study.columns import REASON_SIZE
 
@@ -131,6 +132,7 @@ def _computed(
             and solution.measures
         ):
             solution.measures["critical_velocity"] = critical_velocities(group, solution, clock)
+        solution.measures.update(realised(study, values, group, solution, clock))
         _write(study, out, group, solution)
         sound = out["outcome"][group.rows] != _FAILED
         for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():

@@ -132,7 +132,7 @@ def _together(study: Study, values: Values, rows: np.ndarray, out: Built) -> Non
         _each(study, values, rows, out)  # for each one's own message, too
     else:
         if delayed:
-            out.alone.extend((int(row), _case(study, values, row)) for row in rows)
+            out.alone.extend((int(row), case_at(study, values, row)) for row in rows)
         else:
             out.groups.extend(_by_resolution(group))
 
@@ -151,7 +151,7 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
         raise _Differs from error
     ends = _batch_of(problem)
-    both = [_case(study, values, row) for row in (rows[0], rows[-1])]
+    both = [case_at(study, values, row) for row in (rows[0], rows[-1])]
     alone = [_batch_of(build(resolve(each), _UNRESOLVED)) for each in both]
     batch = _spread(ends, alone, rows.size)
     inputs = problem.inputs
@@ -191,7 +191,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
     """Build rows one by one."""
     for row in rows.tolist():
         try:
-            case = _case(study, values, row)
+            case = case_at(study, values, row)
             problem = build(resolve(case))
         except InputError as error:
             out.refused[row] = str(error)
@@ -205,7 +205,8 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         out.groups.append(_coarser(group))
 
 
-def _case(study: Study, values: Values, row: int) -> Case:
+def case_at(study: Study, values: Values, row: int) -> Case:
+    """The case of one row of the values of a study's axes."""
     return study.case_of({key: array[row : row + 1].tolist()[0] for key, array in values.items()})
 
 

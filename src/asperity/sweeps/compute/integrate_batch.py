@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity._jax import jax
+from asperity.dynamics import Body
 from asperity.errors import ENDS, Outcome, SimulationError
 from asperity.integration.batch_motion import REFINEMENTS, BatchMotion
 from asperity.integration.batch_records import ImpactRows, slices, taken
@@ -40,6 +41,8 @@ class BatchSolution(NamedTuple):
         Why a case failed, by its place in the group.
     release
         Mechanical energy at the release [J].
+    body
+        Mass and release of each case, as it was launched.
     """
 
     outcome: np.ndarray
@@ -51,6 +54,7 @@ class BatchSolution(NamedTuple):
     at_depth: np.ndarray
     failures: dict[int, Exception]
     release: np.ndarray
+    body: Body
 
 
 def integrate_batch(
@@ -95,6 +99,7 @@ def _solution(motions: BatchMotion) -> BatchSolution:
     out = BatchSolution(
         np.full(count, failed), made, np.full(count, np.nan), np.zeros((count, 0)), {}, {},
         np.full((count, 3), np.nan), failures, np.full(count, np.nan),
+        motions.batch.body,
     )  # fmt: skip
     ends, rows = motions.ends(), motions.history(_power(int(made.max())))
     if ends is None or rows is None:

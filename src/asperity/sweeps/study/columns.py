@@ -67,6 +67,18 @@ LOSSES = tuple(
 )
 """Mechanisms whose losses can be kept, as ``lost_NAME``."""
 
+OF_BODIES: tuple[Column, ...] = (
+    Column("capture_probability", "float64", "1", "captured share of single bodies"),
+    Column("capture_probability_low", "float64", "1", "lower bound of the captured share"),
+    Column("capture_probability_high", "float64", "1", "upper bound of the captured share"),
+    Column("mean_restitution", "float64", "1", "mean restitution of single bodies"),
+    Column("median_restitution", "float64", "1", "median restitution of single bodies"),
+    Column("median_contacting", "float64", "1", "median of contacting summits"),
+    Column("median_loaded", "float64", "1", "median of effectively loaded summits"),
+    Column("median_pull_off", "float64", "N", "median pull-off force of single bodies"),
+)
+"""Measures of the single bodies of a case; none where it has none."""
+
 MEASURES: tuple[Column, ...] = (
     Column("impact_speed", "float64", "m/s", "impact speed"),
     Column("maximum_speed", "float64", "m/s", "largest speed on the first way in"),
@@ -84,6 +96,7 @@ MEASURES: tuple[Column, ...] = (
     Column("preload", "float64", "N", "load that pull-off and work depend on"),
     Column("energy_lost", "float64", "J", "energy lost in all"),
     *(Column(f"lost_{name}", "float64", "J", f"energy lost to {name}") for name in LOSSES),
+    *OF_BODIES,
     Column("rebound_height", "float64", "m", "rebound height", "impact"),
     Column("restitution", "float64", "1", "coefficient of restitution", "impact"),
     Column("log_decrement", "float64", "1", "logarithmic decrement", "impact"),

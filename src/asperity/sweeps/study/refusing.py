@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from asperity.config.case_file import refuse_size
 from asperity.errors import InputError
+from asperity.sweeps.study.columns import OF_BODIES
 from asperity.sweeps.study.definition import StudyDefinition
 from asperity.sweeps.study.keys import place
 
 CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""
-
-
-_OF_BODIES = ("roughness.placement", "roughness.realisations", "roughness.seed")
 
 
 def refuse_unusable(study: StudyDefinition) -> None:
@@ -22,15 +20,21 @@ def refuse_unusable(study: StudyDefinition) -> None:
     InputError
         With the rule, and the key at fault.
     """
-    _ = study.columns
+    kept = [column.name for column in study.columns if column in OF_BODIES]
     rough = study.base.roughness
-    if any(axis.key in _OF_BODIES for axis in study.axes) or (
-        rough is not None and rough.single_bodies
-    ):
+    placed = rough is not None and rough.single_bodies
+    placed = placed or any(axis.key == "roughness.placement" for axis in study.axes)
+    if placed and not kept:
         raise InputError(
-            "`placement` must be 'mean' in a study, which keeps the mean over all bodies: single "
-            "ones are for `asperity run` and `asperity restitution`",
-            key="roughness.placement",
+            f"`keep` must name a measure of single bodies, such as '{OF_BODIES[0].name}', where "
+            f"`placement` launches them; got {', '.join(study.keep)}",
+            key="keep",
+        )
+    if kept and not placed:
+        raise InputError(
+            f"`keep` must not name '{kept[0]}' without single bodies, which `placement` = 'random' "
+            "in [roughness] launches",
+            key="keep",
         )
     if study.base.impact is None and not any(place(a.key)[0] == "impact" for a in study.axes):
         raise InputError("`base` must have an [impact] table, for motions; got none", key="base")

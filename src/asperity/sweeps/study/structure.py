@@ -37,12 +37,13 @@ def largest_max_impacts(study: StudyDefinition) -> int:
 
 
 def _quick(study: StudyDefinition) -> bool:
-    """Whether no case has a rare mechanism, single summits, or adhesion beyond DMT's."""
+    """Whether no case has a rare mechanism, single summits or bodies, or adhesion beyond DMT's."""
     return not (
         any(_acts(study, name, field) for name, field in _mechanisms())
         or _values(study, "adhesion", "model") - {"dmt", "none"}
         or any(_values(study, "capillary", "formation_time"))
         or "summits" in _values(study, "roughness", "source")
+        or _values(study, "roughness", "placement") & {"random", "measured"}
     )
 
 
