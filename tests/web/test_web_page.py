@@ -21,6 +21,7 @@ from asperity.results.colours import COLOURS
 from asperity.results.shares import share_texts
 from asperity.web.form import form
 from browser import needed, served
+from test_single_bodies import CASE as SINGLE_BODIES
 
 CASE = builtin_text("published-exact").replace('"half-space"', '"rigid"')
 PATIENT = 90_000  # ms: a first answer compiles
@@ -870,3 +871,23 @@ def test_kinetic_and_potential_energy_differ_for_every_eye(page, sight):
         page.locator("#theme").click()
     for one, other in pairs:
         assert np.linalg.norm(lab(one, sight) - lab(other, sight)) > 30.0, (one, other)
+
+
+def test_single_bodies_have_their_share_against_speed(page, tmp_path):
+    """A chart that other cases do not have; the share falls with the speed."""
+    expect(page.locator("#capture")).to_be_hidden()
+    own = tmp_path / "bodies.toml"
+    own.write_text(SINGLE_BODIES)
+    page.locator("#own-case").set_input_files(own)
+    expect(page.locator("#verdicts")).to_contain_text("Of single bodies", timeout=PATIENT)
+    settled(page)
+    expect(page.locator("#capture canvas")).to_be_visible()
+    drawn = page.evaluate("() => asperity.designs()[0].answer.capture")
+    share, low, high = (np.array(drawn[name]) for name in ("share", "low", "high"))
+    assert drawn["bodies"] == 256
+    assert share[0] == 1.0
+    assert share[-1] == 0.0
+    assert np.all(low <= share)
+    assert np.all(share <= high)
+    label = page.locator("#capture .plot").get_attribute("aria-label")
+    assert label.startswith("captured share [–] against speed [mm/s].")

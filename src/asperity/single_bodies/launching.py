@@ -49,8 +49,7 @@ class SingleBodies:
     Raises
     ------
     InputError
-        If more than `MOST_SUMMITS` are within range of them, or a map is too small for bodies that
-        come so deep.
+        If a map is too small for bodies that come so deep.
     """
 
     def __init__(self, problem: Problem, turning_point: float) -> None:
@@ -91,7 +90,8 @@ class SingleBodies:
         Raises
         ------
         InputError
-            If more than `MOST_SUMMITS` are within range of one, or it is released on a summit.
+            If one feels more than `MOST_SUMMITS`, or on a half-space `MOST_COUPLED`, or it is
+            released on a summit.
         SimulationError
             If they were stopped.
         """
@@ -129,7 +129,8 @@ class SingleBodies:
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             found = list(pool.map(block, range(-(-bodies // WIDTH))))
         # Bodies that follow are likely to meet about as many. Each number is compiled.
-        most = int(np.median([np.max(some.within_range) for some in found]))
+        numbers = [int(np.max(some.within_range)) for some in found if np.any(some.within_range)]
+        most = int(np.median(numbers or [self._count - 1]))
         if not self._count / _FEWER <= most < self._count:
             self._count = _power_of_two(most + 1)
         joined: SingleImpact = jax.tree_util.tree_map(
@@ -139,9 +140,12 @@ class SingleBodies:
 
     def first(self, found: SingleImpact) -> dict[str, np.ndarray]:
         """The first body on its summits, as in :class:`Realisations`; ``found`` for all."""
-        offsets = self.field.summits(self._seed, 0, self._count)[0][0]
-        x, y = self.field.positions(self._seed, 0, self._count)[0].T
-        gaps = float(np.asarray(found.closest_approach)[0]) - offsets
+        turning_point, count = float(np.asarray(found.closest_approach)[0]), self._count
+        gaps = turning_point - self.field.summits(self._seed, 0, count)[0][0]
+        while gaps[-1] <= self._range and count < MOST_SUMMITS:
+            count *= 2
+            gaps = turning_point - self.field.summits(self._seed, 0, count)[0][0]
+        x, y = self.field.positions(self._seed, 0, count)[0].T
         within = gaps <= max(self._range, gaps[0])
         return {"x": x[within], "y": y[within], "gap": gaps[within]}
 
@@ -183,7 +187,7 @@ class SingleBodies:
     def _summits_for(self, turning_point: float) -> int:
         """Summits that a body has within range at its turning point [m], and seldom more.
 
-        On a half-space these are fewer: it lies lower there, by its own displacement.
+        On a half-space these are fewer, since it gives way: too many are refused as they are met.
 
         Raises
         ------

@@ -10,13 +10,19 @@ from math import sqrt
 
 import numpy as np
 
+from ..config import Case
+from ..config.resolve import resolve
+from ..contact import RigidContact
 from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact
 from ..integration import Report, silently
-from ..results.conversion import Solution
+from ..model import build
 from ..results.realisations import QUANTILES, clopper_pearson, quantiles_of
+from ..results.result import Result
 from ..single_bodies import SingleBodies
 
+_NEARBY, _SPEEDS = 4.0, 9  # times a case's own speed; speeds that are drawn at once
+_FEW, _FEWEST = 256, 32  # bodies then: on a rigid bulk, and on a half-space
 _HALVINGS = 8  # of the interval between two speeds where the share falls below a half
 
 
@@ -67,10 +73,12 @@ class CaptureProbability:
 
 def capture_probability(
     problem: Problem,
-    mean: Solution,
+    turning_point: float,
     speeds: np.ndarray,
     report: Report = silently,
     stop: threading.Event | None = None,
+    *,
+    most: int | None = None,
 ) -> CaptureProbability | None:
     """Launch the single bodies of a case at every speed; None where it has none.
 
@@ -78,12 +86,14 @@ def capture_probability(
     ----------
     problem
         What was built from a case.
-    mean
-        A motion of the mean over all.
+    turning_point
+        Separation [m] of the first turning point of the mean over all.
     speeds
         Speeds where the forces on each body begin [m/s], ascending.
     report, stop
         As for :func:`asperity.integration.integrate`.
+    most
+        Bodies at most, where the speed at which half are captured is not wanted.
 
     Raises
     ------
@@ -93,8 +103,8 @@ def capture_probability(
     placed, body = problem.inputs.placement, problem.body
     if placed is None:
         return None
-    turning_point = float(np.asarray(mean.motion.impacts.closest_approach)[0])
-    bodies, count = SingleBodies(problem, turning_point), placed.realisations
+    bodies = SingleBodies(problem, turning_point)
+    count = placed.realisations if most is None else min(placed.realisations, most)
     mass, weight = float(body.mass), float(body.weight)
 
     def launched(speed: float) -> SingleImpact:
@@ -111,8 +121,10 @@ def capture_probability(
         rows.append([np.sum(found.captured), np.mean(kept), error, *quantiles_of(kept)])
     hits, means, errors, *quantiles = np.array(rows[::-1]).T
     low, high = np.array([clopper_pearson(int(hit), count) for hit in hits]).T
-    report(1.0, "where half of the single bodies are captured")
-    half, *interval = (_crossing(launched, speeds, hits, level) for level in _levels(count))
+    half: list[float | None] = [None] * 3
+    if most is None:
+        report(1.0, "where half of the single bodies are captured")
+        half = [_crossing(launched, speeds, hits, level) for level in _levels(count)]
     return CaptureProbability(
         bodies=count,
         probability=hits / count,
@@ -121,9 +133,43 @@ def capture_probability(
         mean=means,
         mean_error=errors,
         restitution=np.stack(quantiles, axis=1),
-        half_velocity=half,
-        half_interval=(interval[0], interval[1]),
+        half_velocity=half[0],
+        half_interval=(half[1], half[2]),
     )
+
+
+def capture_nearby(
+    case: Case, result: Result, stop: threading.Event | None = None
+) -> tuple[np.ndarray, CaptureProbability] | None:
+    """The share of single bodies captured at speeds near a case's own, by few of them.
+
+    Parameters
+    ----------
+    case
+        The case.
+    result
+        Its result.
+    stop
+        Set from another thread, it ends them early.
+
+    Returns
+    -------
+    Speeds [m/s] and what bodies do there; None where the case has no single bodies.
+
+    Raises
+    ------
+    InputError, SimulationError
+        As :func:`capture_probability`.
+    """
+    speed = result.measures["impact_speed"]
+    if result.realisations is None or not speed:
+        return None
+    problem = build(resolve(case))
+    most = _FEW if isinstance(problem.contact, RigidContact) else _FEWEST
+    turning_point = float(result.events["closest_approach_separation"][0])
+    speeds = speed * np.geomspace(1.0 / _NEARBY, _NEARBY, _SPEEDS)
+    found = capture_probability(problem, turning_point, speeds, stop=stop, most=most)
+    return None if found is None else (speeds, found)
 
 
 def _crossing(

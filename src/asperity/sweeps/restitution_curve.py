@@ -276,7 +276,8 @@ def restitution_curve(
         raise SimulationError("no first impact could be computed at any of the speeds")
     warnings = [*about.warnings, *left_out(len(rebounds) - len(known), len(rebounds))]
     speed = np.array([rebound.speed for rebound in known])
-    bodies = capture_probability(problem, solution, speed, lambda _, t: report(0.99, t), stop)
+    turning_point = float(solution.motion.impacts.closest_approach[0])
+    bodies = capture_probability(problem, turning_point, speed, lambda _, t: report(0.99, t), stop)
     report(1.0, "done")
     return RestitutionCurve(
         case=case,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from asperity.results.colours import colour
 from asperity.results.record_layout import json_object, plain
 from asperity.results.result import Curve, Result
 from asperity.results.verdict import sentence
+
+if TYPE_CHECKING:
+    from asperity.sweeps.capture_probability import CaptureProbability
 
 DRAWN = 12
 """Impacts whose course the page draws."""
@@ -23,13 +26,17 @@ _CONTACT = 1e-3
 """Share of the largest force from which the first impact is shown."""
 
 
-def answer(result: Result, curve: Curve) -> dict[str, Any]:
+def answer(
+    result: Result, curve: Curve, bodies: tuple[np.ndarray, CaptureProbability] | None = None
+) -> dict[str, Any]:
     """All that the page shows of a case.
 
     Parameters
     ----------
     result, curve
         Motion and force curve of the case.
+    bodies
+        Speeds [m/s], and how many of its single bodies are captured there.
 
     Returns
     -------
@@ -70,9 +77,16 @@ def answer(result: Result, curve: Curve) -> dict[str, Any]:
                 )
             },
         },
+        "capture": None if bodies is None else _capture(*bodies),
         "place": _place(result),
         "colours": {name: colour(name) for name in _names(result)},
     }
+
+
+def _capture(speed: np.ndarray, found: CaptureProbability) -> dict[str, Any]:
+    """The captured share of single bodies against speed, with its interval."""
+    series = {"speed": speed, "share": found.probability, "low": found.low, "high": found.high}
+    return {"bodies": found.bodies, **{name: packed(values) for name, values in series.items()}}
 
 
 def packed(values: np.ndarray) -> str:

@@ -43,7 +43,12 @@ def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Even
             result, curve = solver.explore(
                 case, name=asked.name, most=DRAWN, progress=report, stop=stop
             )
-            return answer(renamed(result, asked.case(), uploads), curve)
+            bodies = None
+            if result.realisations is not None:
+                report(0.95, "single bodies at other speeds")
+                nearby = importlib.import_module("asperity.sweeps.capture_probability")
+                bodies = nearby.capture_nearby(case, result, stop)
+            return answer(renamed(result, asked.case(), uploads), curve, bodies)
 
     return compute
 

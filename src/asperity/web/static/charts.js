@@ -39,7 +39,7 @@ export class Chart {
   show({ groups, axes, range, logarithmic = false, points = false, spoken }) {
     const lines = groups.flatMap((group) => group.lines);
     const [acrossBy, acrossUnit] = axes.x[1] ? scaled(largest(range ? [range] : groups.map((g) => g.x)), axes.x[1]) : [1, ""];
-    const [upBy, upUnit] = scaled(largest(lines.map((one) => one.y)), axes.y[1]);
+    const [upBy, upUnit] = axes.y[1] ? scaled(largest(lines.map((one) => one.y)), axes.y[1]) : [1, ""];
     const titles = [`${axes.x[0]}${acrossUnit && ` [${acrossUnit}]`}`, `${axes.y[0]} [${upUnit || "–"}]`];
     const tables = groups.map((g) => [shrunk(g.x, acrossBy), ...g.lines.map((one) => shrunk(one.y, upBy, logarithmic))]);
     const data = tables.length === 1 ? tables[0] : uPlot.join(tables);

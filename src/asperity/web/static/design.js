@@ -166,10 +166,11 @@ export class Design {
   }
 
   take(answer, number, since) {
-    const { motion, curve } = answer;
+    const { motion, curve, capture } = answer;
     for (const key of ["time", "separation", "central_separation", "speed"]) motion[key] = unpacked(motion[key]);
     for (const part of [motion.forces, motion.energies]) for (const key in part) part[key] = unpacked(part[key]);
     for (const key of ["separation", "loading", "unloading"]) curve[key] = unpacked(curve[key]);
+    if (capture) for (const key of ["speed", "share", "low", "high"]) capture[key] = unpacked(capture[key]);
     this.answer = answer;
     this.refusal = null;
     this.shown = number;

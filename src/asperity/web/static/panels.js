@@ -39,7 +39,7 @@ function preload({ measures }) {
 
 export class Panels {
   constructor() {
-    this.charts = Object.fromEntries(["motion", "curve", "forces", "energy", "rebounds"].map((id) => [id, new Chart(id)]));
+    this.charts = Object.fromEntries(["motion", "curve", "forces", "energy", "rebounds", "capture"].map((id) => [id, new Chart(id)]));
     this.whole = false; // whether forces are shown over the whole motion
     this.button = text("button", "whole motion", { type: "button" });
     this.button.setAttribute("aria-pressed", "false");
@@ -64,6 +64,7 @@ export class Panels {
     this.energies(answered, group);
     this.curve(answered, group);
     this.rebounds(answered, group);
+    this.capture(answered.filter((one) => one.answer.capture), group);
     ledger(answered, two);
     measures(answered, two);
     document.querySelectorAll("#panels figure, #ledger, #numbers").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.stale)));
@@ -106,6 +107,20 @@ export class Panels {
         ["loading", d.answer.curve.loading, "#0072B2"], ["unloading", d.answer.curve.unloading, "#D55E00"],
       ])),
       axes: { x: ["rigid separation", "m"], y: ["force", "N"] }, spoken: told.join("; "),
+    });
+  }
+
+  // The share of single bodies, where a case has them.
+  capture(placed, group) {
+    this.charts.capture.figure.hidden = !placed.length;
+    if (!placed.length) return;
+    const told = placed.map(({ answer, letter }) => `${letter}: ${answer.capture.bodies} bodies at each speed`);
+    this.charts.capture.show({
+      groups: placed.map((d) => group(d, d.answer.capture.speed, [
+        ["captured share", d.answer.capture.share, "#0072B2"],
+        ["lower bound (95 %)", d.answer.capture.low, "#E69F00"], ["upper bound (95 %)", d.answer.capture.high, "#E69F00"],
+      ])),
+      axes: { x: ["speed", "m/s"], y: ["captured share", ""] }, points: true, spoken: told.join("; "),
     });
   }
 
