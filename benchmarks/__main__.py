@@ -27,7 +27,7 @@ from asperity.model import build
 from asperity.publication.evidence import PRINTED
 from asperity.results.measures import measure
 
-from . import laws, published_method, surfaces, sweeps, web
+from . import laws, published_method, single_bodies, surfaces, sweeps, web
 from .plain_scipy import Drop, integrate
 
 PROGRAM = Path(sys.executable).with_name("asperity")
@@ -48,6 +48,8 @@ def main() -> None:
     _half_space()
     _laws()
     for what, figure, goal in surfaces.rows():
+        _line(what, figure, goal)
+    for what, figure, goal in single_bodies.rows():
         _line(what, figure, goal)
     _publication()
     for what, figure, goal in sweeps.rows():

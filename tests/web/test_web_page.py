@@ -673,8 +673,8 @@ def test_misspelt_keys_of_an_own_case_are_told_and_can_be_taken_out(page, tmp_pa
     for _ in range(3):
         page.locator("#form .wrong button").first.click()
         settled(page)
-    assert page.locator("#verdicts .wrong").count() == 0
-    assert page.locator("#form .wrong:visible").count() == 0
+    expect(page.locator("#verdicts .wrong")).to_have_count(0)
+    expect(page.locator("#form .wrong:visible")).to_have_count(0)
 
 
 def test_the_case_box_says_which_case_is_shown(page, tmp_path):

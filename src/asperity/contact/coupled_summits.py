@@ -88,18 +88,18 @@ class CoupledSummits(NamedTuple):
         return jnp.where(self.steps > 0.0, within, self.summits.pull_off_gap)
 
     def equilibrium(
-        self, separation: jax.Array, held: jax.Array, guess: jax.Array
+        self, separation: jax.Array, bonded: jax.Array, guess: jax.Array
     ) -> SummitEquilibrium:
-        """At a separation [m], with bonds ``held``, shape (laws, n), by Newton's method.
+        """At a separation [m], by Newton's method from a ``guess`` of the gaps [m].
 
-        From a ``guess`` of the gaps [m]. A law goes on beyond the gap at which its bond forms or
-        breaks as it is there.
+        With the bonds that ``bonded`` says, by law and summit, shape (laws, n). A law goes on
+        beyond the gap at which its bond forms or breaks as it is there.
         """
         rigid, one = separation - self.offsets, jnp.ones_like(guess)
 
         def step(now: tuple[jax.Array, jax.Array]) -> tuple[tuple[jax.Array, jax.Array], jax.Array]:
             gaps, _ = now
-            _, forces, slopes = self._response(gaps, held)
+            _, forces, slopes = self._response(gaps, bonded)
             left = gaps - rigid - self.influence @ forces
             matrix = jnp.eye(gaps.shape[0]) - self.influence * slopes
             change, rates = jnp.linalg.solve(matrix, jnp.stack([left, one], axis=1)).T
@@ -107,19 +107,21 @@ class CoupledSummits(NamedTuple):
 
         enough = _ENOUGH * self.summits.scale[0]
         (gaps, rates), _ = fixed_point(step, (guess, one), enough, _STEPS)
-        work, forces, _ = self._response(gaps, held)
+        work, forces, _ = self._response(gaps, bonded)
         energy = jnp.sum(work) + 0.5 * forces @ self.influence @ forces
         return SummitEquilibrium(gaps, rates, forces, energy)
 
-    def _response(self, gaps: jax.Array, held: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
+    def _response(
+        self, gaps: jax.Array, bonded: jax.Array
+    ) -> tuple[jax.Array, jax.Array, jax.Array]:
         """Work [J], force [N] and its slope [N/m] of each, shape (n,)."""
         some = self.summits
         inside = _INSIDE * some.scale
-        low = jnp.max(jnp.where(held, -jnp.inf, some.forming), axis=0, initial=-jnp.inf)
-        high = jnp.min(jnp.where(held, some.breaking - inside, jnp.inf), axis=0, initial=jnp.inf)
+        low = jnp.max(jnp.where(bonded, -jnp.inf, some.forming), axis=0, initial=-jnp.inf)
+        high = jnp.min(jnp.where(bonded, some.breaking - inside, jnp.inf), axis=0, initial=jnp.inf)
         within = jnp.clip(gaps, low, high)
-        bits = 2 ** jnp.arange(held.shape[0])
-        branch = jnp.tensordot(bits, held.astype(bits.dtype), axes=1)
+        bits = 2 ** jnp.arange(bonded.shape[0])
+        branch = jnp.tensordot(bits, bonded.astype(bits.dtype), axes=1)
         work, slope, curvature = some.response(within, branch)
         work = work + slope * (gaps - within)
         curvature = jnp.where(within == gaps, curvature, 0.0)

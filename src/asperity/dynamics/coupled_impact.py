@@ -63,7 +63,7 @@ def _coupled_impact(
         contacting=jnp.sum(turn.gaps < 0.0).astype(float),
         maximum_force=turn.force,
         loaded=turn.force**2 / jnp.where(squares > 0.0, squares, 1.0),
-        bonds=jnp.sum(end.held_at_turn, axis=1).astype(float),
+        bonds=jnp.sum(end.bonded_at_turn, axis=1).astype(float),
         lost=end.lost,
         interaction=end.freed - jnp.sum(end.lost),
         pull_off=end.tension,

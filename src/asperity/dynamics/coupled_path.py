@@ -35,16 +35,16 @@ class _Point(NamedTuple):
 
 
 class Path(NamedTuple):
-    """A body on its way.
+    """State of a body along its path.
 
     ``last`` is the last point from where on no bond was missed, ``missed`` a separation behind one
-    that was. ``freed`` is the energy that changes of bonds took off what is held, ``lost`` what
+    that was. ``freed`` is the energy that the contact loses as bonds change, ``lost`` what
     those that broke lose themselves; ``least`` and ``tension`` the least kinetic energy and the
     largest tension on retraction.
     """
 
     separation: jax.Array
-    held: jax.Array
+    bonded: jax.Array
     state: SummitEquilibrium
     outward: jax.Array
     last: _Point
@@ -55,7 +55,7 @@ class Path(NamedTuple):
     tension: jax.Array
     turning_point: jax.Array
     at_turn: SummitEquilibrium
-    held_at_turn: jax.Array
+    bonded_at_turn: jax.Array
     arrived: jax.Array
     still: jax.Array
     steps: jax.Array
@@ -100,12 +100,12 @@ class _Motion(NamedTuple):
     def choose(self, path: Path, here: _Point) -> _Choice:
         """By the separations left to each change of a bond, to the turning point, to the end."""
         ahead, close = _ahead(path), self.close
-        bonds = _left_to_bonds(self.coupled.summits, path.state, path.held, ahead)
+        bonds = _left_to_bonds(self.coupled.summits, path.state, path.bonded, ahead)
         slope = here.force - self.weight
         spent = jnp.where(here.kinetic > 0.0, jnp.inf, -jnp.inf)
         to_turn = jnp.where(slope > 0.0, here.kinetic / jnp.where(slope > 0.0, slope, 1.0), spent)
         to_end = jnp.maximum(self.top - path.separation, 0.0)
-        to_end = jnp.where(jnp.any(path.held), jnp.inf, to_end)
+        to_end = jnp.where(jnp.any(path.bonded), jnp.inf, to_end)
         nearest = jnp.min(bonds, initial=jnp.inf)
         left = jnp.minimum(nearest, jnp.where(path.outward, to_end, to_turn))
         back = ahead * (path.separation - path.last.separation)
@@ -141,7 +141,7 @@ class _Motion(NamedTuple):
         first = self.coupled.equilibrium(self.top, none, self.top - self.coupled.offsets)
         return Path(
             separation=self.top,
-            held=none,
+            bonded=none,
             state=first,
             outward=jnp.asarray(False),
             last=_Point(self.top, self.energy, first.force),
@@ -152,7 +152,7 @@ class _Motion(NamedTuple):
             tension=nothing,
             turning_point=nothing,
             at_turn=first,
-            held_at_turn=none,
+            bonded_at_turn=none,
             arrived=jnp.isnan(self.energy),
             still=jnp.asarray(0),
             steps=jnp.asarray(0),
@@ -160,13 +160,13 @@ class _Motion(NamedTuple):
 
     def step(self, path: Path) -> Path:
         """One move, or one change of a bond at fixed separation."""
-        state, held = path.state, path.held
+        state, bonded = path.state, path.bonded
         here = self.point(path.separation, state, path.freed)
         choice = self.choose(path, here)
         move, chosen, turns = self.move(path, choice), choice.chosen, choice.turns
         changes = jnp.any(chosen)
         separation = path.separation + move
-        new = self.coupled.equilibrium(separation, held ^ chosen, state.gaps + state.rates * move)
+        new = self.coupled.equilibrium(separation, bonded ^ chosen, state.gaps + state.rates * move)
         freed = path.freed + jnp.where(changes, state.energy - new.energy, 0.0)
         there = self.point(separation, new, freed)
         last = _select(choice.good, here, path.last)
@@ -179,18 +179,18 @@ class _Motion(NamedTuple):
         summits = self.coupled.summits
         return Path(
             separation=separation,
-            held=held ^ chosen,
+            bonded=bonded ^ chosen,
             state=new,
             outward=outward,
             last=_select(changes | choice.stuck, there, last),
             missed=jnp.where(choice.acts | choice.stuck, begun, missed),
             freed=freed,
-            lost=path.lost + jnp.sum(jnp.where(chosen & held, summits.lost, 0.0), axis=1),
+            lost=path.lost + jnp.sum(jnp.where(chosen & bonded, summits.lost, 0.0), axis=1),
             least=jnp.where(counted, jnp.minimum(path.least, least), path.least),
             tension=jnp.where(counted, jnp.maximum(path.tension, tension), path.tension),
             turning_point=jnp.where(turns, path.separation, path.turning_point),
             at_turn=_select(turns, state, path.at_turn),
-            held_at_turn=jnp.where(turns, held, path.held_at_turn),
+            bonded_at_turn=jnp.where(turns, bonded, path.bonded_at_turn),
             arrived=choice.acts & ~changes & ~turns,
             still=jnp.where(changes, path.still + 1, 0),
             steps=path.steps + 1,
@@ -209,14 +209,14 @@ def _select(condition: jax.Array, chosen: Tree, other: Tree) -> Tree:
 
 
 def _left_to_bonds(
-    summits: Asperities, state: SummitEquilibrium, held: jax.Array, ahead: jax.Array
+    summits: Asperities, state: SummitEquilibrium, bonded: jax.Array, ahead: jax.Array
 ) -> jax.Array:
     """Separation [m] that is left until each bond forms or breaks, shape (laws, n).
 
     By the rate of its gap; negative where it was missed, infinite where it moves away.
     """
-    edge = jnp.where(held, summits.breaking, summits.forming)
-    sign = jnp.where(held, 1.0, -1.0)
+    edge = jnp.where(bonded, summits.breaking, summits.forming)
+    sign = jnp.where(bonded, 1.0, -1.0)
     left, rate = sign * (edge - state.gaps), sign * ahead * state.rates
     missed = jnp.where(left <= 0.0, -jnp.inf, jnp.inf)
     return jnp.where(rate > 0.0, left / jnp.where(rate > 0.0, rate, 1.0), missed)
@@ -234,7 +234,7 @@ def _least_between(start: _Point, end: _Point, weight: Real) -> jax.Array:
 def follow(
     coupled: CoupledSummits, weight: Real, top: jax.Array, energy: jax.Array, depth: jax.Array
 ) -> Path:
-    """A body on its way down and out again.
+    """A body down to its turning point and out again.
 
     Parameters
     ----------

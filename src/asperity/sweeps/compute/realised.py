@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,7 +51,9 @@ def realised(
         body = taken(solution.body, np.array([index]))
         turning_point = float(solution.history["closest_approach"][index, 0])
         try:
-            bodies = realise(problem, body, turning_point, stop=clock.stop, rebounds=False)
+            bodies = clock.timed(
+                partial(realise, problem, body, turning_point, stop=clock.stop, rebounds=False)
+            )
         except (InputError, SimulationError) as error:
             clock.look()
             solution.failures[index] = error

@@ -1,0 +1,88 @@
+"""Single bodies: first impacts on a rigid bulk, and on a half-space beside them, in turn.
+
+``python -m benchmarks.single_bodies`` prints these rows alone.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import asperity
+from asperity.config.resolve import resolve
+from asperity.dynamics.single_impact import Launch
+from asperity.model import build
+from asperity.single_bodies import SingleBodies
+
+CASE = """
+[body]
+material = "silica"
+radius = "25 um"
+[counterface]
+material = "silicon carbide"
+deformation = "{bulk}"
+[roughness]
+asperity_density = "6.3e13 1/m^2"
+asperity_radius = "450 nm"
+rms_height = "1.64 nm"
+placement = "random"
+[adhesion]
+model = "dmt"
+work = "50 mJ/m^2"
+equilibrium_spacing = "0.3 nm"
+[capillary]
+model = "equilibrium"
+liquid = "water"
+humidity = 0.5
+contact_angle = "20 deg"
+temperature = "20 degC"
+[impact]
+speed = "3 mm/s"
+"""
+SPEEDS = (3e-3, 12e-3)  # m/s
+BODIES = {"rigid": 100_000, "half-space": 1000}
+TURNS = 3
+Row = tuple[str, str, str]
+
+
+def rows() -> list[Row]:
+    """What was measured, the figure, and its goal."""
+    out = []
+    for speed in SPEEDS:
+        some = {bulk: _Bodies(bulk, speed) for bulk in BODIES}
+        turns = [{bulk: bodies.seconds() for bulk, bodies in some.items()} for _ in range(TURNS)]
+        taken = {bulk: min(turn[bulk] for turn in turns) for bulk in BODIES}
+        for bulk, count in BODIES.items():
+            what = f"{count} first impacts, {bulk}, {some[bulk].contacting:.1f} summits touch"
+            out.append((what, f"{taken[bulk]:.1f} s", "10 s"))
+        each = [taken[bulk] / count for bulk, count in BODIES.items()]
+        out.append(
+            ("  a body on the half-space over one on a rigid bulk", f"{each[1] / each[0]:.0f}", "")
+        )
+    return out
+
+
+class _Bodies:
+    """Bodies of one case that come with a speed [m/s]; compiled once they are there."""
+
+    def __init__(self, bulk: str, speed: float) -> None:
+        problem = build(resolve(asperity.config.load(CASE.format(bulk=bulk))))
+        count = BODIES[bulk]
+        kinetic = np.full(count, 0.5 * float(problem.body.mass) * speed**2)
+        weight = np.full(count, float(problem.body.weight))
+        self._launches = Launch(kinetic, np.full(count, np.inf), weight)
+        self._bodies = SingleBodies(problem, 0.0)
+        found = self._bodies.impacts(self._launches, with_pull_off=False)
+        self.contacting = float(np.mean(found.contacting))
+
+    def seconds(self) -> float:
+        """Time that their first impacts take [s]."""
+        begun = time.perf_counter()
+        self._bodies.impacts(self._launches, with_pull_off=False)
+        return time.perf_counter() - begun
+
+
+if __name__ == "__main__":
+    for what, figure, goal in rows():
+        print(f"{what:<62}{figure:>16}" + (f"   goal {goal}" if goal else ""), flush=True)
