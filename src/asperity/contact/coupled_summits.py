@@ -10,7 +10,7 @@ from ..numerics.roots import fixed_point
 from .asperity_table import Asperities
 
 _ENOUGH = 1e-7  # of the shortest length of a law: the last change of a gap, the next its square
-_STEPS = 40
+_WHOLE, _STEPS = 10, 80  # of Newton's method: whole ones, and all
 _INSIDE = 1e-13  # of that length: within what a bond bears
 _RAMP = 1.5  # times what attractions that end with contact move a summit: over which they rise
 
@@ -28,12 +28,15 @@ class SummitEquilibrium(NamedTuple):
         Force on each [N], positive apart, shape (n,).
     energy
         Energy of all and of the half-space [J], with what bonds that hold have lost.
+    solved
+        Whether Newton's method arrived.
     """
 
     gaps: jax.Array
     rates: jax.Array
     forces: jax.Array
     energy: jax.Array
+    solved: jax.Array
 
     @property
     def force(self) -> jax.Array:
@@ -97,19 +100,21 @@ class CoupledSummits(NamedTuple):
         """
         rigid, one = separation - self.offsets, jnp.ones_like(guess)
 
-        def step(now: tuple[jax.Array, jax.Array]) -> tuple[tuple[jax.Array, jax.Array], jax.Array]:
-            gaps, _ = now
+        def step(now: tuple[jax.Array, ...]) -> tuple[tuple[jax.Array, ...], jax.Array]:
+            gaps, _, made = now
             _, forces, slopes = self._response(gaps, bonded)
             left = gaps - rigid - self.influence @ forces
             matrix = jnp.eye(gaps.shape[0]) - self.influence * slopes
             change, rates = jnp.linalg.solve(matrix, jnp.stack([left, one], axis=1)).T
-            return (gaps - change, rates), jnp.max(jnp.abs(change))
+            # Steps to and fro over an end of the piece of a law are halved.
+            share = jnp.where(made < _WHOLE, 1.0, 0.5)
+            return (gaps - share * change, rates, made + 1), jnp.max(jnp.abs(change))
 
         enough = _ENOUGH * self.summits.scale[0]
-        (gaps, rates), _ = fixed_point(step, (guess, one), enough, _STEPS)
+        (gaps, rates, _), change = fixed_point(step, (guess, one, jnp.asarray(0)), enough, _STEPS)
         work, forces, _ = self._response(gaps, bonded)
         energy = jnp.sum(work) + 0.5 * forces @ self.influence @ forces
-        return SummitEquilibrium(gaps, rates, forces, energy)
+        return SummitEquilibrium(gaps, rates, forces, energy, change <= enough)
 
     def _response(
         self, gaps: jax.Array, bonded: jax.Array

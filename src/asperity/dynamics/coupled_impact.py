@@ -67,6 +67,7 @@ def _coupled_impact(
         lost=end.lost,
         interaction=end.freed - jnp.sum(end.lost),
         pull_off=end.tension,
+        unsolved=(~end.sound).astype(float),
         within_range=jnp.sum(turn.gaps <= summits.approach_range),
     )
 

@@ -40,7 +40,7 @@ class Path(NamedTuple):
     ``last`` is the last point from where on no bond was missed, ``missed`` a separation behind one
     that was. ``freed`` is the energy that the contact loses as bonds change, ``lost`` what
     those that broke lose themselves; ``least`` and ``tension`` the least kinetic energy and the
-    largest tension on retraction.
+    largest tension on retraction. It is ``sound`` while all points that count are solved.
     """
 
     separation: jax.Array
@@ -57,6 +57,7 @@ class Path(NamedTuple):
     at_turn: SummitEquilibrium
     bonded_at_turn: jax.Array
     arrived: jax.Array
+    sound: jax.Array
     still: jax.Array
     steps: jax.Array
 
@@ -154,6 +155,7 @@ class _Motion(NamedTuple):
             at_turn=first,
             bonded_at_turn=none,
             arrived=jnp.isnan(self.energy),
+            sound=first.solved,
             still=jnp.asarray(0),
             steps=jnp.asarray(0),
         )
@@ -192,6 +194,7 @@ class _Motion(NamedTuple):
             at_turn=_select(turns, state, path.at_turn),
             bonded_at_turn=jnp.where(turns, bonded, path.bonded_at_turn),
             arrived=choice.acts & ~changes & ~turns,
+            sound=path.sound & (state.solved | ~choice.good),
             still=jnp.where(changes, path.still + 1, 0),
             steps=path.steps + 1,
         )

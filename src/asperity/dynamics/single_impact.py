@@ -70,6 +70,9 @@ class SingleImpact(NamedTuple):
         half-space; negative where it is set free. 0 on a rigid bulk.
     pull_off
         Largest tension on retraction [N]; NaN where it is not asked for.
+    unsolved
+        1 where summits on a half-space had no equilibrium at some separation: a jump of theirs
+        is then not in the balance. Else 0.
     within_range
         Summits that have felt anything by then; where those are all that were given, there may be
         more.
@@ -86,6 +89,7 @@ class SingleImpact(NamedTuple):
     lost: jax.Array
     interaction: jax.Array
     pull_off: jax.Array
+    unsolved: jax.Array
     within_range: jax.Array
 
 
@@ -143,6 +147,7 @@ def _impact(
         lost=jnp.sum(held * summits.lost, axis=1),
         interaction=jnp.zeros(()),
         pull_off=pull_off,
+        unsolved=jnp.zeros(()),
         within_range=jnp.sum(gaps <= summits.approach_range),
     )
 

@@ -41,6 +41,8 @@ def bodies_rows(result: ResultData) -> list[tuple[str, str]]:
         quantiles = found.quantiles(name)
         if isfinite(quantiles[0]):  # of rebounds none, where no body was captured in those followed
             rows.append((label, _spread(quantiles, KINDS[name][0], mean.get(name))))
+    if unsolved := int(found.values["unsolved"].sum()):
+        rows.append(("without equilibrium", f"{unsolved} of {found.size}, at some separation"))
     lost = result.ledger.get("lost") or {}
     once = len(measures.get("restitution") or []) == 1
     for name in found.lost:

@@ -19,6 +19,7 @@ KINDS = {
     "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2"),
     "maximum_force": ("N", "contact force there"),
     "pull_off": ("N", "largest tension on retraction"),
+    "unsolved": ("1", "1 where summits had no equilibrium at some separation, else 0"),
     "closest_approach": ("m", "rigid separation of the turning point"),
     "rebounds": ("1", "rebounds before the impact that captures, infinite where none is found"),
     "flight_time": ("s", "time that these rebounds take in flight, likewise"),
