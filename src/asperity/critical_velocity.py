@@ -96,7 +96,7 @@ class Launcher:
             np.asarray(contact.interaction_range), outset, np.asarray(body.release),
             yields=isinstance(contact, YieldingContact),
         )  # fmt: skip
-        body = dataclasses.replace(problem.body, release=launched)
+        body = dataclasses.replace(body, release=launched)
         self._problem = problem._replace(body=body, contact=contact)
         self._many, self._stop, self._refinements = many, stop, (1, *finer)
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))

@@ -79,7 +79,7 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
     if inputs.structure.viscoelastic:
         relaxation = Relaxation(contact, inputs.relaxed_modulus_ratio, inputs.relaxation_time)
         contact = relaxation.relaxed()
-        body = dataclasses.replace(body, on_creep=(VISCOUS,))
+        body = dataclasses.replace(body, in_bulk=(VISCOUS,))
     return Problem(contact, body, inputs, delayed, _class_error(inputs), relaxation)
 
 

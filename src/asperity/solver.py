@@ -153,6 +153,8 @@ def _result(
     most: int | None,
 ) -> Result:
     """The result of a motion, and of single bodies beside it."""
+    # Of a contact that folds both differ from what was built.
+    problem = problem._replace(contact=solution.contact, body=solution.body or problem.body)
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
@@ -218,6 +220,7 @@ def curve(
 def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     """The curve of what was built from a case."""
     contact, motion = first_impact(problem, report)
+    problem = problem._replace(contact=contact)
     warnings = assessment_of(name, problem, contact, motion).warnings
     report(0.6, "unloading")
     spring = problem.inputs.suspension
@@ -253,7 +256,7 @@ def assess(
     problem = build(resolve(case))
     contact, motion = first_impact(problem, report)
     report(1.0, "done")
-    return assessment_of(name, problem, contact, motion)
+    return assessment_of(name, problem._replace(contact=contact), contact, motion)
 
 
 def _kept_elastic(inputs: Inputs, report: Report) -> float | None:

@@ -166,6 +166,16 @@ class Contact(eqx.Module):
         all.
         """
 
+    @property
+    def sides(self) -> int:
+        """Stable equilibria that a major branch may have at one separation (static)."""
+        return 1
+
+    @property
+    def scale(self) -> jax.Array:
+        """Length [m] over which the forces of a contact that jumps change."""
+        raise NotImplementedError
+
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
         """Index of the major branch that a body with ``memory`` reaches."""
         return jnp.where(unloading, min(len(self.mechanisms), 1), 0)

@@ -30,6 +30,8 @@ _FINER = 2  # panels of that table for each of the curves
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
+_SOON = 5  # pieces, even ones, until the first rings have passed from one branch to the other
+_BENDS = 2.0  # rms heights: the others are even in asinh(separation / this)
 _MORE = 1.02  # than the way at the first rate
 _MUCH_MORE = 1.2  # where liquid fills the surface: the rate falls as the bulk springs back
 
@@ -135,6 +137,21 @@ def _marks(
     return jnp.concatenate(rows)
 
 
+def _graded(
+    contact: Deforming, start: jax.Array, end: jax.Array, fastest: jax.Array, pieces: int
+) -> jax.Array:
+    """Ends of pieces of a scanning curve over which curves fold: as close as a branch asks for."""
+    widths = [law.breaking_gap - law.forming_gap for law in contact.interface.hysteretic]
+    first = jnp.min(jnp.stack(widths)) / jnp.maximum(fastest, 1.0)
+    first = jnp.sign(end - start) * jnp.minimum(first, jnp.abs(end - start))
+    scale = _BENDS * contact.interface.scale.rms
+    ends = jnp.linspace(
+        jnp.arcsinh((start + first) / scale), jnp.arcsinh(end / scale), pieces - _SOON + 1
+    )[1:]
+    soon = start + first * np.arange(1.0, _SOON + 1.0) / _SOON
+    return jnp.concatenate([soon, scale * jnp.sinh(ends)])
+
+
 def fitted(
     contact: Deforming,
     place: jax.Array,
@@ -170,7 +187,7 @@ def continue_branch(
     pressure first, which costs little, and then with the pressure itself: mostly one step.
     """
     rings, sigma = contact.rings, contact.interface.scale.rms
-    tabulated = _with_table(contact, corners, thresholds)
+    tabulated = with_table(contact, corners[-1], corners[0], thresholds)
     flat = jnp.zeros(rings + 1)
 
     def fit(carry: tuple[jax.Array, jax.Array], place: jax.Array) -> Any:
@@ -192,16 +209,22 @@ def continue_branch(
     return found
 
 
-def _with_table(contact: Deforming, corners: jax.Array, thresholds: Thresholds) -> Deforming:
+def with_table(
+    contact: Deforming,
+    low: jax.Array,
+    high: jax.Array,
+    thresholds: Thresholds,
+    finer: int = _FINER,
+) -> Deforming:
     """The contact with the pressure of a branch tabulated, over all separations of its rings."""
     scale = LINEAR * contact.interface.scale.rms
-    low = corners[-1] - _BELOW * contact.interface.scale.rms
-    count = _FINER * contact.resolved.panels
-    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(corners[0] / scale), count + 1)
+    low = low - _BELOW * contact.interface.scale.rms
+    count = finer * contact.resolved.panels
+    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(high / scale), count + 1)
     memory = tuple(b[-1] for b in thresholds)
     table = BranchPressure(contact.interface, memory, scale * jnp.sinh(ends))
-    with_table: Deforming = eqx.tree_at(lambda one: one.interface, contact, table)
-    return with_table
+    tabulated: Deforming = eqx.tree_at(lambda one: one.interface, contact, table)
+    return tabulated
 
 
 def continue_scanning_curve(
@@ -211,8 +234,13 @@ def continue_scanning_curve(
     size: jax.Array,
     unloading: jax.Array,
     within: tuple[Any, Any],
+    *,
+    graded: bool = False,
 ) -> tuple[jax.Array, jax.Array, jax.Array, RingEquilibrium]:
-    """Pieces of the scanning curve, separations on them and the rings there, from the start on."""
+    """Pieces of the scanning curve, separations on them and the rings there, from the start on.
+
+    Pieces are cut where rings reach the branch, or are ``graded``.
+    """
     pieces, nodes = contact.passed
     steps = piece_points(nodes)
     sigma = contact.interface.scale.rms
@@ -220,6 +248,9 @@ def continue_scanning_curve(
     pace = rates(contact, start, *held, memory.displacement, contact.rings)
     marks = _marks(contact, memory, start, unloading, pace)
     enter, leave = pieces_to(marks, start, unloading, within)
+    if graded:
+        marks = _graded(contact, start, leave[-1], jnp.max(pace), pieces)
+        enter, leave = pieces_to(marks, start, unloading, within)
     back = jnp.where(unloading, sigma, -sigma) * 1e-2
     path = ContinuationPath.straight(start, memory.displacement, pace - 1.0, back)
 

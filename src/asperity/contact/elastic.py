@@ -143,10 +143,17 @@ class ElasticContact(RoughContact):
         inner = jax.tree_util.tree_map(
             lambda leaf: leaf[::-1].reshape(near, places.shape[1], *leaf.shape[1:]), states
         )
+        return self._with_far(inner, ends, places, memory)
+
+    def _with_far(
+        self, inner: State, ends: jax.Array, places: jax.Array, memory: RingMemory
+    ) -> State:
+        """A branch with the panels beyond the interaction range, where the body is rigid."""
+        near = inner.force.shape[0]
         thresholds = tuple(b[-1] for b in memory.thresholds)
         outer = self.rigid._branch(ends, places[near:], thresholds)
         still = jnp.zeros((self.rigid.far, places.shape[1], *inner.field.shape[2:]))
-        outer = outer._replace(field=still, size=jnp.full(places[near:].shape, sizes[0]))
+        outer = outer._replace(field=still, size=jnp.full(places[near:].shape, inner.size[-1, -1]))
         return jax.tree_util.tree_map(lambda a, b: jnp.concatenate([a, b]), inner, outer)
 
     def scanning_curve(
@@ -167,7 +174,9 @@ class ElasticContact(RoughContact):
         @jax.jit  # traced once, for its shapes and for itself
         def back() -> ScanningCurve:
             frozen = jax.lax.stop_gradient((self, memory, start))
-            enter, leave, places, rests = continue_scanning_curve(*frozen, size, unloading, within)
+            enter, leave, places, rests = continue_scanning_curve(
+                *frozen, size, unloading, within, graded=self.sides > 1
+            )
             return ScanningCurve(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)

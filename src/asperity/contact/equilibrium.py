@@ -34,6 +34,7 @@ _STEPS = 120
 class Rough(Protocol):
     """What rings are pressed by."""
 
+    rings: int
     interface: RoughPlanes
     shape: Sphere
     modulus: Any
@@ -198,6 +199,24 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
         lambda _, right: dense_solve(matrix.T, right),
     )
     return displacement, change
+
+
+def balance(
+    contact: Rough,
+    h: jax.Array,
+    safe: jax.Array,
+    thresholds: Thresholds,
+    size: jax.Array,
+    most: float | None = None,
+) -> tuple[jax.Array, jax.Array]:
+    """By how much a separation h exceeds the undeformed one and the displacement [m].
+
+    And its derivative by h; with slopes of the pressure up to ``most`` alone.
+    """
+    pressure, slope = pressed(contact, thresholds, h)
+    left = h - safe - _displacement(contact, size, pressure, contact.rings)
+    slope = slope if most is None else jnp.minimum(slope, most)
+    return left, _matrix(contact, size, slope, contact.rings)
 
 
 def asked_size(rest: RingEquilibrium, rings: int, beyond: jax.Array | float = 0.0) -> jax.Array:

@@ -11,6 +11,7 @@ from ..contact.contact import Contact, Held, YieldingContact
 from ..errors import Tolerance
 from ..laws.law import Real
 from .curve_table import (
+    CENTRAL,
     CONTACTING,
     FORCE,
     NO_CUTS,
@@ -23,6 +24,7 @@ from .curve_table import (
     tabulate,
     tabulate_again,
 )
+from .instability import over_folds
 from .motion_end import EndRules
 from .overdamped import Rest, come_to_rest
 from .phase import TurningPoint, in_order, look_ahead, mechanical_at_end, pull_work, row_at
@@ -95,6 +97,7 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
         time=zero,
         lost=jnp.zeros(len(contact.mechanisms) + len(body.mechanisms)),
         bonds=row[quantities(contact).bonds],
+        central=row[CENTRAL],
         first=zero,
         impact_energy=zero,
         outcome=jnp.asarray(IN_MOTION),
@@ -192,6 +195,8 @@ def _phase_of_impact(
     fate = jnp.asarray(False), jnp.asarray(True), jnp.asarray(False)
     inner = inner_pieces(contact, table, progress.memory, progress.place, unloading)
     branch = contact.branch_of(progress.memory, unloading)
+    reversal = progress.place, progress.central
+    branch, jumps = over_folds(contact, table, branch, inner, reversal, unloading)
     ahead = look_ahead(table, branch, inner, progress.kinetic, body.load, progress.place, unloading)
     if not body.damped:
         inwards = jnp.logical_or(bool(body.forces), jnp.logical_not(unloading))
@@ -209,25 +214,29 @@ def _phase_of_impact(
     row = row_at(ahead, turn)
     layout = quantities(contact)
     bonds = row[layout.bonds]
-    formed = jnp.maximum(bonds - progress.bonds, 0.0)
-    broken = jnp.maximum(progress.bonds - bonds, 0.0)
-    at_forming, at_breaking = contact.losses()
-    lost = jnp.concatenate([formed * at_forming + broken * at_breaking, dissipated]) + progress.lost
+    parts = _by_bonds(contact, bonds - progress.bonds), dissipated
+    lost = jnp.concatenate([*parts, jumps.lost(turn.place, unloading)]) + progress.lost
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
         progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
-        progress.lost, progress.bonds,
+        progress.lost, progress.bonds, jumps,
     )  # fmt: skip
     held = Held(turn.piece >= ahead.pieces, unloading, row[SIZE], row[layout.field])
     after = progress._replace(
         memory=contact.update_memory(progress.memory, turn.place, held), place=turn.place,
-        kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds,
+        kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds, central=row[CENTRAL],
     )  # fmt: skip
     end = _PhaseEnd(
         turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
         *fate, mechanical_at_end(ahead) - jnp.sum(dissipated),
     )  # fmt: skip
     return after, end
+
+
+def _by_bonds(contact: Contact, change: jax.Array) -> jax.Array:
+    """Energy lost as bonds form and break [J], by law."""
+    at_forming, at_breaking = contact.losses()
+    return jnp.maximum(change, 0.0) * at_forming + jnp.maximum(-change, 0.0) * at_breaking
 
 
 def _no_rise(fall: _Ended, rise: _Ended) -> _Ended:

@@ -68,7 +68,8 @@ def quasi_static_curve(
         "pull_off": float(pulled.pull_off),
         "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
         "work_of_separation": float(pulled.work),
-        "loss": _loss(contact, approach[:, layout.bonds], unloading[:, layout.bonds]),
+        "loss": _loss(contact, approach[:, layout.bonds], unloading[:, layout.bonds])
+        + _by_jumps(impacts, deepest),
         "jumps": None,
     }
     if stiffness is not None:
@@ -152,6 +153,13 @@ def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:
 
 losses = Program(_losses, AT_ONCE)
 """What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
+
+
+def _by_jumps(impacts: Impacts, deepest: float) -> float:
+    """Energy lost at jumps in, down to the deepest point, and out to the end [J]."""
+    inward, outward = impacts.fall.jumps, impacts.rise.jumps
+    passed = np.asarray(inward.place[0]) > deepest
+    return float(np.sum(np.asarray(inward.energy[0])[passed]) + np.sum(outward.energy[0]))
 
 
 def _loss(contact: Contact, approach: np.ndarray, unloading: np.ndarray) -> float:

@@ -14,6 +14,7 @@ from ..laws.law import Real, as_float64, quantity, quantity_or_none
 from ..numerics.compilation import kept
 from .curve_table import Pieces, Table
 from .external_forces import Along, Drag, ExternalForce, Load
+from .instability import Jumps
 from .static_equilibrium import Reference
 
 IN_MOTION = -1
@@ -39,9 +40,9 @@ class Body(eqx.Module):
         What acts on it besides its weight, its contact and the drags.
     rebounds_from
         Separation [m] from which rebounds count; by default the static equilibrium.
-    on_creep
-        What a bulk under its contact takes by creep (static): losses of a motion that is stepped
-        in time, after those of the drags.
+    in_bulk
+        What the bulk takes (static), by creep or by jumps of its surface: losses after those of
+        the drags.
     """
 
     mass: Real = quantity()
@@ -51,12 +52,12 @@ class Body(eqx.Module):
     drags: tuple[Drag, ...] = ()
     forces: tuple[ExternalForce, ...] = ()
     rebounds_from: Real | None = quantity_or_none()
-    on_creep: tuple[str, ...] = eqx.field(static=True, default=())
+    in_bulk: tuple[str, ...] = eqx.field(static=True, default=())
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
         """Names of the losses that are not the contact's."""
-        return (*(drag.name for drag in self.drags), *self.on_creep)
+        return (*(drag.name for drag in self.drags), *self.in_bulk)
 
     @property
     def damped(self) -> bool:
@@ -106,6 +107,7 @@ class Phase(NamedTuple):
     inner: Pieces
     lost: jax.Array
     bonds: jax.Array
+    jumps: Jumps
 
 
 class Limits(NamedTuple):
@@ -135,6 +137,7 @@ class Progress(NamedTuple):
     time: jax.Array
     lost: jax.Array
     bonds: jax.Array
+    central: jax.Array
     first: jax.Array
     impact_energy: jax.Array
     outcome: jax.Array

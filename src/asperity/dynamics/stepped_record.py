@@ -11,7 +11,17 @@ from .._jax import jax, jnp
 from ..contact.contact import Contact
 from ..errors import ENDS, Outcome
 from ..numerics.polynomials import NODES
-from .curve_table import ATTRACTION, CONTACTING, FORCE, STORED, Pieces, Table, quantities
+from .curve_table import (
+    ATTRACTION,
+    CENTRAL,
+    CONTACTING,
+    FORCE,
+    STORED,
+    Pieces,
+    Table,
+    quantities,
+)
+from .instability import Jumps
 from .motion_end import LEAST_LOSS, EndRules
 from .record import Body, Impacts, Limits, Motion, Phase, Progress
 from .static_equilibrium import Reference
@@ -186,6 +196,7 @@ class Ledger(NamedTuple):
             "inner": Pieces(none, none, none, none, values),
             "lost": start.lost[0],
             "bonds": start.rows[0, layout.bonds],
+            "jumps": Jumps(none, none),
         }
         return Phase(**columns)
 
@@ -199,6 +210,7 @@ class Ledger(NamedTuple):
             "time": last.time[0],
             "lost": last.lost[0],
             "bonds": last.rows[0, quantities(self.contact).bonds],
+            "central": last.rows[0, CENTRAL],
             "first": self.height(done[0]),
             "impact_energy": self.maximum_kinetic(done[0]),
             "outcome": ENDS.index(outcome) if outcome in ENDS else -1,

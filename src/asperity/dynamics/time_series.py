@@ -72,9 +72,9 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     values, dissipated, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
-    still = np.zeros(len(body.drags))
+    still, none = np.zeros(len(body.drags)), np.zeros(joined[4].shape[-1])
     acting = body.resistances(Along.apart(jnp.asarray(row[CENTRAL]))) if body.drags else still
-    release = (0.0, body.release, -np.asarray(body.speed), row, still, acting, 0)
+    release = (0.0, body.release, -np.asarray(body.speed), row, none, acting, 0)
     rest = (time, separation, speed, values, dissipated, drag, phase.ravel())
     return Series(
         *(
@@ -171,7 +171,7 @@ def _draw_one(
         ends[1:],
         ahead * jnp.sqrt(2.0 * kinetic / body.mass),
         rows,
-        jnp.zeros((spans.size, 0)),
+        _by_jumps(jnp.zeros((spans.size, 0)), phase, ends[1:], unloading),
         jnp.zeros((spans.size, 0)),
         spans != 0.0,
     )
@@ -212,10 +212,20 @@ def _draw_damped(
         places.ravel(),
         jnp.where(unloading, 1.0, -1.0) * speeds.ravel(),
         rows.reshape(places.size, -1),
-        heats.reshape(places.size, -1),
+        _by_jumps(heats.reshape(places.size, -1), phase, places.ravel(), unloading),
         drags.reshape(places.size, -1),
         filled.ravel(),
     )
+
+
+def _by_jumps(
+    dissipated: jax.Array, phase: Phase, places: jax.Array, unloading: jax.Array
+) -> jax.Array:
+    """What drags take, shape (places, drags), and with it what jumps take until there, if any."""
+    if not phase.jumps.place.shape[0]:
+        return dissipated
+    lost = phase.jumps.until(places, unloading)
+    return jnp.concatenate([dissipated, lost[:, None]], axis=1)
 
 
 def _path(pieces: Pieces, phase: Phase, places: int) -> jax.Array:

@@ -24,7 +24,7 @@ from .batch_records import (
     taken,
 )
 from .clock import Clock
-from .panel_cuts import RESIDUAL, CutPanels, curve_failure
+from .panel_cuts import PATIENCE, RESIDUAL, CutPanels, curve_failure
 from .steps import Steps
 
 REFINEMENTS = (1, 2, 4, 8)
@@ -55,6 +55,8 @@ class BatchMotion:
         Whether the cases must be released outside contact.
     launched
         Whether speeds alone are given: the release lies as far out as the forces ask for.
+    patience
+        As :data:`~asperity.integration.panel_cuts.PATIENCE`.
 
     Attributes
     ----------
@@ -74,12 +76,13 @@ class BatchMotion:
         refinements: tuple[int, ...] = REFINEMENTS,
         checked: bool = True,
         launched: bool = False,
+        patience: int = PATIENCE,
     ) -> None:
         self.batch, self.steps, self.clock = batch, steps, clock
         self.made = np.zeros(tolerance.size, int)
         self.failures: dict[int, Exception] = {}
         self._tolerance, self._refinements = tolerance, refinements
-        self._checked, self._launched = checked, launched
+        self._checked, self._launched, self._patience = checked, launched, patience
         self._waiting = np.arange(tolerance.size)  # for curves that are fine enough
         self._panels = [CutPanels()] * tolerance.size
         self._tries = np.zeros(tolerance.size, int)
@@ -160,7 +163,7 @@ class BatchMotion:
             before = self._panels[place := int(places[slot])]
             last = ends[slot], errors[slot], reach[slot]
             after = before.finer(*last, allowed[slot], most, solved=bool(solved[slot]))
-            if fine[slot] or after.stuck or after.cuts.size == before.cuts.size:
+            if fine[slot] or after.stuck(self._patience) or after.cuts.size == before.cuts.size:
                 self.failures[place] = curve_failure(error[slot], tolerance[slot], residual[slot])
                 continue
             self._panels[place] = after

@@ -16,8 +16,14 @@ _PARTS = 6  # into which a panel is cut at once: its error may lie at one place 
 _SAFE = 0.3  # of the error allowed: panels with more are cut
 _GAIN = 0.9  # of the error is left by several more cuts: where more is, no more would help
 _TRIES = 4  # that are looked back for it
-_PATIENCE = 1  # tries without an equilibrium, before a contact counts as one that has none
+PATIENCE = 1
+"""Tries without an equilibrium, before a contact counts as one that has none."""
+
 _EMPTY = np.zeros(0)
+
+
+class Unsolved(SimulationError):
+    """A contact has no equilibrium that follows from the one before."""
 
 
 class CutPanels(NamedTuple):
@@ -37,10 +43,12 @@ class CutPanels(NamedTuple):
     errors: tuple[float, ...] = ()
     unsolved: int = 0
 
-    @property
-    def stuck(self) -> bool:
-        """Whether the last curves are hardly better than those some tries before."""
-        if self.unsolved > _PATIENCE:
+    def stuck(self, patience: int = PATIENCE) -> bool:
+        """Whether the last curves are hardly better than those some tries before.
+
+        Or whether more than ``patience`` of them have no equilibrium somewhere.
+        """
+        if self.unsolved > patience:
             return True
         if len(self.errors) <= _TRIES:
             return False
@@ -90,7 +98,7 @@ class CutPanels(NamedTuple):
 def curve_failure(error: float, tolerance: float, residual: float) -> SimulationError:
     """Why curves do not hold: the contact itself comes first, whose noise no panel follows."""
     if residual > RESIDUAL:
-        return SimulationError(
+        return Unsolved(
             f"pressure and deformation do not agree: relative force error {residual:.1e}. The "
             "contact has no equilibrium that follows from the one before (strong adhesion on "
             "soft bodies folds it)"

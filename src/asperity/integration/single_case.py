@@ -9,11 +9,13 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
+from ..contact.folding import folding
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.curve_table import NO_CUTS
+from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import CLEARANCE, Problem
 from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
@@ -23,6 +25,7 @@ from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
+from .panel_cuts import PATIENCE, Unsolved
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
@@ -74,11 +77,47 @@ def integrate(
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
+    if not _may_fold(problem):
+        return _integrated(problem, report, stop, many=many, drawn=drawn)
+    try:
+        return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
+    except Unsolved:
+        report(0.02, "where equilibria fold")
+        folded = _with_folds(problem)
+    return _integrated(folded, report, stop, many=many, drawn=drawn)
+
+
+def _may_fold(problem: Problem) -> bool:
+    """Whether a body that has no equilibrium somewhere may jump there."""
+    return type(problem.contact) is ElasticContact and not _in_time(problem)
+
+
+def _with_folds(problem: Problem) -> Problem:
+    """The problem with a contact that jumps where its equilibria fold; itself where none does."""
+    contact, body = problem.contact, problem.body
+    assert isinstance(contact, ElasticContact)
+    low = float(contact.lower_bound(body.release, body.kinetic, body.load.potential))
+    folded = folding(contact, low)
+    if folded is None:
+        return problem
+    body = dataclasses.replace(body, in_bulk=(INSTABILITY,))
+    return problem._replace(contact=folded, body=body)
+
+
+def _integrated(
+    problem: Problem,
+    report: Report,
+    stop: threading.Event | None,
+    *,
+    many: bool,
+    drawn: bool,
+    patience: int = PATIENCE,
+) -> Solution:
     tolerance = problem.inputs.tolerance
     motion = _of_one(
         problem, Limits.of(tolerance), tolerance.relative, Clock(stop, report), many=many,
         checked=problem.inputs.release is not None, launched=problem.inputs.chosen_release,
-        drawn=drawn,
+        drawn=drawn, patience=patience,
     )  # fmt: skip
     try:
         return _solution(problem, motion)
@@ -104,7 +143,7 @@ def first_impact(problem: Problem, report: Report = silently) -> tuple[Contact, 
         As :func:`solve`.
     """
     # It has all the time that it needs.
-    body = dataclasses.replace(problem.body, on_creep=())
+    body = dataclasses.replace(problem.body, in_bulk=())
     inputs = problem.inputs.one_impact()
     problem = problem._replace(inputs=inputs, body=body, delayed=None, relaxation=None)
 
@@ -181,12 +220,13 @@ def _of_one(
     checked: bool,
     launched: bool = False,
     drawn: bool = False,
+    patience: int = PATIENCE,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many and not _in_time(problem), drawn=drawn), clock,
-        refinements=refinements, checked=checked, launched=launched,
+        refinements=refinements, checked=checked, launched=launched, patience=patience,
     )  # fmt: skip
 
 

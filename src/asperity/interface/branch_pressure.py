@@ -1,4 +1,4 @@
-"""The pressure between rough planes on one major branch, tabulated over their separation."""
+"""Pressure and energy between rough planes on one major branch, tabulated over separation."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from .height_quadrature import Near
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 _TO_COEFFICIENTS = from_points(NODES)
+_SLOPE = np.arange(NODES) ** 2 * (-1.0) ** np.arange(1, NODES + 1)  # at the lower end
+_SMALL = 1e-3  # of the largest pressure
 _TAIL = 2.0  # power with which attraction across a gap falls: that of an asperity, beyond the table
 
 
 class BranchPressure(RoughPlanes):
-    """Rough planes whose pressure is read from a table, to guess what the planes themselves solve.
+    """Rough planes whose means are read from a table, where there are many rings to solve.
 
     Parameters
     ----------
     planes
-        The planes; all but the pressure is theirs.
+        The planes; integrated means are theirs.
     memory
         Memory on the branch, one threshold [m] a law.
     ends
@@ -39,20 +41,37 @@ class BranchPressure(RoughPlanes):
         places = ends[:-1, None] + jnp.diff(ends)[:, None] * nodes
         each = tuple(jnp.broadcast_to(threshold, places.shape) for threshold in memory)
         self.planes, self.ends = planes, ends
-        self.coefficients = jnp.asarray(_TO_COEFFICIENTS) @ planes.pressure(places, each).T
+        means = planes.measure(places, each)
+        rows = [*means.parts, means.energy, *means.bonds, means.contacting]
+        self.coefficients = jnp.einsum("kn,qpn->kpq", _TO_COEFFICIENTS, jnp.stack(rows))
+
+    @property
+    def error(self) -> jax.Array:
+        """The last coefficients of the pressure over the largest pull or push around."""
+        pressure = jnp.abs(jnp.sum(self.coefficients[..., : len(self.components)], axis=2))
+        last = jnp.max(pressure[-2:], axis=0)
+        return jnp.max(last / (pressure[0] + _SMALL * jnp.max(pressure[0])))
+
+    def _read(self, separation: jax.Array, coefficients: jax.Array) -> jax.Array:
+        """Values with such coefficients, (NODES, panels, ...), at separations of shape (n,)."""
+        ends, shape = self.ends, jnp.shape(separation)
+        separation = jnp.ravel(separation)
+        panel = jnp.clip(jnp.searchsorted(ends, separation) - 1, 0, len(ends) - 2)
+        x = local(ends[panel], ends[panel + 1], separation)
+        more = coefficients.ndim - 2
+        wide = x.reshape(-1, *(1,) * more)
+        found = chebyshev_sum(coefficients[:, panel], jnp.clip(wide, -1.0, 1.0))
+        slope = jnp.tensordot(_SLOPE, coefficients[:, 0], axes=1)
+        below = jnp.minimum(separation - ends[0], 0.0) * 2.0 / (ends[1] - ends[0])
+        beyond = jnp.maximum(separation / ends[-1], 1.0).reshape(wide.shape)
+        found = (found + slope * below.reshape(wide.shape)) * beyond**-_TAIL
+        return found.reshape(*shape, *found.shape[1:])
 
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         if integrated:
             return self.planes.pressure(separation, memory, integrated)
-        ends = self.ends
-        panel = jnp.clip(jnp.searchsorted(ends, separation) - 1, 0, len(ends) - 2)
-        x = local(ends[panel], ends[panel + 1], separation)
-        found = chebyshev_sum(self.coefficients[:, panel], jnp.clip(x, -1.0, 1.0))
-        first = self.coefficients[:, 0]
-        slope = (np.arange(NODES) ** 2 * (-1.0) ** np.arange(1, NODES + 1)) @ first
-        below = jnp.minimum(separation - ends[0], 0.0) * 2.0 / (ends[1] - ends[0])
-        beyond = jnp.maximum(separation / ends[-1], 1.0)
-        return (found + slope * below) * beyond**-_TAIL
+        parts = self.coefficients[..., : len(self.components)]
+        return self._read(separation, jnp.sum(parts, axis=2))
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -72,4 +91,8 @@ class BranchPressure(RoughPlanes):
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
-        return self.planes.measure(separation, memory, integrated, near)
+        if integrated:
+            return self.planes.measure(separation, memory, integrated, near)
+        rows = jnp.moveaxis(self._read(separation, self.coefficients), -1, 0)
+        count = len(self.components)
+        return Means(rows[:count], rows[count], rows[count + 1 : -1], rows[-1])

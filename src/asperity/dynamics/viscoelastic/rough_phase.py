@@ -75,7 +75,7 @@ class RoughBounce:
         rings = base.rings
         self._columns = quantities(base).components.stop
         self._delayed = relaxation.delayed
-        self.lost = np.zeros(len(base.mechanisms) + len(body.on_creep))
+        self.lost = np.zeros(len(base.mechanisms) + len(body.in_bulk))
         self.time, self.fit = 0.0, 1.0
         gaps = float(body.release) + self._profile
         thresholds = base.interface.initial_memory(np.zeros(rings + 1))
