@@ -25,6 +25,7 @@ COLOURS = {
     "lost_waves": "#8C6D31",
     "lost_plastic": "#E69F00",
     "lost_viscous": "#7F3C8D",
+    "lost_instability": "#56B4E9",
     "loading": "#0072B2",
     "unloading": "#D55E00",
     "lost": "#F5D0B5",

@@ -17,6 +17,7 @@ _TAKERS = {
     "adhesion": "dry adhesion takes",
     "capillary": "menisci take",
     "gas": "the gas film takes",
+    "instability": "jumps of the surface take",
     "plastic": "yielding takes",
     "viscous": "the viscoelastic bulk takes",
     "waves": "elastic waves take",
