@@ -14,6 +14,7 @@ from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_a
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
 from .integration import launch
+from .integration.batch_motion import REFINEMENTS
 from .integration.batch_records import Slice
 from .results.conversion import Solution, measured
 from .results.summary import amount
@@ -98,6 +99,7 @@ class Launcher:
         )  # fmt: skip
         body = dataclasses.replace(body, release=launched)
         self._problem = problem._replace(body=body, contact=contact)
+        finer = REFINEMENTS[1:] if contact.sides > 1 else finer  # folds are steep
         self._many, self._stop, self._refinements = many, stop, (1, *finer)
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
         self._curves: dict[float, Slice] = {}  # by the speed up to which they serve

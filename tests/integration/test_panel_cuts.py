@@ -26,7 +26,7 @@ def cut_until_fine(function, most, first=FIRST, reach=np.inf):
         ends = np.sort(np.concatenate([first, panels.cuts]))
         errors, tries = errors_of(function, ends), tries + 1
         after = panels.finer(ends, errors, reach, GOAL, most)
-        if np.max(errors) <= GOAL or after.stuck or after.cuts.size == panels.cuts.size:
+        if np.max(errors) <= GOAL or after.stuck() or after.cuts.size == panels.cuts.size:
             return panels, errors, tries
         panels = after
 

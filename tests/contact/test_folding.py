@@ -1,0 +1,173 @@
+"""A rough sphere on a soft half-space jumps into contact and out of it."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.config import load
+from asperity.config.resolve import resolve
+from asperity.contact.equilibrium import compliance, pressed, profile_of
+from asperity.contact.folding import FoldingContact, folding
+from asperity.errors import SimulationError
+from asperity.model import build
+
+RMS = 5e-9
+DEEP = -20.0 * RMS
+
+
+def text(modulus, speed=100.0, rings=40):
+    return f"""
+    schema = 1
+    [body]
+    radius = "10 um"
+    youngs_modulus = "{modulus} MPa"
+    poisson = 0.3
+    density = "1200 kg/m^3"
+    [counterface]
+    youngs_modulus = "{modulus} MPa"
+    poisson = 0.3
+    density = "1200 kg/m^3"
+    [roughness]
+    asperity_density = "2e14 1/m^2"
+    asperity_radius = "50 nm"
+    rms_height = "5 nm"
+    [adhesion]
+    model = "dmt"
+    work = "50 mJ/m^2"
+    equilibrium_spacing = "0.3 nm"
+    [impact]
+    speed = "{speed} mm/s"
+    gravity = "0 m/s^2"
+    [numerics]
+    max_impacts = 3
+    rings = {rings}
+    """
+
+
+@cache
+def contact(modulus, rings=40):
+    return build(resolve(load(text(modulus, rings=rings)))).contact
+
+
+@cache
+def folded(modulus=60.0, rings=40):
+    found = folding(contact(modulus, rings), DEEP)
+    assert isinstance(found, FoldingContact)
+    return found
+
+
+@cache
+def thrown():
+    return asperity.solve(load(text(60.0)))
+
+
+@cache
+def curve():
+    return asperity.curve(load(text(60.0)))
+
+
+def followed(one, size, begin, end, count):
+    """Central separations of plain Newton steps from one separation to the next, until they end."""
+    flat, steps = np.zeros(one.rings + 1), np.linspace(begin, end, count)
+    profile = np.asarray(profile_of(one, jnp.asarray(size), one.rings))
+    matrix = size / float(one.modulus) * compliance(one.rings)
+    law = jax.jit(lambda h: pressed(one, (), h))
+    displacement, path = flat, []
+    for place in steps:
+        h = place + profile + displacement
+        for _ in range(30):
+            pressure, slope = (np.asarray(x) for x in law(h))
+            left = h - place - profile - matrix @ pressure
+            move = np.linalg.solve(np.eye(h.size) - matrix * slope, left)
+            h = h - move
+            if np.max(np.abs(move)) < 1e-13 * RMS:
+                break
+        if not np.max(np.abs(h - place - profile - displacement)) < 0.5 * RMS:
+            return path
+        displacement = h - place - profile
+        path.append((place, h[0]))
+    return path
+
+
+def test_it_folds_where_plain_steps_find_no_equilibrium_near_by():
+    one = folded()
+    fold, size = float(one.folds[0]), float(one.sizes[0])
+    path = followed(one, size, fold + 1.0 * RMS, fold - 2e-3 * RMS, 1003)
+    last = path[-1][0]
+    assert len(path) < 1003
+    assert abs(last - fold) < 2e-3 * RMS
+    # The change of the central separation with the rigid one goes to infinity there.
+    places, central = np.array(path[-200:]).T
+    rate = np.gradient(central, places)
+    assert rate[-3] > 5.0 * rate[0] > 5.0
+
+
+def test_it_jumps_out_further_out_than_in_the_more_the_softer_it_is():
+    stiff = folding(contact(200.0), DEEP)
+    assert stiff is None
+    widths = []
+    for modulus in (100.0, 60.0, 30.0):
+        inwards, outwards = np.asarray(folded(modulus).folds) / RMS
+        widths.append(outwards - inwards)
+    assert 0.0 < widths[0] < widths[1] < widths[2]
+
+
+def test_folds_do_not_depend_on_the_number_of_rings():
+    coarse, fine = folded(), folded(rings=64)
+    np.testing.assert_allclose(coarse.folds, fine.folds, rtol=0.0, atol=1e-4 * RMS)
+
+
+def test_what_it_loses_by_the_jumps_is_what_its_energies_lack():
+    result = thrown()
+    assert result.outcome.value == "escaped"
+    lost = result.ledger["lost"]
+    assert set(lost) == {"instability"}
+    assert result.ledger["energy_balance_error"] < 1e-6
+    e = result.measures["restitution"][0]
+    assert 1.0 - e**2 == pytest.approx(lost["instability"] / result.ledger["initial"], rel=1e-6)
+
+
+def test_the_critical_velocity_is_that_of_the_loss():
+    result = thrown()
+    share = result.ledger["lost"]["instability"] / result.ledger["initial"]
+    assert result.measures["critical_velocity"] == pytest.approx(0.1 * share**0.5, rel=1e-5)
+
+
+def test_the_loss_is_the_area_between_its_loading_and_unloading_curves():
+    found, lost = curve(), thrown().ledger["lost"]["instability"]
+    area = np.trapezoid(found.force_loading - found.force_unloading, found.rigid_separation)
+    assert found.loss == pytest.approx(lost, rel=1e-9)
+    # Forces are drawn at some hundred separations, between which lines are drawn.
+    assert area == pytest.approx(lost, rel=1e-4)
+
+
+def test_pull_off_lies_between_the_limits_of_the_work_of_the_two_planes():
+    planes = contact(60.0).interface
+    energy = planes.energy(jnp.linspace(-10.0 * RMS, 10.0 * RMS, 2001), ())
+    work = -float(jnp.min(energy))
+    share = curve().pull_off / (np.pi * work * 10e-6)
+    assert 1.5 < share < 2.0
+
+
+def test_a_slow_body_is_captured_and_stays_on_its_side_of_the_fold():
+    result = asperity.solve(load(text(60.0, speed=20.0)), critical=False)
+    assert result.measures["captured"]
+    assert result.ledger["energy_balance_error"] < 1e-6
+    # It jumped in once, and not out again.
+    assert 0.0 < result.ledger["lost"]["instability"] < thrown().ledger["lost"]["instability"]
+
+
+def test_its_losses_are_drawn_as_steps():
+    result = thrown()
+    drawn = result.energies["lost_instability"]
+    assert drawn[0] == 0.0
+    assert drawn[-1] == pytest.approx(result.ledger["lost"]["instability"], rel=1e-9)
+    assert len(np.unique(np.round(drawn / drawn[-1], 9))) == 3
+
+
+def test_an_edge_that_rings_do_not_resolve_is_said():
+    with pytest.raises(SimulationError, match="as one contact, at whose edge"):
+        folding(contact(20.0, rings=16), DEEP)
