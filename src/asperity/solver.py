@@ -9,6 +9,7 @@ from typing import Any
 from .config import Case
 from .config.resolve import resolve
 from .critical_velocity import sought
+from .contact import Contact
 from .dynamics import Limits
 from .dynamics.problem import Problem
 from .dynamics.quasi_static import quasi_static_curve
@@ -69,7 +70,7 @@ def solve(
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
     report(1.0, "done")
     if solution.outcome is Outcome.FAILED and throw:
-        raise SimulationError(_failure(problem), result)
+        raise SimulationError(_failure(problem, solution.contact), result)
     return result
 
 
@@ -104,7 +105,7 @@ def explore(
     solution = integrate(problem, report, stop, many=True)
     result = _result(case, name, problem, solution, report, stop, most)
     if solution.outcome is Outcome.FAILED:
-        raise SimulationError(_failure(problem), result)
+        raise SimulationError(_failure(problem, solution.contact), result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
         return result, _curve_of(case, name, problem, lambda _, text: report(0.95, text))
     motion, held = solution.motion, problem.inputs.suspension
@@ -173,7 +174,12 @@ def _result(
     return result_of(case, name, problem, solution, elastic, most, bodies)
 
 
-def _failure(problem: Problem) -> str:
+def _failure(problem: Problem, contact: Contact) -> str:
+    if contact.sides > 1:
+        return (
+            "the contact jumps, and where it came from holds it no more: a scanning curve folds, or "
+            "its contact shrinks by more than its mesh resolves"
+        )
     drags = " and ".join(drag.name for drag in problem.body.drags)
     damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
     return f"the motion left the tabulated separations{damped}"

@@ -24,6 +24,7 @@ _STEPS = 12  # of Newton's method from a place near by
 _ON_ARC = 5  # of it on the curve of equilibria, whose points lie closer
 _ENOUGH = 1e-11  # of the separation: a move that counts as none
 _FAR = 0.5  # rms heights between a guess and what it leads to: more is another branch
+_SAME = 0.1  # rms heights between the axes of rings that are the same on two meshes
 _REFIT = 0.1  # of its size: a mesh that fits so closely is kept
 _EVALUATIONS = 60  # on the way to a fold
 _FLAT = 1e-6  # of the slope at its start: there the separation is the fold's to its square
@@ -132,7 +133,9 @@ class _Follower(NamedTuple):
         # It lies on the mesh on which its curves are solved.
         size, flat = fit(self.contact, last.place, self.thresholds, last.size, last.displacement)
         fitted = self.rest(last.place, size, flat)
-        last = _choose(fitted.stable, fitted, last)
+        apart = jnp.abs(fitted.displacement[0] - last.displacement[0])
+        same = apart < _SAME * self.contact.interface.scale.rms
+        last = _choose(fitted.stable & same, fitted, last)
         at, found = _fold(self, last, place)
         found = found & (self.ahead * (place - at) >= 0.0)  # else the guess was too poor
         first = found & (old.number == 0)
