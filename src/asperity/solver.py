@@ -8,8 +8,8 @@ from typing import Any
 
 from .config import Case
 from .config.resolve import resolve
-from .critical_velocity import sought
 from .contact import Contact
+from .critical_velocity import sought
 from .dynamics import Limits
 from .dynamics.problem import Problem
 from .dynamics.quasi_static import quasi_static_curve
@@ -177,8 +177,8 @@ def _result(
 def _failure(problem: Problem, contact: Contact) -> str:
     if contact.sides > 1:
         return (
-            "the contact jumps, and where it came from holds it no more: a scanning curve folds, or "
-            "its contact shrinks by more than its mesh resolves"
+            "a scanning curve of the contact that jumps folds itself, or its contact shrinks by more "
+            "than its mesh resolves"
         )
     drags = " and ".join(drag.name for drag in problem.body.drags)
     damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
