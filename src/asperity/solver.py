@@ -177,8 +177,8 @@ def _result(
 def _failure(problem: Problem, contact: Contact) -> str:
     if contact.sides > 1:
         return (
-            "a scanning curve of the contact that jumps folds itself, or its contact shrinks by more "
-            "than its mesh resolves"
+            "a scanning curve of the contact that jumps folds itself, or its contact shrinks by "
+            "more than its mesh resolves"
         )
     drags = " and ".join(drag.name for drag in problem.body.drags)
     damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
