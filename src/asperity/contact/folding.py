@@ -236,39 +236,38 @@ def _followed(
     fold: jax.Array,
     fold_size: jax.Array,
 ) -> tuple[jax.Array, RingEquilibrium]:
-    """Sizes of the mesh and rings along one side of a branch.
+    """Sizes of the mesh and rings along one side of a branch, in the direction of motion.
 
-    As :func:`asperity.contact.continuation.continue_branch`, but for the jump.
+    As :func:`asperity.contact.continuation.continue_branch`, but for the jump, and with the means
+    of the planes read from a table throughout.
     """
-    ascending, tabulated = jnp.sort(corners), contact
     ahead = jnp.where(corners[-1] > corners[0], 1.0, -1.0)
     rms, flat = contact.interface.scale.rms, jnp.zeros(contact.rings + 1)
 
-    def find(carry: tuple[jax.Array, ...], now: tuple[jax.Array, jax.Array]) -> Any:
-        (displacement, last_size, anew), (corner, last) = carry, now
+    def size_at(carry: tuple[jax.Array, ...], now: tuple[jax.Array, jax.Array]) -> Any:
+        (displacement, last_size, first), (corner, doubled) = carry, now
         at_fold = corner == fold
-        before = at_fold & last
+        before = at_fold & doubled  # of the two ends there, the one that is passed first
         there = corner + jnp.where(at_fold, jnp.where(before, -ahead, ahead) * _BESIDE * rms, 0.0)
-        jumps = anew | (at_fold & ~before)
+        jumps = first | (at_fold & ~before)
         displacement = jax.lax.cond(
             jumps,
-            lambda: settle(tabulated, there, thresholds, last_size, displacement),
+            lambda: settle(contact, there, thresholds, last_size, displacement),
             lambda: displacement,
         )
-        size, displacement = fit(tabulated, there, thresholds, last_size, displacement)
+        size, displacement = fit(contact, there, thresholds, last_size, displacement)
         # About the fold the mesh is that on which it lies.
         apart = ahead * (fold - corner)
         held = before | ((apart > 0.0) & (apart < (1.0 + _BESIDE) * rms))
         return (displacement, size, jnp.asarray(False)), jnp.where(held, fold_size, size)
 
-    doubled = jnp.append(corners[1:] == corners[:-1], False)
+    again = jnp.append(corners[1:] == corners[:-1], False)
     begin = flat, first_size(contact, corners[0]), jnp.asarray(True)
-    _, at_corners = jax.lax.scan(find, begin, (corners, doubled))
-    order = jnp.where(ahead > 0.0, 1, -1)
-    sizes = jnp.interp(along, ascending, jnp.where(order > 0, at_corners, at_corners[::-1]))
-    first = settle(tabulated, along[0], thresholds, sizes[0], flat)
+    _, at_corners = jax.lax.scan(size_at, begin, (corners, again))
+    sizes = jnp.interp(ahead * along, ahead * corners, at_corners)
+    first = settle(contact, along[0], thresholds, sizes[0], flat)
     path = ContinuationPath.straight(_coordinate(along[0], fold), first, flat, ahead * rms)
-    return sizes, _follow(tabulated, along, sizes, thresholds, path, fold, ahead)
+    return sizes, _follow(contact, along, sizes, thresholds, path, fold, ahead)
 
 
 def _sought(contact: ElasticContact, places: jax.Array) -> Fold:
