@@ -34,7 +34,7 @@ def contact(modulus=MODULUS, density=DENSITY, law=LAW, rings=48):
 
 def integrated(ratio, time, body=BODY, tolerance=ONE, told=None):
     relaxation = Relaxation(told or contact(), ratio, time)
-    relaxed, body = relaxation.relaxed(), replace(body, on_creep=(VISCOUS,))
+    relaxed, body = relaxation.relaxed(), replace(body, in_bulk=(VISCOUS,))
     prepared = _prepare(relaxed, body)
     return integrate_stepped(
         relaxed, relaxation, body, prepared, Limits.of(tolerance), lambda made: None

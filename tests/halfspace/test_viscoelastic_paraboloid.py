@@ -219,7 +219,7 @@ _prepare = Program(prepare)
 
 def integrated(ratio, time, body, tolerance):
     relaxation = Relaxation(SmoothContact(Hertz(RADIUS, MODULUS)), ratio, time)
-    contact, body = relaxation.relaxed(), replace(body, on_creep=(VISCOUS,))
+    contact, body = relaxation.relaxed(), replace(body, in_bulk=(VISCOUS,))
     prepared = _prepare(contact, body)
     return integrate_stepped(
         contact, relaxation, body, prepared, Limits.of(tolerance), lambda made: None
@@ -257,7 +257,7 @@ def test_units_do_not_matter():
 
 
 def test_a_heavy_sphere_on_a_soft_solid_comes_to_rest_where_it_has_relaxed():
-    body = Body(MASS, 9.81, 1e-9, on_creep=(VISCOUS,))
+    body = Body(MASS, 9.81, 1e-9, in_bulk=(VISCOUS,))
     soft = Relaxation(SmoothContact(Hertz(RADIUS, 1e4)), 0.1, 1e-5)
     contact = soft.relaxed()
     prepared = _prepare(contact, body)
