@@ -173,8 +173,8 @@ class Contact(eqx.Module):
 
     @property
     def scale(self) -> jax.Array:
-        """Length [m] over which the forces of a contact that jumps change."""
-        raise NotImplementedError
+        """Length [m] over which its forces change, against which jumps are measured."""
+        return self.interaction_range
 
     def branch_of(self, memory: Memory, unloading: jax.Array) -> jax.Array:
         """Index of the major branch that a body with ``memory`` reaches."""
