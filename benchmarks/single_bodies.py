@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -15,35 +16,19 @@ from asperity.dynamics.single_impact import Launch
 from asperity.model import build
 from asperity.single_bodies import SingleBodies
 
-CASE = """
-[body]
-material = "silica"
-radius = "25 um"
-[counterface]
-material = "silicon carbide"
-deformation = "{bulk}"
-[roughness]
-asperity_density = "6.3e13 1/m^2"
-asperity_radius = "450 nm"
-rms_height = "1.64 nm"
-placement = "random"
-[adhesion]
-model = "dmt"
-work = "50 mJ/m^2"
-equilibrium_spacing = "0.3 nm"
-[capillary]
-model = "equilibrium"
-liquid = "water"
-humidity = 0.5
-contact_angle = "20 deg"
-temperature = "20 degC"
-[impact]
-speed = "3 mm/s"
-"""
+EXAMPLE = Path(__file__).parents[1] / "examples" / "single-bodies.toml"
+SPEED = "3 mm/s"
 SPEEDS = (3e-3, 12e-3)  # m/s
 BODIES = {"rigid": 100_000, "half-space": 1000}
 TURNS = 3
 Row = tuple[str, str, str]
+
+
+def _case(bulk: str) -> str:
+    """The example, with DMT's adhesion, launched with a speed."""
+    kept = [row for row in EXAMPLE.read_text().splitlines() if "release_separation" not in row]
+    text = "\n".join(kept).replace('"maugis"', '"dmt"').replace('"rigid"', f'"{bulk}"')
+    return text.replace("[impact]", f'[impact]\nspeed = "{SPEED}"')
 
 
 def rows() -> list[Row]:
@@ -67,7 +52,7 @@ class _Bodies:
     """Bodies of one case that come with a speed [m/s]; compiled once they are there."""
 
     def __init__(self, bulk: str, speed: float) -> None:
-        problem = build(resolve(asperity.config.load(CASE.format(bulk=bulk))))
+        problem = build(resolve(asperity.config.load(_case(bulk))))
         count = BODIES[bulk]
         kinetic = np.full(count, 0.5 * float(problem.body.mass) * speed**2)
         weight = np.full(count, float(problem.body.weight))

@@ -14,7 +14,6 @@ from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
-from ..numerics.compilation import AT_ONCE, Program
 from .contact import Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
     ContinuationPath,
@@ -25,16 +24,14 @@ from .continuation import (
 )
 from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, solve_equilibrium
-from .folds import Fold, first_fold
+from .folds import folds_of
 from .landing import fit, settle
 from .profile import Sphere
 from .resolution import Resolution
 
 _LADDER = 4.0 ** -np.arange(11.0)  # of rms heights: ends of panels ahead of a fold
 _BESIDE = 1e-3  # rms heights beside a fold, where the mesh about it is found
-_EVEN, _WIDENING = 0.25, 0.02  # rms heights between places that are followed, and of the separation
 _RINGS = 2  # times those of a case: the edge of a contact that adheres is sharp
-_DEEP = 20.0  # rms heights, down to which folds are sought
 _SOLVED = 1e-6  # relative force error of a scanning curve that has equilibria
 _TO = 8.0  # interaction ranges up to which means are tabulated: rings lie as far apart
 _BELOW, _SEEN = 40.0, 161  # rms heights below the range within which planes are looked at
@@ -42,7 +39,6 @@ _DRAWN = 8  # steps to the depth to which adhesion draws a body
 _SHORT = 0.25  # rms heights before a fold, where scanning curves end
 _PIECES = 32  # of a scanning curve for each law
 _PANELS = 4  # times those without folds
-_FINER = 8  # panels of the tabulated pressure for each of the curves
 
 
 class FoldingContact(ElasticContact):
@@ -270,26 +266,6 @@ def _followed(
     return sizes, _follow(contact, along, sizes, thresholds, path, fold, ahead)
 
 
-def _sought(contact: ElasticContact, places: jax.Array) -> Fold:
-    """The first fold of each branch, from outside in and from inside out, shape (2, branches)."""
-
-    def one(job: tuple[Thresholds, jax.Array]) -> Fold:
-        thresholds, along = job
-        span = jnp.min(along), jnp.max(along)
-        table = with_table(contact, *span, thresholds, _FINER)
-        return first_fold(table, along, thresholds, first_size(contact, along[0]))
-
-    branches = contact.branches()
-    thresholds = jax.tree_util.tree_map(
-        lambda *leaves: jnp.stack(leaves * 2), *(memory.thresholds for memory in branches)
-    )
-    both = jnp.stack([places, places[::-1]])
-    return jax.lax.map(one, (thresholds, jnp.repeat(both, len(branches), axis=0)))
-
-
-_seek = Program(_sought, AT_ONCE)
-
-
 def folding(contact: ElasticContact, low: float) -> FoldingContact | None:
     """The contact with its folds; None where no branch folds.
 
@@ -305,9 +281,8 @@ def folding(contact: ElasticContact, low: float) -> FoldingContact | None:
     SimulationError
         If the rings do not resolve the edge of the contact: they jump one after the other.
     """
-    rms, top = float(contact.interface.scale.rms), float(contact.interaction_range)
     finer = dataclasses.replace(contact, rings=_RINGS * contact.rings)
-    found = _seek(finer, jnp.asarray(_even(max(low, -_DEEP * rms), top, rms)))
+    found = folds_of(finer, low)
     number = np.asarray(found.number)
     if not np.any(number):
         return None
@@ -320,12 +295,3 @@ def folding(contact: ElasticContact, low: float) -> FoldingContact | None:
     resolved = finer.resolved
     each["resolved"] = resolved._replace(panels=_PANELS * resolved.panels, pieces=_PIECES)
     return FoldingContact(**each, folds=found.place, sizes=found.size)
-
-
-def _even(low: float, top: float, rms: float) -> np.ndarray:
-    """Separations [m] from outside in, close enough for rings to be followed."""
-    places = [top]
-    while places[-1] > low:
-        places.append(places[-1] - _EVEN * rms - _WIDENING * abs(places[-1]))
-    count = -(-len(places) // 64) * 64  # so that few numbers are compiled
-    return np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(places)), places)

@@ -9,29 +9,39 @@ jump at fixed separation (Greenwood, Proc. R. Soc. A 453 (1997) 1277; Feng, Coll
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, Protocol
+
+import numpy as np
 
 from .._jax import jax, jnp
 from ..interface.rough_planes import Memory as Thresholds
-from ..numerics.compilation import kept
+from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.krylov import dense_solve
 from ..numerics.roots import fixed_point
-from .continuation import ContinuationPath, Deforming
+from .continuation import ContinuationPath, Deforming, RingMemory, first_size, with_table
 from .equilibrium import RingEquilibrium, balance, pressed, profile_of
+from .fold_point import choose, fold_point
 from .landing import bounded_size, fit, on_other_mesh, settle
 
+_EVEN, _WIDENING = 0.25, 0.02  # rms heights between places that are followed, and of the separation
+_DEEP = 20.0  # rms heights, down to which folds are sought
+_FINER = 8  # panels of the tabulated pressure for each of the curves
 _STEPS = 12  # of Newton's method from a place near by
-_ON_ARC = 5  # of it on the curve of equilibria, whose points lie closer
 _ENOUGH = 1e-11  # of the separation: a move that counts as none
 _FAR = 0.5  # rms heights between a guess and what it leads to: more is another branch
 _SAME = 0.1  # rms heights between the axes of rings that are the same on two meshes
 _REFIT = 0.1  # of its size: a mesh that fits so closely is kept
-_EVALUATIONS = 60  # on the way to a fold
-_FLAT = 1e-6  # of the slope at its start: there the separation is the fold's to its square
-_FIRST = 0.05  # of the distance to the place beyond the fold: the first step to it
 
 
-_Tree = TypeVar("_Tree")
+class Branching(Deforming, Protocol):
+    """A contact that has major branches."""
+
+    @property
+    def interaction_range(self) -> jax.Array:
+        """Separation beyond which nothing is felt [m]."""
+
+    def branches(self) -> tuple[RingMemory, ...]:
+        """Memories of the major branches."""
 
 
 class _Rest(NamedTuple):
@@ -115,9 +125,9 @@ class _Follower(NamedTuple):
         other = self.refitted(here)
         ratio = other.size / here.size
         refit = (jnp.abs(ratio - 1.0) > _REFIT) & other.stable
-        here = _choose(refit, other, here)
+        here = choose(refit, other, here)
         path = now.path.append(place, here.displacement)
-        path = _choose(on.stable & ~refit, path, self.straight(here))
+        path = choose(on.stable & ~refit, path, self.straight(here))
         return _Search(path, here, fold), None
 
     def refitted(self, here: _Rest) -> _Rest:
@@ -135,8 +145,9 @@ class _Follower(NamedTuple):
         fitted = self.rest(last.place, size, flat)
         apart = jnp.abs(fitted.displacement[0] - last.displacement[0])
         same = apart < _SAME * self.contact.interface.scale.rms
-        last = _choose(fitted.stable & same, fitted, last)
-        at, found = _fold(self, last, place)
+        last = choose(fitted.stable & same, fitted, last)
+        before = last.place, last.size, last.displacement, last.rate
+        at, found = fold_point(self.contact, self.thresholds, before, place)
         found = found & (self.ahead * (place - at) >= 0.0)  # else the guess was too poor
         first = found & (old.number == 0)
         fold = Fold(
@@ -147,11 +158,6 @@ class _Follower(NamedTuple):
         landed = settle(self.contact, place, self.thresholds, last.size, last.displacement)
         size, landed = fit(self.contact, place, self.thresholds, last.size, landed, landing=True)
         return self.rest(place, size, landed), fold
-
-
-def _choose(first: jax.Array, one: _Tree, other: _Tree) -> _Tree:
-    chosen: _Tree = jax.tree_util.tree_map(lambda a, b: jnp.where(first, a, b), one, other)
-    return chosen
 
 
 def first_fold(
@@ -178,75 +184,44 @@ def first_fold(
     return end.fold
 
 
-class _Arc(NamedTuple):
-    """A point of the curve of equilibria, by its length, and the slope of the separation there."""
+def _sought(contact: Branching, places: jax.Array) -> Fold:
+    """The first fold of each branch along places from outside in, and then from inside out."""
 
-    length: jax.Array
-    slope: jax.Array
-    h: jax.Array
-    place: jax.Array
-    rate: jax.Array
+    def one(job: tuple[Thresholds, jax.Array]) -> Fold:
+        thresholds, along = job
+        span = jnp.min(along), jnp.max(along)
+        table = with_table(contact, *span, thresholds, _FINER)
+        return first_fold(table, along, thresholds, first_size(contact, along[0]))
 
-
-class _Bracket(NamedTuple):
-    """Points on either side of a fold, and the step by which the farther one is sought."""
-
-    near: _Arc
-    far: _Arc
-    step: jax.Array
-    tries: jax.Array
-
-    @property
-    def flattest(self) -> jax.Array:
-        return jnp.minimum(jnp.abs(self.near.slope), jnp.abs(self.far.slope))
-
-
-def _fold(follower: _Follower, before: _Rest, beyond: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Where the slope of the separation with arc length is 0 [m], and whether that was found.
-
-    The length is measured along the change of the displacement where the search begins, so that
-    the slope is 1 there; it falls almost evenly to 0 at a fold, and is negative beyond.
-    """
-    contact, thresholds, ahead = follower
-    profile = profile_of(contact, before.size, contact.rings)
-    along = before.rate / (before.rate @ before.rate)
-    start = before.place + profile + before.displacement
-
-    def bordered(x: jax.Array) -> tuple[jax.Array, jax.Array]:
-        left, matrix = balance(contact, x[:-1], x[-1] + profile, thresholds, before.size)
-        matrix = jnp.concatenate([matrix, -jnp.ones((len(left), 1))], axis=1)
-        return left, jnp.concatenate([matrix, jnp.append(along, 0.0)[None]])
-
-    def arc_at(near: _Arc, length: jax.Array) -> _Arc:
-        def newton(_: int, x: jax.Array) -> jax.Array:
-            left, matrix = bordered(x)
-            off = along @ (x[:-1] - start) - ahead * length
-            return x - dense_solve(matrix, jnp.append(left, off))
-
-        further = (length - near.length) * ahead
-        guess = jnp.append(near.h + near.rate * further, near.place + near.slope * further)
-        x = jax.lax.fori_loop(0, _ON_ARC, newton, guess)
-        rate = dense_solve(bordered(x)[1], jnp.zeros(len(x)).at[-1].set(1.0))
-        return _Arc(length, rate[-1], x[:-1], x[-1], rate[:-1])
-
-    def search(now: _Bracket) -> _Bracket:
-        near, far, step, tries = now
-        bracketed = far.slope <= 0.0
-        share = near.slope / jnp.where(bracketed, near.slope - far.slope, 1.0)
-        between = near.length + jnp.clip(share, 0.0, 1.0) * (far.length - near.length)
-        found = arc_at(near, jnp.where(bracketed, between, near.length + step))
-        passed = ~(found.slope > 0.0)
-        far, near = _choose(passed, found, far), _choose(passed, near, found)
-        # The end that stays counts for half: else it would stay for long (Illinois).
-        near = near._replace(slope=jnp.where(passed & bracketed, 0.5 * near.slope, near.slope))
-        return _Bracket(near, far, jnp.where(bracketed | passed, step, 2.0 * step), tries + 1)
-
-    begin = _Arc(jnp.zeros(()), jnp.ones(()), start, before.place, before.rate)
-    step = _FIRST * jnp.abs(beyond - before.place)
-    end = jax.lax.while_loop(
-        lambda now: (now.flattest > _FLAT) & (now.tries < _EVALUATIONS),
-        search,
-        _Bracket(begin, begin, step, jnp.asarray(0)),
+    branches = contact.branches()
+    thresholds = jax.tree_util.tree_map(
+        lambda *leaves: jnp.stack(leaves * 2), *(memory.thresholds for memory in branches)
     )
-    nearer = jnp.abs(end.far.slope) < jnp.abs(end.near.slope)
-    return jnp.where(nearer, end.far.place, end.near.place), end.far.slope <= 0.0
+    both = jnp.stack([places, places[::-1]])
+    return jax.lax.map(one, (thresholds, jnp.repeat(both, len(branches), axis=0)))
+
+
+_seek = Program(_sought, AT_ONCE)
+
+
+def folds_of(contact: Branching, low: float) -> Fold:
+    """The first fold of each branch: from outside in for all, then from inside out.
+
+    Parameters
+    ----------
+    contact
+        A contact.
+    low
+        Separation [m] down to which folds are sought, or less deep.
+    """
+    rms, top = float(contact.interface.scale.rms), float(contact.interaction_range)
+    return _seek(contact, jnp.asarray(_even(max(low, -_DEEP * rms), top, rms)))
+
+
+def _even(low: float, top: float, rms: float) -> np.ndarray:
+    """Separations [m] from outside in, close enough for rings to be followed."""
+    places = [top]
+    while places[-1] > low:
+        places.append(places[-1] - _EVEN * rms - _WIDENING * abs(places[-1]))
+    count = -(-len(places) // 64) * 64  # so that few numbers are compiled
+    return np.interp(np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, len(places)), places)

@@ -83,8 +83,7 @@ def over_folds(
         central = chebyshev_sum(inner.values[-1, :, CENTRAL], x)
     branch = _side(table, branch, place, central, unloading, contact.scale)
     pieces = join(table, branch, inner, reversal[0], unloading)
-    count, parts = inner.low.shape[0], len(contact.components)
-    return branch, _jumps_along(pieces, count, contact.losses(), contact.scale, parts)
+    return branch, _jumps_along(contact, pieces, inner.low.shape[0])
 
 
 def _side(
@@ -106,41 +105,25 @@ def _side(
     return branch + half * jnp.where(one, unloading, nearer)
 
 
-def _jumps_along(
-    pieces: Pieces, curve: int, losses: tuple[jax.Array, jax.Array], scale: jax.Array, parts: int
-) -> Jumps:
-    """The jumps along the pieces of a phase.
+def _jumps_along(contact: Contact, pieces: Pieces, curve: int) -> Jumps:
+    """The jumps along the pieces of a phase, on the branch alone.
 
-    Parameters
-    ----------
-    pieces
-        All polynomials ahead.
-    curve
-        Number of pieces of the scanning curve among them: where they lead to the branch nothing
-        jumps.
-    losses
-        Energy [J] lost when one bond forms and when it breaks, per law.
-    scale
-        Length on which the contact's forces change [m].
-    parts
-        Number of mechanisms of the force.
+    ``curve`` pieces before it are those of the scanning curve: where these do not meet, or where
+    energy would rise, the energy balance shows it.
     """
-    bonds = Quantities(losses[0].shape[0], parts).bonds
-    count = pieces.low.shape[0]
+    bonds, count = Quantities(len(contact.mechanisms), 0).bonds, pieces.low.shape[0]
     filled = jnp.where(pieces.enter != pieces.leave, jnp.arange(count), count)
     following = jax.lax.cummin(filled, reverse=True)[1:]
     here, there = jnp.arange(count - 1), jnp.minimum(following, count - 1)
+    place = pieces.leave[:-1]
 
-    def row(k: jax.Array, place: jax.Array) -> jax.Array:
+    def row(k: jax.Array) -> jax.Array:
         x = local(pieces.low[k], pieces.high[k], place)
         return chebyshev_sum(jnp.moveaxis(pieces.values[k], 1, 0), x[:, None])
 
-    place = pieces.leave[:-1]
-    before, after = row(here, place), row(there, place)
-    drop = before[:, STORED] - after[:, STORED]
-    change = after[:, bonds] - before[:, bonds]
-    drop = drop - jnp.maximum(change, 0.0) @ losses[0] - jnp.maximum(-change, 0.0) @ losses[1]
-    apart = jnp.abs(after[:, CENTRAL] - before[:, CENTRAL]) > _JUMP * scale
-    joint = (here < curve) & (there >= curve)
-    jumps = apart & (filled[:-1] < count) & (following < count) & ~joint
-    return Jumps(place, jnp.where(jumps, drop, 0.0))
+    before, after = row(here), row(there)
+    by_bonds = contact.lost_by_bonds(after[:, bonds] - before[:, bonds])
+    drop = before[:, STORED] - after[:, STORED] - jnp.sum(by_bonds, axis=1)
+    apart = jnp.abs(after[:, CENTRAL] - before[:, CENTRAL]) > _JUMP * contact.scale
+    on_branch = (here >= curve) & (filled[:-1] < count) & (following < count)
+    return Jumps(place, jnp.where(apart & on_branch & (drop > 0.0), drop, 0.0))

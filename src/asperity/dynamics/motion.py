@@ -214,7 +214,7 @@ def _phase_of_impact(
     row = row_at(ahead, turn)
     layout = quantities(contact)
     bonds = row[layout.bonds]
-    parts = _by_bonds(contact, bonds - progress.bonds), dissipated
+    parts = contact.lost_by_bonds(bonds - progress.bonds), dissipated
     lost = jnp.concatenate([*parts, jumps.lost(turn.place, unloading)]) + progress.lost
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
@@ -231,12 +231,6 @@ def _phase_of_impact(
         *fate, mechanical_at_end(ahead) - jnp.sum(dissipated),
     )  # fmt: skip
     return after, end
-
-
-def _by_bonds(contact: Contact, change: jax.Array) -> jax.Array:
-    """Energy lost as bonds form and break [J], by law."""
-    at_forming, at_breaking = contact.losses()
-    return jnp.maximum(change, 0.0) * at_forming + jnp.maximum(-change, 0.0) * at_breaking
 
 
 def _no_rise(fall: _Ended, rise: _Ended) -> _Ended:

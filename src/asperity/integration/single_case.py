@@ -9,13 +9,11 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
-from ..contact.folding import folding
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.curve_table import NO_CUTS
-from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import CLEARANCE, Problem
 from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
@@ -25,6 +23,7 @@ from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
+from .jumping import jumping, may_jump
 from .panel_cuts import PATIENCE, Unsolved
 from .steps import Steps
 
@@ -77,31 +76,14 @@ def integrate(
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
-    if not _may_fold(problem):
+    if not may_jump(problem):
         return _integrated(problem, report, stop, many=many, drawn=drawn)
     try:
         return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
     except Unsolved:
         report(0.02, "where equilibria fold")
-        folded = _with_folds(problem)
-    return _integrated(folded, report, stop, many=many, drawn=drawn)
-
-
-def _may_fold(problem: Problem) -> bool:
-    """Whether a body that has no equilibrium somewhere may jump there."""
-    return type(problem.contact) is ElasticContact and not _in_time(problem)
-
-
-def _with_folds(problem: Problem) -> Problem:
-    """The problem with a contact that jumps where its equilibria fold; itself where none does."""
-    contact, body = problem.contact, problem.body
-    assert isinstance(contact, ElasticContact)
-    low = float(contact.lower_bound(body.release, body.kinetic, body.load.potential))
-    folded = folding(contact, low)
-    if folded is None:
-        return problem
-    body = dataclasses.replace(body, in_bulk=(INSTABILITY,))
-    return problem._replace(contact=folded, body=body)
+        problem = jumping(problem)
+    return _integrated(problem, report, stop, many=many, drawn=drawn)
 
 
 def _integrated(

@@ -34,7 +34,8 @@ class BranchPressure(RoughPlanes):
 
     planes: RoughPlanes
     ends: jax.Array
-    coefficients: jax.Array
+    parts: jax.Array
+    others: jax.Array
 
     def __init__(self, planes: RoughPlanes, memory: Memory, ends: jax.Array) -> None:
         nodes = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
@@ -42,13 +43,17 @@ class BranchPressure(RoughPlanes):
         each = tuple(jnp.broadcast_to(threshold, places.shape) for threshold in memory)
         self.planes, self.ends = planes, ends
         means = planes.measure(places, each)
-        rows = [*means.parts, means.energy, *means.bonds, means.contacting]
-        self.coefficients = jnp.einsum("kn,qpn->kpq", _TO_COEFFICIENTS, jnp.stack(rows))
+        others = [means.energy, *means.bonds, means.contacting]
+        # Apart, so that what is not read is not computed either.
+        self.parts, self.others = (
+            jnp.einsum("kn,qpn->kpq", _TO_COEFFICIENTS, jnp.stack(list(rows)))
+            for rows in (means.parts, others)
+        )
 
     @property
     def error(self) -> jax.Array:
         """The last coefficients of the pressure over the largest pull or push around."""
-        pressure = jnp.abs(jnp.sum(self.coefficients[..., : len(self.components)], axis=2))
+        pressure = jnp.abs(jnp.sum(self.parts, axis=2))
         last = jnp.max(pressure[-2:], axis=0)
         return jnp.max(last / (pressure[0] + _SMALL * jnp.max(pressure[0])))
 
@@ -70,8 +75,7 @@ class BranchPressure(RoughPlanes):
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         if integrated:
             return self.planes.pressure(separation, memory, integrated)
-        parts = self.coefficients[..., : len(self.components)]
-        return self._read(separation, jnp.sum(parts, axis=2))
+        return self._read(separation, jnp.sum(self.parts, axis=2))
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -93,6 +97,8 @@ class BranchPressure(RoughPlanes):
     ) -> Means:
         if integrated:
             return self.planes.measure(separation, memory, integrated, near)
-        rows = jnp.moveaxis(self._read(separation, self.coefficients), -1, 0)
-        count = len(self.components)
-        return Means(rows[:count], rows[count], rows[count + 1 : -1], rows[-1])
+        parts, rows = (
+            jnp.moveaxis(self._read(separation, coefficients), -1, 0)
+            for coefficients in (self.parts, self.others)
+        )
+        return Means(parts, rows[0], rows[1:-1], rows[-1])
