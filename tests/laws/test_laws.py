@@ -125,12 +125,14 @@ def test_truncated_powers_are_the_law_itself(law, share):
 
 
 @every_law
-def test_components_add_up_to_the_force(law):
+def test_response_is_the_force_and_the_energy(law):
     g = gaps(law)
     for bonded in (False, True):
         if bonded and not law.hysteretic:
             continue
-        parts = law.components(g, jnp.full(g.shape, bonded))
+        parts = law.response(g, jnp.full(g.shape, bonded))
+        energy = law.bonded_energy(g) if bonded else law.energy(g)
+        np.testing.assert_allclose(parts.pop("energy"), energy, rtol=1e-12)
         whole = law.bonded_force(g) if bonded else law.force(g)
         scale = float(jnp.max(jnp.abs(whole))) + 1e-30
         np.testing.assert_allclose(sum(parts.values()), whole, rtol=1e-12, atol=1e-13 * scale)

@@ -179,4 +179,4 @@ def test_a_force_that_would_be_lost_in_the_sum_is_found():
     class Wrong(CutOff):
         counts = frozenset({"magnet"})
 
-    refuse(Wrong, r"Wrong: `components` must name the forces of `counts` .*\['magnet'\]")
+    refuse(Wrong, r"Wrong: `response` must name .energy. and the forces of .*, 'magnet'\]")

@@ -222,9 +222,9 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         """By the laws whose bond was formed; without them on approach."""
         total = sum((one.energy(gap) for one in every), jnp.zeros_like(gap))
         for k, one in enumerate(hysteretic):
-            held = one.formation_loss + one.bonded_energy(gap) - one.energy(gap)
-            lost = one.formation_loss + one.rupture_loss
-            bonded = jnp.where(gap < one.breaking_gap, held, lost)
+            formed_loss, broken_loss = one.losses
+            held = formed_loss + one.bonded_energy(gap) - one.energy(gap)
+            bonded = jnp.where(gap < one.breaking_gap, held, formed_loss + broken_loss)
             on = gap <= one.forming_gap if formed is None else formed[k]
             total = total + jnp.where(on, bonded, 0.0)
         return total
@@ -263,7 +263,7 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         slope,
         each([one.forming_gap for one in hysteretic]),
         each([one.breaking_gap for one in hysteretic]),
-        each([one.formation_loss + one.rupture_loss for one in hysteretic]),
+        each([jnp.sum(one.losses) for one in hysteretic]),
         gap.ravel()[jnp.argmax(tension)],
         range_on_approach(slope[-1]),
     )

@@ -227,11 +227,6 @@ class Contact(eqx.Module):
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms and when it breaks, per hysteretic law."""
 
-    def lost_by_bonds(self, change: jax.Array) -> jax.Array:
-        """Energy [J] lost as the numbers of bonds change, per law, shape (..., laws)."""
-        formed, broken = self.losses()
-        return jnp.maximum(change, 0.0) * formed + jnp.maximum(-change, 0.0) * broken
-
     @abc.abstractmethod
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

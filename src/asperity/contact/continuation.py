@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -25,8 +25,10 @@ from .equilibrium import (
 from .resolution import LATER, LINEAR, Resolution, fills_by_contact
 from .scanning_curve import piece_points, pieces_to
 
-_BELOW = 5.0  # rms below the deepest separation, where the table of the pressure begins
-_FINER = 2  # panels of that table for each of the curves
+_BELOW = 5.0  # rms below the deepest separation, where the tables of means begin
+_TO = 8.0  # times the outermost separation, where they end: rings lie as far apart
+_FINER = 4  # panels of these tables for each of the curves
+_ABOUT = np.linspace(-6.0, 6.0, 9)  # rms, panels about the ends of bonds: means differ to 1e-12
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
@@ -45,6 +47,9 @@ class Deforming(Rough, Protocol):
     @property
     def passed(self) -> tuple[int, int]:
         """Pieces of a scanning curve, and separations on each."""
+
+
+Tabulated = TypeVar("Tabulated", bound=Deforming)
 
 
 @kept
@@ -183,11 +188,9 @@ def continue_branch(
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``.
 
-    The size of the mesh is found at the corners. In between, rings are solved with a table of the
-    pressure first, which costs little, and then with the pressure itself: mostly one step.
+    The size of the mesh is found at the corners.
     """
     rings, sigma = contact.rings, contact.interface.scale.rms
-    tabulated = with_table(contact, corners[-1], corners[0], thresholds)
     flat = jnp.zeros(rings + 1)
 
     def fit(carry: tuple[jax.Array, jax.Array], place: jax.Array) -> Any:
@@ -199,8 +202,7 @@ def continue_branch(
 
     def step(path: ContinuationPath, place: jax.Array) -> Any:
         size = jnp.interp(place, corners[::-1], sizes[::-1])
-        rest = solve_equilibrium(tabulated, place, thresholds, size, path.guess(place), rings)
-        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, rings)
+        rest = solve_equilibrium(contact, place, thresholds, size, path.guess(place), rings)
         return path.append(place, rest.displacement), (size, rest)
 
     _, sizes = jax.lax.scan(fit, (flat, jnp.ones(())), corners)
@@ -210,20 +212,23 @@ def continue_branch(
 
 
 def with_table(
-    contact: Deforming,
-    low: jax.Array,
-    high: jax.Array,
-    thresholds: Thresholds,
-    finer: int = _FINER,
-) -> Deforming:
-    """The contact with the pressure of a branch tabulated, over all separations of its rings."""
-    scale = LINEAR * contact.interface.scale.rms
-    low = low - _BELOW * contact.interface.scale.rms
-    count = finer * contact.resolved.panels
-    ends = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(high / scale), count + 1)
+    contact: Tabulated, low: jax.Array, high: jax.Array, thresholds: Thresholds
+) -> Tabulated:
+    """The contact with the means of a branch tabulated, for rings of a body between separations."""
+    rms = contact.interface.scale.rms
+    scale, low, high = LINEAR * rms, low - _BELOW * rms, _TO * high
+    count = _FINER * contact.resolved.panels
+    even = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(high / scale), count + 1)
+    even = scale * jnp.sinh(even)
+    bonds = contact.interface.hysteretic
+    gaps = [jnp.asarray(end, float) for law in bonds for end in (law.forming_gap, law.breaking_gap)]
+    marks = jnp.asarray(gaps)[:, None] + _ABOUT * rms
+    # Those outside stand twice within, where no panel of no width is read.
+    marks = jnp.where((marks > low) & (marks < high), marks, even[count // 2]).ravel()
+    ends = jnp.sort(jnp.concatenate([even, marks]))
     memory = tuple(b[-1] for b in thresholds)
-    table = BranchPressure(contact.interface, memory, scale * jnp.sinh(ends))
-    tabulated: Deforming = eqx.tree_at(lambda one: one.interface, contact, table)
+    table = BranchPressure(contact.interface, memory, jax.lax.stop_gradient(ends))
+    tabulated: Tabulated = eqx.tree_at(lambda one: one.interface, contact, table)
     return tabulated
 
 

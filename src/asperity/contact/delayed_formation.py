@@ -92,10 +92,10 @@ class PrescribedBonds(Law):
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
         return self.law.bonded_energy(gap)
 
-    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
         if self.mechanism == LATE:
-            return super().components(gap, bonded)
-        return self.law.components(gap, bonded)
+            return super().response(gap, bonded)
+        return self.law.response(gap, bonded)
 
     def powers(self, bond_gap: jax.Array) -> tuple[Powers, Powers] | None:
         bond_gap = jnp.maximum(bond_gap, -_HIGHEST)  # where there is no meniscus at all
@@ -185,9 +185,8 @@ class DelayedContact(eqx.Module):
 
         Nothing of menisci that form: :meth:`loss` tells that.
         """
-        formed = [jnp.asarray(law.formation_loss) for law in self.laws]
-        formed[self.meniscus_index] = jnp.zeros(())
-        return jnp.stack(formed), jnp.stack([jnp.asarray(law.rupture_loss) for law in self.laws])
+        formed, broken = jnp.stack([law.losses for law in self.laws], axis=1)
+        return formed.at[self.meniscus_index].set(0.0), broken
 
     def loss(self, gap: jax.Array) -> jax.Array:
         """Energy [J] lost when one meniscus forms at a gap [m]."""

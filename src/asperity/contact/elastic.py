@@ -9,6 +9,7 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh, rings_of_mesh
+from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
@@ -28,6 +29,7 @@ from .continuation import (
     first_size,
     fitted,
     with_derivatives,
+    with_table,
 )
 from .equilibrium import RingEquilibrium, profile_of
 from .profile import Sphere
@@ -128,22 +130,33 @@ class ElasticContact(RoughContact):
         """From outside in, each solution the first guess of the next.
 
         The ends of the panels come first: there the size of the mesh is found, which is linear
-        in between. Beyond the interaction range the body is as good as rigid.
+        in between. The means of the planes are read from a table. Beyond the interaction range
+        the body is as good as rigid.
         """
         near = places.shape[0] - self.rigid.far
         down = places[:near].ravel()[::-1]
-        frozen = jax.lax.stop_gradient((self, ends[: near + 1][::-1], down, memory.thresholds))
+        corners = ends[: near + 1][::-1]
+        tabulated = with_table(self, corners[-1], corners[0], memory.thresholds)
+        frozen = jax.lax.stop_gradient((tabulated, corners, down, memory.thresholds))
         sizes, rests = continue_branch(*frozen)
-
-        def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
-            rest = with_derivatives(self, place, memory.thresholds, size, rest)
-            return self._measured(place, memory.thresholds, size, rest)
-
-        states = jax.vmap(one)(down, sizes, rests)
+        states = tabulated._states(down, memory.thresholds, sizes, rests)
         inner = jax.tree_util.tree_map(
             lambda leaf: leaf[::-1].reshape(near, places.shape[1], *leaf.shape[1:]), states
         )
         return self._with_far(inner, ends, places, memory)
+
+    def _states(
+        self, places: jax.Array, thresholds: Thresholds, sizes: jax.Array, rests: RingEquilibrium
+    ) -> State:
+        """The contact at places of a branch, with the means of the planes from a table."""
+
+        def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
+            rest = with_derivatives(self, place, thresholds, size, rest)
+            return self._measured(place, thresholds, size, rest)
+
+        states = jax.vmap(one)(places, sizes, rests)
+        assert isinstance(self.interface, BranchPressure)
+        return states._replace(error=jnp.maximum(states.error, self.interface.error))
 
     def _with_far(
         self, inner: State, ends: jax.Array, places: jax.Array, memory: RingMemory

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from math import pi
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import SimulationError
-from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
@@ -19,7 +18,6 @@ from .continuation import (
     ContinuationPath,
     RingMemory,
     first_size,
-    with_derivatives,
     with_table,
 )
 from .elastic import ElasticContact
@@ -33,7 +31,6 @@ _LADDER = 4.0 ** -np.arange(11.0)  # of rms heights: ends of panels ahead of a f
 _BESIDE = 1e-3  # rms heights beside a fold, where the mesh about it is found
 _RINGS = 2  # times those of a case: the edge of a contact that adheres is sharp
 _SOLVED = 1e-6  # relative force error of a scanning curve that has equilibria
-_TO = 8.0  # interaction ranges up to which means are tabulated: rings lie as far apart
 _BELOW, _SEEN = 40.0, 161  # rms heights below the range within which planes are looked at
 _DRAWN = 8  # steps to the depth to which adhesion draws a body
 _SHORT = 0.25  # rms heights before a fold, where scanning curves end
@@ -133,8 +130,7 @@ class FoldingContact(ElasticContact):
         near = places.shape[0] - self.rigid.far
         corners, along = ends[: near + 1], places[:near].ravel()
         corners, along = (jnp.where(outwards, x, x[::-1]) for x in (corners, along))
-        span = jnp.min(corners), _TO * jnp.max(corners)
-        tabulated = cast("FoldingContact", with_table(self, *span, memory.thresholds))
+        tabulated = with_table(self, jnp.min(corners), jnp.max(corners), memory.thresholds)
         frozen = jax.lax.stop_gradient((tabulated, corners, along, memory.thresholds, fold, size))
         sizes, rests = _followed(*frozen)
         states = tabulated._states(along, memory.thresholds, sizes, rests)
@@ -145,17 +141,6 @@ class FoldingContact(ElasticContact):
             states,
         )
         return self._with_far(inner, ends, places, memory)
-
-    def _states(
-        self, places: jax.Array, thresholds: Thresholds, sizes: jax.Array, rests: RingEquilibrium
-    ) -> State:
-        def one(place: jax.Array, size: jax.Array, rest: RingEquilibrium) -> State:
-            rest = with_derivatives(self, place, thresholds, size, rest)
-            return self._measured(place, thresholds, size, rest)
-
-        states = jax.vmap(one)(places, sizes, rests)
-        assert isinstance(self.interface, BranchPressure)
-        return states._replace(error=jnp.maximum(states.error, self.interface.error))
 
     def _ahead(self, start: jax.Array, within: tuple[Any, Any]) -> tuple[Any, Any]:
         """The bounds [m] within which a scanning curve is followed: up to the next fold.

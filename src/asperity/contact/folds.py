@@ -25,7 +25,6 @@ from .landing import bounded_size, fit, on_other_mesh, settle
 
 _EVEN, _WIDENING = 0.25, 0.02  # rms heights between places that are followed, and of the separation
 _DEEP = 20.0  # rms heights, down to which folds are sought
-_FINER = 8  # panels of the tabulated pressure for each of the curves
 _STEPS = 12  # of Newton's method from a place near by
 _ENOUGH = 1e-11  # of the separation: a move that counts as none
 _FAR = 0.5  # rms heights between a guess and what it leads to: more is another branch
@@ -190,7 +189,7 @@ def _sought(contact: Branching, places: jax.Array) -> Fold:
     def one(job: tuple[Thresholds, jax.Array]) -> Fold:
         thresholds, along = job
         span = jnp.min(along), jnp.max(along)
-        table = with_table(contact, *span, thresholds, _FINER)
+        table = with_table(contact, *span, thresholds)
         return first_fold(table, along, thresholds, first_size(contact, along[0]))
 
     branches = contact.branches()

@@ -58,17 +58,15 @@ class SmoothContact(Contact):
 
     def state(self, separation: jax.Array, memory: Flags) -> State:
         flags = self.update_memory(memory, separation)
-        each = {name: jnp.zeros_like(separation) for name in self.components}
-        stored, index = jnp.zeros_like(separation), 0
+        each = {name: jnp.zeros_like(separation) for name in (*self.components, "energy")}
+        index = 0
         for law in terms(self.law):
             on = jnp.zeros((), bool)
             if law.hysteretic:
                 on, index = flags[index] > 0.5, index + 1
-            for name, share in law.components(separation, on).items():
+            for name, share in law.response(separation, on).items():
                 each[name] = each[name] + share
-            free = law.energy(separation)
-            bonded = law.bonded_energy(separation) if law.hysteretic else free
-            stored = stored + jnp.where(on, bonded, free)
+        stored = each.pop("energy")
         parts = jnp.stack(list(each.values()))
         return State(
             force=jnp.sum(parts),
@@ -94,7 +92,7 @@ class SmoothContact(Contact):
         return jnp.stack(rows) if rows else jnp.zeros((0,))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        rows = [(law.formation_loss, law.rupture_loss) for law in self._hysteretic]
+        rows = [law.losses for law in self._hysteretic]
         if not rows:
             return jnp.zeros((0,)), jnp.zeros((0,))
         formed, broken = zip(*rows, strict=True)

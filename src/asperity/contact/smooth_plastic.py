@@ -124,30 +124,29 @@ class SmoothPlasticContact(YieldingContact):
         deepest = jnp.maximum(-lowest, 0.0)
         gap = separation + self.contact.residual(deepest)
         held = list(flags > 0.5)
-        each = {name: jnp.zeros_like(separation) for name in self.components}
+        each = {name: jnp.zeros_like(separation) for name in (*self.components, "energy")}
         if isinstance(self.contact, AdhesiveThorntonNing):
             tip, on = self._tip(deepest), held.pop(0)
-            each.update(tip.components(gap, on))
-            stored = jnp.where(on, tip.bonded_energy(gap), 0.0)
+            each.update(tip.response(gap, on))
             grown = tip.formation_loss / self._tip(jnp.zeros(())).formation_loss
             counts = [jnp.where(on, 1.0, 1.0 - grown)]
         else:
             overlap = jnp.maximum(-separation, 0.0)
             each["elastic"] = self.contact.force(overlap, deepest)
-            stored, counts = self.contact.recoverable(overlap, deepest), []
+            each["energy"], counts = self.contact.recoverable(overlap, deepest), []
         kept, flatness = self.contact.dissipated(deepest), self._flatness(deepest)
         deeper = separation <= memory[0]
         for law in terms(self.law):
             on = held.pop(0) if law.hysteretic else jnp.zeros((), bool)
             grown = flatness**law.radius_power
-            whole, flat = law.components(separation, on), law.components(gap, on)
+            whole, flat = law.response(separation, on), law.response(gap, on)
+            each["energy"] = each["energy"] + grown * flat.pop("energy")
             for name, part in flat.items():
                 each[name] = each[name] + jnp.where(deeper, whole[name], grown * part)
-            energy = jnp.where(on, law.bonded_energy(gap), law.energy(gap))
-            stored = stored + grown * energy
             kept = kept + self._flattening(law, deepest, grown)
             if law.hysteretic:
                 counts.append(jnp.where(on, grown, 0.0))
+        stored = each.pop("energy")
         parts = jnp.stack(list(each.values()))
         return State(
             force=jnp.sum(parts),
@@ -176,7 +175,7 @@ class SmoothPlasticContact(YieldingContact):
         return lowest, jnp.stack(rows) if rows else jnp.zeros((0,))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        rows = [(law.formation_loss, law.rupture_loss) for law in self._bonds(jnp.zeros(()))]
+        rows = [law.losses for law in self._bonds(jnp.zeros(()))]
         formed, broken = zip((jnp.ones(()), -jnp.ones(())), *rows, strict=True)
         return jnp.stack(formed), jnp.stack(broken)
 

@@ -105,6 +105,8 @@ class Table(NamedTuple):
         from outside to there: an estimate of the interpolation error, shape (panels,).
     residual
         Largest error estimate of the contact itself.
+    losses
+        Energy [J] lost when one bond forms and when it breaks, shape (2, laws).
     left
         What the first impact left of a contact that yields; empty without one.
     reversals
@@ -116,8 +118,14 @@ class Table(NamedTuple):
     works: Works
     errors: jax.Array
     residual: jax.Array
+    losses: jax.Array
     left: Any = ()
     reversals: Any = ()
+
+    def lost_by_bonds(self, change: jax.Array) -> jax.Array:
+        """Energy [J] lost as the numbers of bonds change, per law, shape (..., laws)."""
+        formed, broken = self.losses
+        return jnp.maximum(change, 0.0) * formed + jnp.maximum(-change, 0.0) * broken
 
     @property
     def looks(self) -> jax.Array:
@@ -217,7 +225,7 @@ def _tabulated(
     points = chebyshev.chebpts1(NODES)
     places = 0.5 * (ends[:-1] + ends[1:])[:, None] + 0.5 * jnp.diff(ends)[:, None] * points
     states = contact.curves(ends, places)
-    values, errors = jax.vmap(lambda branch: fit(all_rows(branch)))(states), states.error
+    values = jax.vmap(lambda branch: fit(all_rows(branch)))(states)
     values = joined(ends, places, values)
     force = values[..., FORCE]
     width = jnp.diff(ends)
@@ -227,7 +235,9 @@ def _tabulated(
     work = jnp.cumsum(done[:, ::-1], axis=1)[:, ::-1]
     work = work + _LEAST * jnp.max(work)
     error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
-    return Table(ends, values, _works(ends, values), jnp.max(error, axis=0), jnp.max(errors))
+    losses = jnp.stack(contact.losses())
+    errors = jnp.max(error, axis=0), jnp.max(states.error)
+    return Table(ends, values, _works(ends, values), *errors, losses)
 
 
 def _read_again(table: Table, places: jax.Array) -> jax.Array:

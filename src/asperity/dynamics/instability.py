@@ -83,7 +83,7 @@ def over_folds(
         central = chebyshev_sum(inner.values[-1, :, CENTRAL], x)
     branch = _side(table, branch, place, central, unloading, contact.scale)
     pieces = join(table, branch, inner, reversal[0], unloading)
-    return branch, _jumps_along(contact, pieces, inner.low.shape[0])
+    return branch, _jumps_along(contact, table, pieces, inner.low.shape[0])
 
 
 def _side(
@@ -105,7 +105,7 @@ def _side(
     return branch + half * jnp.where(one, unloading, nearer)
 
 
-def _jumps_along(contact: Contact, pieces: Pieces, curve: int) -> Jumps:
+def _jumps_along(contact: Contact, table: Table, pieces: Pieces, curve: int) -> Jumps:
     """The jumps along the pieces of a phase, on the branch alone.
 
     ``curve`` pieces before it are those of the scanning curve: where these do not meet, or where
@@ -122,7 +122,7 @@ def _jumps_along(contact: Contact, pieces: Pieces, curve: int) -> Jumps:
         return chebyshev_sum(jnp.moveaxis(pieces.values[k], 1, 0), x[:, None])
 
     before, after = row(here), row(there)
-    by_bonds = contact.lost_by_bonds(after[:, bonds] - before[:, bonds])
+    by_bonds = table.lost_by_bonds(after[:, bonds] - before[:, bonds])
     drop = before[:, STORED] - after[:, STORED] - jnp.sum(by_bonds, axis=1)
     apart = jnp.abs(after[:, CENTRAL] - before[:, CENTRAL]) > _JUMP * contact.scale
     on_branch = (here >= curve) & (filled[:-1] < count) & (following < count)

@@ -214,7 +214,7 @@ def _phase_of_impact(
     row = row_at(ahead, turn)
     layout = quantities(contact)
     bonds = row[layout.bonds]
-    parts = contact.lost_by_bonds(bonds - progress.bonds), dissipated
+    parts = table.lost_by_bonds(bonds - progress.bonds), dissipated
     lost = jnp.concatenate([*parts, jumps.lost(turn.place, unloading)]) + progress.lost
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(

@@ -68,7 +68,7 @@ def quasi_static_curve(
         "pull_off": float(pulled.pull_off),
         "pull_off_separation": float(pulled.separation) if pulled.pull_off > 0.0 else None,
         "work_of_separation": float(pulled.work),
-        "loss": _loss(contact, approach[:, layout.bonds], unloading[:, layout.bonds])
+        "loss": _loss(table, approach[:, layout.bonds], unloading[:, layout.bonds])
         + _by_jumps(impacts, deepest),
         "jumps": None,
     }
@@ -147,14 +147,6 @@ def first_unloading(table: Table, impacts: Impacts) -> Unloading:
 unloading_of = Program(unloading, AT_ONCE)
 
 
-def _losses(contact: Contact) -> tuple[jax.Array, jax.Array]:
-    return contact.losses()
-
-
-losses = Program(_losses, AT_ONCE)
-"""What each mechanism loses [J] as a bond forms and as it breaks, compiled."""
-
-
 def _by_jumps(impacts: Impacts, deepest: float) -> float:
     """Energy lost at jumps in, down to the deepest point, and out to the end [J]."""
     inward, outward = impacts.fall.jumps, impacts.rise.jumps
@@ -162,9 +154,9 @@ def _by_jumps(impacts: Impacts, deepest: float) -> float:
     return float(np.sum(np.asarray(inward.energy[0])[passed]) + np.sum(outward.energy[0]))
 
 
-def _loss(contact: Contact, approach: np.ndarray, unloading: np.ndarray) -> float:
+def _loss(table: Table, approach: np.ndarray, unloading: np.ndarray) -> float:
     """Energy lost in and out: bonds made on the way in, and broken on the way out."""
-    formation, rupture = (np.asarray(x) for x in losses(contact))
+    formation, rupture = np.asarray(table.losses)
     return float(
         (approach[0] - approach[-1]) @ formation + (unloading[0] - unloading[-1]) @ rupture
     )

@@ -60,8 +60,9 @@ def find_reference(table: Table, load: Load, branch: int) -> Reference:
 
 def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:
     """Outermost separation [m] at which any branch carries 1e-6 of the peak force."""
-    forces = table.values[..., FORCE]
-    return jnp.max(jnp.stack([_end(table.ends, force, _NEGLIGIBLE * peak) for force in forces]))
+    least = _NEGLIGIBLE * peak
+    ends = jax.vmap(lambda force: _end(table.ends, force, least))(table.values[..., FORCE])
+    return jnp.max(ends)
 
 
 def _end(ends: jax.Array, force: jax.Array, least: jax.Array) -> jax.Array:

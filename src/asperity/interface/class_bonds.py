@@ -11,7 +11,7 @@ from .._jax import jax, jnp
 from ..laws.law import Law
 from ..numerics.polynomials import chebyshev_sum, from_points, local
 from ..surfaces.heights.distribution import Heights
-from .height_quadrature import Asked, between
+from .height_quadrature import between
 
 
 class ClassBonds(NamedTuple):
@@ -21,15 +21,16 @@ class ClassBonds(NamedTuple):
     ----------
     law, heights
         The law and the heights of the class.
-    asked
-        What of.
+    names, integrated
+        Mechanisms or "energy", a row each, of planes (0) or of a rigid paraboloid (1) (static).
     pieces
         Even pieces of a quadrature over these bonds (static).
     """
 
     law: Law
     heights: Heights
-    asked: Asked
+    names: tuple[str, ...]
+    integrated: int
     pieces: int
 
     def at(self, threshold: jax.Array, places: jax.Array) -> jax.Array:
@@ -67,7 +68,8 @@ class ClassBonds(NamedTuple):
     def _up_to(self, edges: jax.Array, places: jax.Array) -> jax.Array:
         """By quadrature, for vectors; of ``edges`` there may be one for all."""
         start = jnp.asarray(self.law.forming_gap, float)
-        return between(self.law, self.heights, start, edges, places, self.asked, self.pieces)
+        found = between(self.law, self.heights, start, edges, places, self.integrated, self.pieces)
+        return jnp.stack([found[name] for name in self.names])
 
 
 def _root(x: jax.Array) -> jax.Array:

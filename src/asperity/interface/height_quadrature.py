@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -36,25 +37,10 @@ class Near(NamedTuple):
     nodes: int = 16
 
 
-class Asked(NamedTuple):
-    """What is asked of a law (all static).
-
-    Attributes
-    ----------
-    names
-        "energy", "force", or mechanisms of its force.
-    integrated
-        0 for a plane, 1 for a rigid paraboloid.
-    """
-
-    names: tuple[str, ...]
-    integrated: int
-
-
 def means(
-    law: Law, heights: Heights, edge: jax.Array, separation: jax.Array, asked: Asked
-) -> jax.Array:
-    """Means at separations [m] of any shape, one row a name.
+    law: Law, heights: Heights, edge: jax.Array, separation: jax.Array, integrated: int
+) -> dict[str, jax.Array]:
+    """Means at separations [m] of any shape, named as in :meth:`Law.response`.
 
     Parameters
     ----------
@@ -64,17 +50,17 @@ def means(
         Gap [m] below which asperities are bonded, of that shape.
     separation
         The separations.
-    asked
-        What of.
+    integrated
+        0 for a plane, 1 for a rigid paraboloid (static).
     """
 
-    def one(e: jax.Array, h: jax.Array) -> jax.Array:
-        return means_near(law, heights, e[None], h[None], asked, Near(level=True))[:, 0]
+    def one(e: jax.Array, h: jax.Array) -> dict[str, jax.Array]:
+        found = means_near(law, heights, e[None], h[None], integrated, Near(level=True))
+        return {name: row[0] for name, row in found.items()}
 
     shape = jnp.shape(separation)
-    flat = jax.vmap(one, out_axes=1)
-    found: jax.Array = flat(jnp.ravel(jnp.broadcast_to(edge, shape)), jnp.ravel(separation))
-    return found.reshape(-1, *shape)
+    found = jax.vmap(one)(jnp.ravel(jnp.broadcast_to(edge, shape)), jnp.ravel(separation))
+    return {name: row.reshape(shape) for name, row in found.items()}
 
 
 def means_near(
@@ -82,12 +68,13 @@ def means_near(
     heights: Heights,
     edges: jax.Array,
     separations: jax.Array,
-    asked: Asked,
+    integrated: int,
     near: Near,
-) -> jax.Array:
+) -> dict[str, jax.Array]:
     """Means at separations [m] near one another, which share their nodes.
 
-    As :func:`means`, for vectors.
+    As :func:`means`, for vectors. The law is evaluated once, at all nodes: it is most of what
+    there is to compile.
     """
     low, high, edge = jnp.min(separations), jnp.max(separations), jnp.min(edges)
     # Beyond the end of a law the share of its gaps falls steeply, from the last one on.
@@ -95,32 +82,26 @@ def means_near(
     lowest = low - heights.highest_beside(within)
     # Up to here places differ in how many asperities are higher; beyond, all of them are.
     uneven = high - heights.bottom
-    end = _end(law, uneven, edge, asked.integrated)
+    kinks = _kinks(law)
+    end = _end(law, uneven, edge, jnp.max(kinks), integrated)
     pieces = near.pieces * heights.cuts
     even = lowest + (jnp.minimum(uneven, end) - lowest) * np.linspace(0.0, 1.0, pieces + 1)
-    kinks = jnp.append(_kinks(law), edge)
-    bounds = _pieces((lowest, end), kinks, even, _shortest(law, heights), law)
+    bounds = _pieces((lowest, end), jnp.append(kinks, edge), even, _shortest(law, heights), law)
     gap, weight = points(bounds)
-    values = weight * _values(law, gap, gap < edge, asked.names)
-    shares = heights.tail(asked.integrated, separations[:, None, None] - gap, law.radius_power)
-    found = jnp.stack([jnp.einsum("ij,pij->p", row, shares) for row in values])
-    if law.hysteretic and not near.level:
-        found = found + between(law, heights, edge, edges, separations, asked)
-    if asked.integrated == 0 or law.only_bonded:
+    more = _Between.of(edge, edges, _HALVES) if law.hysteretic and not near.level else None
+    values, *beside = _responses(law, (gap, gap < edge), *(more.branches(law) if more else ()))
+    shares = heights.tail(integrated, separations[:, None, None] - gap, law.radius_power)
+    found = {name: jnp.einsum("ij,pij->p", weight * row, shares) for name, row in values.items()}
+    if more:
+        added = more.mean(beside, heights, separations, integrated, law)
+        found = {name: row + added[name] for name, row in found.items()}
+    if integrated == 0 or law.only_bonded:
         return found
     whole = heights.tail(1, jnp.asarray(heights.bottom), law.radius_power)
-    beyond = [_beyond(law, end, _shortest(law, heights), name) for name in asked.names]
-    return found + whole * jnp.stack(beyond)[:, None]
-
-
-def _end(law: Law, uneven: jax.Array, edge: jax.Array, integrated: int) -> jax.Array:
-    """Gap [m] up to which a law is integrated piece by piece.
-
-    A paraboloid may be so deep that all asperities beside its apex are well within the law.
-    """
-    if law.only_bonded:
-        return edge if integrated else jnp.minimum(uneven, edge)
-    return jnp.maximum(uneven, jnp.max(_kinks(law))) if integrated else uneven
+    return {
+        name: row + whole * _beyond(law, end, _shortest(law, heights), name)
+        for name, row in found.items()
+    }
 
 
 def _kinks(law: Law) -> jax.Array:
@@ -133,35 +114,74 @@ def between(
     edge: jax.Array,
     edges: jax.Array,
     separations: jax.Array,
-    asked: Asked,
-    pieces: int = _HALVES,
-) -> jax.Array:
+    integrated: int,
+    pieces: int,
+) -> dict[str, jax.Array]:
     """What bonds of gaps between ``edge`` and each place's own of ``edges`` add to its mean.
 
     ``edge`` is the least of them; ``edges`` and ``separations`` are vectors. 16 nodes on each of
     even ``pieces`` (static).
     """
-    steps = np.linspace(0.0, 1.0, pieces + 1)
-    gap, weight = jax.vmap(points)(edge + (edges - edge)[:, None] * steps)
-    bonded = _values(law, gap, jnp.ones(gap.shape, bool), asked.names)
-    free = _values(law, gap, jnp.zeros(gap.shape, bool), asked.names)
-    shares = heights.tail(asked.integrated, separations[:, None, None] - gap, law.radius_power)
-    return jnp.sum((bonded - free) * weight * shares, axis=(-2, -1))
+    nodes = _Between.of(edge, edges, pieces)
+    found = _responses(law, *nodes.branches(law))
+    return nodes.mean(found, heights, separations, integrated, law)
 
 
-def _values(law: Law, gap: jax.Array, bonded: jax.Array, names: tuple[str, ...]) -> jax.Array:
-    """Force, parts of it or energy on the branch that holds, one row a name."""
-    parts = law.components(gap, bonded) if set(names) - {"energy", "force"} else {}
-    rows = []
-    for name in names:
-        if name not in ("energy", "force"):
-            rows.append(parts[name])
-            continue
-        free, held = (
-            (law.energy, law.bonded_energy) if name == "energy" else (law.force, law.bonded_force)
-        )
-        rows.append(jnp.where(bonded, held(gap), free(gap)) if law.hysteretic else free(gap))
-    return jnp.stack(rows)
+class _Between(NamedTuple):
+    """Nodes in gaps [m] whose bonds differ from place to place: (places, pieces, nodes)."""
+
+    gap: jax.Array
+    weight: jax.Array
+
+    @classmethod
+    def of(cls, edge: jax.Array, edges: jax.Array, pieces: int) -> _Between:
+        steps = np.linspace(0.0, 1.0, pieces + 1)
+        return cls(*jax.vmap(points)(edge + (edges - edge)[:, None] * steps))
+
+    def branches(self, law: Law) -> list[tuple[jax.Array, jax.Array]]:
+        """Gaps, and whether they are bonded: both branches, where there are two."""
+        held = [(self.gap, jnp.ones(self.gap.shape, bool))]
+        return held if law.only_bonded else [*held, (self.gap, jnp.zeros(self.gap.shape, bool))]
+
+    def mean(
+        self,
+        found: list[dict[str, jax.Array]],
+        heights: Heights,
+        separations: jax.Array,
+        integrated: int,
+        law: Law,
+    ) -> dict[str, jax.Array]:
+        """What the bonds add, from the law on its branches."""
+        shares = heights.tail(integrated, separations[:, None, None] - self.gap, law.radius_power)
+        share = self.weight * shares
+        change = {name: reduce(jnp.subtract, [row[name] for row in found]) for name in found[0]}
+        return {name: jnp.sum(row * share, axis=(-2, -1)) for name, row in change.items()}
+
+
+def _responses(law: Law, *sets: tuple[jax.Array, jax.Array]) -> list[dict[str, jax.Array]]:
+    """A law at several sets of gaps [m], bonded or not, whose last axes are alike."""
+    nodes = sets[0][0].shape[-1]
+    gap, bonded = (
+        jnp.concatenate([x.reshape(-1, nodes) for x in rows]) for rows in zip(*sets, strict=True)
+    )
+    found = law.response(gap, bonded)
+    ends = np.cumsum([0, *(x.size // nodes for x, _ in sets)])
+    return [
+        {name: row[first:last].reshape(x.shape) for name, row in found.items()}
+        for (x, _), first, last in zip(sets, ends[:-1], ends[1:], strict=True)
+    ]
+
+
+def _end(
+    law: Law, uneven: jax.Array, edge: jax.Array, last_kink: jax.Array, integrated: int
+) -> jax.Array:
+    """Gap [m] up to which a law is integrated piece by piece.
+
+    A paraboloid may be so deep that all asperities beside its apex are well within the law.
+    """
+    if law.only_bonded:
+        return edge if integrated else jnp.minimum(uneven, edge)
+    return jnp.maximum(uneven, last_kink) if integrated else uneven
 
 
 def _shortest(law: Law, heights: Heights) -> jax.Array:
@@ -207,8 +227,7 @@ def points(bounds: jax.Array, nodes: int = 16) -> tuple[jax.Array, jax.Array]:
 def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.Array:
     """Integral of a free branch over all gaps beyond ``start``, where T_1 is 1."""
     if name != "energy":
-        whole = law.energy(start)
-        return jnp.where(name == "force" or name == law.mechanism, whole, 0.0)
+        return law.energy(start) if name == law.mechanism else jnp.zeros(())
     known = law.energy_beyond(start)
     if known is not None:
         return known

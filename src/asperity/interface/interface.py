@@ -6,7 +6,7 @@ from .._jax import jax, jnp
 from ..laws.law import Law, Powers, Real, TruncatedPower, quantity, terms
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
-from .height_quadrature import Asked, Near, means, means_near
+from .height_quadrature import Near, means, means_near
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 
@@ -75,11 +75,9 @@ class Interface(RoughPlanes):
             sums[name] = sums.get(name, 0.0) + self.density * value
         for k, law in laws.items():
             if law.powers(edges[k]) is None:
-                asked = Asked((*self._force_names(law), "energy"), integrated)
-                rows = self._quadrature(law, edges[k], separation, asked, near)
-                for name, mean in zip(asked.names, rows, strict=True):
-                    target = law.mechanism if name == "force" else name
-                    sums[target] = sums.get(target, 0.0) + self.density * mean
+                found = self._quadrature(law, edges[k], separation, integrated, near)
+                for name, mean in found.items():
+                    sums[name] = sums.get(name, 0.0) + self.density * mean
         zero = jnp.zeros_like(separation)
         bonds = [sums[f"bonds {k}"] for k, law in laws.items() if law.hysteretic]
         return Means(
@@ -107,10 +105,10 @@ class Interface(RoughPlanes):
         ]
 
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        return self._total(separation, memory, integrated, "force")
+        return self._total(separation, memory, integrated, of_force=True)
 
     def _total(
-        self, separation: jax.Array, memory: Memory, integrated: int, name: str
+        self, separation: jax.Array, memory: Memory, integrated: int, *, of_force: bool
     ) -> jax.Array:
         """Mean of the force or of the energy of all laws."""
         edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
@@ -120,10 +118,11 @@ class Interface(RoughPlanes):
         for k, law in enumerate(self.laws):
             powers = law.powers(edges[k])
             if powers is None:
-                asked = Asked((name,), integrated)
-                total = total + self._quadrature(law, edges[k], separation, asked)[0]
+                found = self._quadrature(law, edges[k], separation, integrated)
+                energy = found.pop("energy")
+                total = total + (sum(found.values()) if of_force else energy)
             else:
-                flat += powers[0 if name == "force" else 1]
+                flat += powers[0 if of_force else 1]
                 sizes += (law.radius_power,) * (len(flat) - len(sizes))
         if flat:
             values = self.heights.mean_powers(flat, integrated, separation, sizes)
@@ -131,7 +130,7 @@ class Interface(RoughPlanes):
         return self.density * total
 
     def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        return self._total(separation, memory, integrated, "energy")
+        return self._total(separation, memory, integrated, of_force=False)
 
     def _pairs(self, memory: Memory) -> list[tuple[int, tuple[Law, jax.Array | None]]]:
         thresholds = iter(memory)
@@ -152,22 +151,14 @@ class Interface(RoughPlanes):
         law: Law,
         edge: jax.Array,
         separation: jax.Array,
-        asked: Asked,
+        integrated: int,
         near: Near | None = None,
-    ) -> jax.Array:
-        """Means of a law without truncated powers, one row a name."""
+    ) -> dict[str, jax.Array]:
+        """Means of a law without truncated powers, named as in :meth:`Law.response`."""
         if near is None:
-            return means(law, self.heights, edge, separation, asked)
-        if separation.ndim == 1:
-            return means_near(law, self.heights, edge, separation, asked, near)
-        return jax.vmap(
-            lambda edge, row: means_near(law, self.heights, edge, row, asked, near), out_axes=1
-        )(edge, separation)
+            return means(law, self.heights, edge, separation, integrated)
 
-    @staticmethod
-    def _force_names(law: Law) -> tuple[str, ...]:
-        """The parts into which a law without powers takes its force apart."""
-        if len(law.counts) < 2:
-            return ("force",)
-        zero = jnp.zeros(())
-        return tuple(law.components(zero, zero > 1.0))
+        def row(edge: jax.Array, separation: jax.Array) -> dict[str, jax.Array]:
+            return means_near(law, self.heights, edge, separation, integrated, near)
+
+        return (row if separation.ndim == 1 else jax.vmap(row))(edge, separation)

@@ -115,15 +115,13 @@ def _table(parts: Interface, number: int) -> BranchTable:
 
 
 def _names(law: Law) -> tuple[str, ...]:
-    zero = jnp.zeros(())
-    some = jax.tree_util.tree_map(lambda leaf: leaf[0], law)
-    return tuple(some.components(zero, zero > 1.0))
+    return tuple(sorted(law.counts or {law.mechanism}))
 
 
 def _rows(law: Law, gap: jax.Array) -> jax.Array:
     """Parts of the force [N], and the energy [J], of bonds at gaps [m]; one row each."""
-    parts = law.components(gap, jnp.ones(gap.shape, bool))
-    return jnp.stack([*parts.values(), law.bonded_energy(gap)])
+    found = law.response(gap, jnp.ones(gap.shape, bool))
+    return jnp.stack([found[name] for name in (*_names(law), "energy")])
 
 
 def _kernels(

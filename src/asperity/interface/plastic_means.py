@@ -70,10 +70,9 @@ def means_at(
     }
     for k, (one, edge) in enumerate(zip(terms(law), edges, strict=True)):
         held, size = gap < edge, one.radius_power
-        for name, part in one.components(gap, held).items():
-            sums[name] = sums.get(name, 0.0) + jnp.sum(share * pulling**size * part)
-        stored = jnp.where(held, one.bonded_energy(gap), one.energy(gap))
-        sums["energy"] = sums["energy"] + jnp.sum(share * flatter**size * stored)
+        for name, part in one.response(gap, held).items():
+            by = flatter if name == "energy" else pulling
+            sums[name] = sums.get(name, 0.0) + jnp.sum(share * by**size * part)
         if one.hysteretic:
             sums[f"bonds {k}"] = jnp.sum(share * jnp.where(held, flatter**size, 0.0))
     return sums

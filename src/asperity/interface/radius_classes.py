@@ -14,7 +14,7 @@ from ..inputs import CLASSES
 from ..laws.law import Law, terms
 from ..surfaces.heights.panel_length import PanelLengths
 from .class_bonds import ClassBonds
-from .height_quadrature import Asked, Near
+from .height_quadrature import Near
 from .interface import Interface
 from .major_branches import BranchTable, branch_tables
 from .rough_planes import Means, Memory, RoughPlanes, Scale
@@ -162,8 +162,8 @@ class RadiusClasses(RoughPlanes):
         def beside(part: Interface, own: Memory) -> list[jax.Array]:
             out = []
             for law, threshold, table in zip(terms(part.law), own, self.tables, strict=True):
-                asked = Asked((*table.names, "energy"), integrated)
-                bonds = ClassBonds(law, part.heights, asked, self.pieces)
+                names = (*table.names, "energy")
+                bonds = ClassBonds(law, part.heights, names, integrated, self.pieces)
                 if near is None:
                     out.append(part.density * bonds.at(threshold, separation))
                 else:

@@ -173,9 +173,8 @@ class RoughPlanes(eqx.Module):
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per mechanism."""
-        formed = [jnp.asarray(law.formation_loss) for law in self.hysteretic]
-        broken = [jnp.asarray(law.rupture_loss) for law in self.hysteretic]
-        return stacked(formed), stacked(broken)
+        each = [law.losses for law in self.hysteretic]
+        return stacked([lost[0] for lost in each]), stacked([lost[1] for lost in each])
 
     @property
     def yields(self) -> bool:

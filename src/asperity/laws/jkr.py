@@ -68,7 +68,7 @@ class Jkr(OnlyBonded):
         return jnp.cbrt(2.0 * pi * w * r**2 / e)
 
     def bonded_force(self, gap: jax.Array) -> jax.Array:
-        parts = self.components(gap, jnp.asarray(True))
+        parts = self.response(gap, jnp.asarray(True))
         return parts["elastic"] + parts["adhesion"]
 
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
@@ -78,19 +78,20 @@ class Jkr(OnlyBonded):
         overlap: the energy of a flat punch pressed through overlap_1 - a^2/R after the
         paraboloid touched over a (Johnson 1985, section 5.5).
         """
-        a = self.contact_radius(gap)
-        depth, rise = -gap, a**2 / self.radius
-        elastic = self.modulus * a * (depth**2 - 2.0 / 3.0 * depth * rise + rise**2 / 5.0)
-        return elastic - pi * a**2 * self.work_of_adhesion
+        return self.response(gap, jnp.asarray(True))["energy"]
 
-    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """Hertz force at this contact radius, and the pull of the adhesive stress."""
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy."""
         a = self.contact_radius(gap)
         elastic = 4.0 / 3.0 * self.modulus * a**3 / self.radius
         pull = -jnp.sqrt(8.0 * pi * self.work_of_adhesion * self.modulus * a**3)
+        depth, rise = -gap, a**2 / self.radius
+        stored = self.modulus * a * (depth**2 - 2.0 / 3.0 * depth * rise + rise**2 / 5.0)
+        stored = stored - pi * a**2 * self.work_of_adhesion
         return {
             "elastic": jnp.where(bonded, elastic, 0.0),
             "adhesion": jnp.where(bonded, pull, 0.0),
+            "energy": jnp.where(bonded, stored, 0.0),
         }
 
 

@@ -151,21 +151,33 @@ class Law(eqx.Module):
         """Whether its free branch is nothing at all. Known without values."""
         return False
 
-    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """The force [N] taken apart by mechanism, for pictures and records."""
-        return {self.mechanism: jnp.where(bonded, self.bonded_force(gap), self.force(gap))}
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """All of a law at once, on the branch that holds: both share most of their work.
+
+        The force [N] by mechanism, under the names of :attr:`counts` (or else
+        :attr:`mechanism`), and the energy [J] as "energy".
+        """
+        force, energy = self.force(gap), self.energy(gap)
+        if self.hysteretic:
+            force = jnp.where(bonded, self.bonded_force(gap), force)
+            energy = jnp.where(bonded, self.bonded_energy(gap), energy)
+        return {self.mechanism: force, "energy": energy}
+
+    @property
+    def losses(self) -> jax.Array:
+        """Energy [J] lost when one bond forms, and when it breaks."""
+        gaps = jnp.stack([jnp.asarray(gap, float) for gap in (self.forming_gap, self.breaking_gap)])
+        return (self.energy(gaps) - self.bonded_energy(gaps)) * np.array([1.0, -1.0])
 
     @property
     def formation_loss(self) -> jax.Array:
         """Energy [J] lost when one bond forms."""
-        gap = jnp.asarray(self.forming_gap)
-        return self.energy(gap) - self.bonded_energy(gap)
+        return self.losses[0]
 
     @property
     def rupture_loss(self) -> jax.Array:
         """Energy [J] lost when one bond breaks."""
-        gap = jnp.asarray(self.breaking_gap)
-        return self.bonded_energy(gap) - self.energy(gap)
+        return self.losses[1]
 
     def __add__(self, other: Law) -> Sum:
         return Sum((*terms(self), *terms(other)))

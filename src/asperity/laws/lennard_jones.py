@@ -95,26 +95,18 @@ class LennardJones(Law):
     def bonded_energy(self, gap: jax.Array) -> jax.Array:
         return self._at(gap)[1].energy
 
-    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """The force where surfaces press each other, and where they attract each other."""
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """The force where surfaces press each other and where they attract, and the energy."""
         outer, inner = self._at(gap)
         pressed = jnp.where(bonded, inner.pressed, outer.pressed)
         return {
             "elastic": pressed,
             "adhesion": jnp.where(bonded, inner.force, outer.force) - pressed,
+            "energy": jnp.where(bonded, inner.energy, outer.energy),
         }
 
     @property
-    def formation_loss(self) -> jax.Array:
-        return self._losses[0]
-
-    @property
-    def rupture_loss(self) -> jax.Array:
-        return self._losses[1]
-
-    @property
-    def _losses(self) -> jax.Array:
-        """Energy lost at both jumps [J]."""
+    def losses(self) -> jax.Array:
         folds = self._solved[1]
         jumps = jnp.stack([folds.inwards[GAP], folds.outwards[GAP]]) - 1.0
         outer, inner = self._at(self.spacing * jumps)

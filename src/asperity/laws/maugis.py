@@ -63,7 +63,8 @@ class Maugis(OnlyBonded):
 
     @property
     def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (self.rupture_gap, self.breaking_gap)
+        end = contact_end(self.elasticity)
+        return (-self._depth * end.overlap, -self._depth * end.last)
 
     @property
     def length(self) -> jax.Array | float:
@@ -88,12 +89,13 @@ class Maugis(OnlyBonded):
         """Elastic energy and that of the adhesive stress, 0 where bodies begin to attract."""
         return self._pull * self._depth * _state(-gap / self._depth, self.elasticity)[2]
 
-    def components(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """Hertz force at this contact radius, and the pull of the adhesive stress."""
-        elastic, pull, _ = _state(-gap / self._depth, self.elasticity)
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy."""
+        elastic, pull, energy = _state(-gap / self._depth, self.elasticity)
         return {
             "elastic": jnp.where(bonded, self._pull * elastic, 0.0),
             "adhesion": jnp.where(bonded, self._pull * pull, 0.0),
+            "energy": jnp.where(bonded, self._pull * self._depth * energy, 0.0),
         }
 
 

@@ -90,7 +90,7 @@ def check_law(
             _check_work(part, branch)
         _check_far(part)
         _check_losses(part, places)
-        _check_components(part, places)
+        _check_response(part, places)
         _check_powers(part, places)
         _check_units(part, places, known, unit_scale)
 
@@ -298,21 +298,26 @@ def _check_losses(law: Law, gaps: np.ndarray) -> None:
         )
 
 
-def _check_components(law: Law, gaps: np.ndarray) -> None:
+def _check_response(law: Law, gaps: np.ndarray) -> None:
     """The forces by mechanism are those that it counts, and add up."""
-    names = set(law.components(jnp.zeros(()), jnp.asarray(False)))
-    expected = set(law.counts or {law.mechanism})
+    names = set(law.response(jnp.zeros(()), jnp.asarray(False)))
+    expected = {"energy", *(law.counts or {law.mechanism})}
     assert names == expected, (
-        f"{_name(law)}: `components` must name the forces of `counts` (or else `mechanism`), "
-        f"{sorted(expected)}; it names {sorted(names)}"
+        f'{_name(law)}: `response` must name "energy" and the forces of `counts` (or else '
+        f"`mechanism`), {sorted(expected)}; it names {sorted(names)}"
     )
     for branch in _branches(law, gaps):
         at = jnp.asarray(branch.gaps)
-        parts = law.components(at, jnp.full(at.shape, branch.title == "bonded"))
+        parts = law.response(at, jnp.full(at.shape, branch.title == "bonded"))
+        energy = parts.pop("energy")
         total = np.sum(np.stack([np.asarray(part) for part in parts.values()]), axis=0)
         size = max(float(np.max(np.abs(part))) for part in parts.values())
-        what = f"{_name(law)}, {branch.title} branch: the components must add up to the force [N]"
+        of = f"{_name(law)}, {branch.title} branch: the"
+        what = f"{of} forces of `response` must add up to the force [N]"
         _compare(what, total, branch.force(at), branch.gaps, 1e-12 * size, 1e-9)
+        what = f"{of} energy of `response` must be that of the branch [J]"
+        deep = 1e-12 * float(np.max(np.abs(energy)))
+        _compare(what, energy, branch.energy(at), branch.gaps, deep, 1e-9)
 
 
 def _check_powers(law: Law, gaps: np.ndarray) -> None:

@@ -12,7 +12,6 @@ from ..contact import Contact
 from ..dynamics import Body, Motion, time_series
 from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from ..dynamics.problem import Problem
-from ..dynamics.quasi_static import losses
 from ..dynamics.static_equilibrium import Reference, end_of_contact
 from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import Series, ascending, sample, until
@@ -234,7 +233,7 @@ def _losses_along(
     contact: Contact, motion: Motion, body: Body, series: Series
 ) -> dict[str, np.ndarray]:
     """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
-    formation, rupture = (np.asarray(x) for x in losses(contact))
+    formation, rupture = np.asarray(motion.table.losses)
     bonds = series.rows[:, quantities(contact).bonds]
     impact, rising = series.phase // 2, series.phase % 2 == 1
     fall, rise = motion.impacts.fall, motion.impacts.rise

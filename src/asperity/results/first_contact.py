@@ -66,7 +66,9 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
     pulled = unloading(table, rise)
     peak = jnp.max(jnp.where(rows.made, jnp.abs(rows.force), 0.0))
     largest = jnp.maximum(peak, pulled.pull_off)
-    end = end_of_contact(table, largest)
+    gentlest = least_peak(body, pulled.pull_off, peak)
+    peaks = jnp.stack([largest, gentlest])
+    end, outset = jax.vmap(lambda size: end_of_contact(table, size))(peaks)
     if body.forces:
         ends = jnp.stack([body.release, rows.apex[0], rows.closest_approach[0]])
         most = jnp.max(jnp.abs(body.load.force(ends)))
@@ -80,7 +82,7 @@ def first_contact(table: Table, rows: Impacts, body: Body) -> FirstContact:
         time=jnp.where(rows.apex[0] >= end, time, jnp.nan),
         force=rows.force[0],
         unloading=pulled,
-        outset=end_of_contact(table, least_peak(body, pulled.pull_off, peak)),
+        outset=outset,
     )
 
 
