@@ -214,6 +214,14 @@ class Contact(eqx.Module):
         """How few scanning curves stand for all; None where each is solved as it comes."""
         return None
 
+    def means(self, low: jax.Array, high: jax.Array) -> Any:
+        """Tables that :meth:`reading` takes, for a body between two separations [m]."""
+        return ()
+
+    def reading(self, means: Any) -> Contact:
+        """The same contact, whose scanning curves are solved with tables of means."""
+        return self
+
     @abc.abstractmethod
     def update_memory(
         self, memory: Memory, separation: jax.Array, held: Held | None = None

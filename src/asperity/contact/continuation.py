@@ -215,6 +215,17 @@ def with_table(
     contact: Tabulated, low: jax.Array, high: jax.Array, thresholds: Thresholds
 ) -> Tabulated:
     """The contact with the means of a branch tabulated, for rings of a body between separations."""
+    ends, memory = table_ends(contact, low, high), tuple(b[-1] for b in thresholds)
+    table = BranchPressure(contact.interface, memory, ends)
+    tabulated: Tabulated = eqx.tree_at(lambda one: one.interface, contact, table)
+    return tabulated
+
+
+def table_ends(contact: Deforming, low: jax.Array, high: jax.Array) -> jax.Array:
+    """Ends of panels [m] on which means of the planes are smooth, for a body between separations.
+
+    Polynomials on them are off by some 1e-13 of the largest value.
+    """
     rms = contact.interface.scale.rms
     scale, low, high = LINEAR * rms, low - _BELOW * rms, _TO * high
     count = _FINER * contact.resolved.panels
@@ -225,11 +236,7 @@ def with_table(
     marks = jnp.asarray(gaps)[:, None] + _ABOUT * rms
     # Those outside stand twice within, where no panel of no width is read.
     marks = jnp.where((marks > low) & (marks < high), marks, even[count // 2]).ravel()
-    ends = jnp.sort(jnp.concatenate([even, marks]))
-    memory = tuple(b[-1] for b in thresholds)
-    table = BranchPressure(contact.interface, memory, jax.lax.stop_gradient(ends))
-    tabulated: Tabulated = eqx.tree_at(lambda one: one.interface, contact, table)
-    return tabulated
+    return jax.lax.stop_gradient(jnp.sort(jnp.concatenate([even, marks])))
 
 
 def continue_scanning_curve(

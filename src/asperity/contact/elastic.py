@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import equinox as eqx
@@ -28,6 +28,7 @@ from .continuation import (
     continue_scanning_curve,
     first_size,
     fitted,
+    table_ends,
     with_derivatives,
     with_table,
 )
@@ -37,6 +38,8 @@ from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
 from .ring_reversals import branch_thresholds, ring_reversals
 from .rough import RoughContact
+
+_MOST_ADDED = 9  # of the sixteen or so pieces of a whole quadrature
 
 
 class ElasticContact(RoughContact):
@@ -201,6 +204,25 @@ class ElasticContact(RoughContact):
 
         bound = jnp.logical_and(memory.size > 0.0, start < self.interaction_range)
         return jax.lax.cond(bound, back, nowhere)
+
+    @property
+    def _added(self) -> int:
+        """Pieces of 16 nodes for bonds that are not of the branch of approach."""
+        return 1 + ceil(self.resolved.nodes * self.resolved.pieces / 16)
+
+    def means(self, low: jax.Array, high: jax.Array) -> Any:
+        """None where bonds stretch far: their quadratures would cost as much as the whole."""
+        if not self.mechanisms or self._added > _MOST_ADDED:
+            return ()
+        return self.interface.approach_tables(
+            table_ends(self, low, jnp.minimum(high, self.interaction_range))
+        )
+
+    def reading(self, means: Any) -> ElasticContact:
+        if not means:
+            return self
+        planes = self.interface.reading(means, self._added)
+        return eqx.tree_at(lambda one: one.interface, self, planes)
 
     @property
     def reversals(self) -> ReversalSampling | None:

@@ -22,7 +22,7 @@ from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
 from ..numerics.roots import fixed_point
 from .profile import Sphere
 
-_ENOUGH = 1e-12  # relative change left in the separation
+_ENOUGH = 1e-13  # relative change left in the separation
 _INEXACT = 10.0 * CLOSE  # rate at which a step converges whose system is solved to that
 _BEYOND = 1e-6  # of the load may lie beyond the mesh
 _WIDEN = 0.02  # power of that load by which the mesh grows: it may fall off as r^-50

@@ -107,6 +107,8 @@ class Table(NamedTuple):
         Largest error estimate of the contact itself.
     losses
         Energy [J] lost when one bond forms and when it breaks, shape (2, laws).
+    means
+        What its scanning curves are solved with (:meth:`Contact.means`).
     left
         What the first impact left of a contact that yields; empty without one.
     reversals
@@ -119,6 +121,7 @@ class Table(NamedTuple):
     errors: jax.Array
     residual: jax.Array
     losses: jax.Array
+    means: Any = ()
     left: Any = ()
     reversals: Any = ()
 
@@ -237,7 +240,7 @@ def _tabulated(
     error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
     losses = jnp.stack(contact.losses())
     errors = jnp.max(error, axis=0), jnp.max(states.error)
-    return Table(ends, values, _works(ends, values), *errors, losses)
+    return Table(ends, values, _works(ends, values), *errors, losses, contact.means(*span))
 
 
 def _read_again(table: Table, places: jax.Array) -> jax.Array:

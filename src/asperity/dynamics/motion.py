@@ -68,7 +68,7 @@ def prepare(
     else:
         reference = Reference(body.rebounds_from, jnp.zeros(()), jnp.asarray(True))
     if many and not yields:
-        table = solve_reversals(contact, body, table, reference)
+        table = solve_reversals(contact.reading(table.means), body, table, reference)
     return table, reference
 
 

@@ -215,6 +215,7 @@ def _solved(
 ) -> Pieces:
     if table.left and isinstance(contact, YieldingContact):
         contact = contact.after(table.left)
+    contact = contact.reading(table.means)
     curve = contact.scanning_curve(memory, start, unloading, (table.ends[0], table.ends[-1]))
     if curve is None:
         none = jnp.zeros(0)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from ..laws.law import Law
+from ..laws.law import Law, Real
 from ..surfaces.heights.distribution import Heights
 
 EVEN = 7
@@ -16,6 +16,7 @@ EVEN = 7
 where places within 27 rms of one another share them, which is good to 1e-9."""
 
 _STEPS = 4  # of a ladder, in geometric progression from a quarter of the law's length
+_NO_KINKS = np.zeros(0)
 _HALVES = 2  # pieces of the gaps between the edges of places near one another
 
 
@@ -120,9 +121,9 @@ def between(
     """What bonds of gaps between ``edge`` and each place's own of ``edges`` add to its mean.
 
     ``edge`` is the least of them; ``edges`` and ``separations`` are vectors. 16 nodes on each of
-    even ``pieces`` (static).
+    even ``pieces`` (static), which are cut at kinks of the law.
     """
-    nodes = _Between.of(edge, edges, pieces)
+    nodes = _Between.of(edge, edges, pieces, _kinks(law))
     found = _responses(law, *nodes.branches(law))
     return nodes.mean(found, heights, separations, integrated, law)
 
@@ -134,9 +135,16 @@ class _Between(NamedTuple):
     weight: jax.Array
 
     @classmethod
-    def of(cls, edge: jax.Array, edges: jax.Array, pieces: int) -> _Between:
+    def of(
+        cls, edge: jax.Array, edges: jax.Array, pieces: int, kinks: Real = _NO_KINKS
+    ) -> _Between:
         steps = np.linspace(0.0, 1.0, pieces + 1)
-        return cls(*jax.vmap(points)(edge + (edges - edge)[:, None] * steps))
+
+        def bounds(last: jax.Array) -> jax.Array:
+            even = edge + (last - edge) * steps
+            return jnp.sort(jnp.concatenate([even, jnp.clip(kinks, edge, last)]))
+
+        return cls(*jax.vmap(lambda last: points(bounds(last)))(edges))
 
     def branches(self, law: Law) -> list[tuple[jax.Array, jax.Array]]:
         """Gaps, and whether they are bonded: both branches, where there are two."""

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
+
+import equinox as eqx
+
 from .._jax import jax, jnp
 from ..laws.law import Law, Powers, Real, TruncatedPower, quantity, terms
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
-from .height_quadrature import Near, means, means_near
+from .height_quadrature import Near, between, means, means_near
+from .panel_table import PanelTable, places_of
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 
@@ -21,6 +26,11 @@ class Interface(RoughPlanes):
         Distribution of their heights.
     density
         Asperities per area [1/m^2].
+    approach
+        Means of each law without truncated powers on the branch of approach, per asperity: its
+        forces, by name, and the energy. Empty where they are integrated as they come.
+    pieces
+        As for :meth:`reading`.
 
     Notes
     -----
@@ -33,6 +43,8 @@ class Interface(RoughPlanes):
     law: Law
     heights: Heights
     density: Real = quantity()
+    approach: tuple[PanelTable | None, ...] = ()
+    pieces: int = eqx.field(static=True, default=0)
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -75,7 +87,7 @@ class Interface(RoughPlanes):
             sums[name] = sums.get(name, 0.0) + self.density * value
         for k, law in laws.items():
             if law.powers(edges[k]) is None:
-                found = self._quadrature(law, edges[k], separation, integrated, near)
+                found = self._quadrature(k, edges[k], separation, integrated, near)
                 for name, mean in found.items():
                     sums[name] = sums.get(name, 0.0) + self.density * mean
         zero = jnp.zeros_like(separation)
@@ -118,7 +130,7 @@ class Interface(RoughPlanes):
         for k, law in enumerate(self.laws):
             powers = law.powers(edges[k])
             if powers is None:
-                found = self._quadrature(law, edges[k], separation, integrated)
+                found = self._quadrature(k, edges[k], separation, integrated)
                 energy = found.pop("energy")
                 total = total + (sum(found.values()) if of_force else energy)
             else:
@@ -131,6 +143,35 @@ class Interface(RoughPlanes):
 
     def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         return self._total(separation, memory, integrated, of_force=False)
+
+    def approach_tables(self, ends: jax.Array) -> tuple[PanelTable | None, ...]:
+        places = places_of(ends)
+
+        def one(number: int, law: Law) -> PanelTable | None:
+            edge = jnp.broadcast_to(law.forming_gap if law.hysteretic else -jnp.inf, places.shape)
+            if law.powers(edge) is not None:
+                return None
+            found = self._quadrature(number, edge, places, 0)
+            return PanelTable.through(ends, [found[name] for name in sorted(found)])
+
+        each = tuple(one(k, law) for k, law in enumerate(self.laws))
+        return each if any(table is not None for table in each) else ()
+
+    def reading(self, tables: tuple[PanelTable | None, ...], pieces: int) -> Interface:
+        return dataclasses.replace(self, approach=tables, pieces=pieces)
+
+    def _read(self, number: int, edge: jax.Array, separation: jax.Array) -> dict[str, jax.Array]:
+        """The same for one plane: the branch of approach, and the bonds that differ from it."""
+        law, table = self.laws[number], self.approach[number]
+        assert table is not None
+        names = sorted((*(law.counts or {law.mechanism}), "energy"))
+        found = dict(zip(names, table(separation), strict=True))
+        if not law.hysteretic:
+            return found
+        begin, shape = jnp.asarray(law.forming_gap, float), separation.shape
+        flat = jnp.broadcast_to(edge, shape).ravel(), separation.ravel()
+        more = between(law, self.heights, begin, *flat, 0, self.pieces)
+        return {name: row + more[name].reshape(shape) for name, row in found.items()}
 
     def _pairs(self, memory: Memory) -> list[tuple[int, tuple[Law, jax.Array | None]]]:
         thresholds = iter(memory)
@@ -148,13 +189,16 @@ class Interface(RoughPlanes):
 
     def _quadrature(
         self,
-        law: Law,
+        number: int,
         edge: jax.Array,
         separation: jax.Array,
         integrated: int,
         near: Near | None = None,
     ) -> dict[str, jax.Array]:
         """Means of a law without truncated powers, named as in :meth:`Law.response`."""
+        law = self.laws[number]
+        if near is None and self.approach and integrated == 0:
+            return self._read(number, edge, separation)
         if near is None:
             return means(law, self.heights, edge, separation, integrated)
 

@@ -126,6 +126,16 @@ class Layers(RoughPlanes):
         pairs = zip(self.parts, pressed, strict=True)
         return Layers([part.as_flattened(left) for part, left in pairs])
 
+    def approach_tables(self, ends: jax.Array) -> tuple[Any, ...]:
+        each = tuple(part.approach_tables(ends) for part in self.parts)
+        return each if any(each) else ()
+
+    def reading(self, tables: tuple[Any, ...], pieces: int) -> Layers:
+        if not tables:
+            return self
+        pairs = zip(self.parts, tables, strict=True)
+        return Layers([part.reading(own, pieces) for part, own in pairs])
+
     def _together(self, each: list[Means], separation: jax.Array) -> Means:
         zero = jnp.zeros_like(separation)
         sums = dict.fromkeys(self.components, zero)

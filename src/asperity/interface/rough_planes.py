@@ -159,6 +159,22 @@ class RoughPlanes(eqx.Module):
             which all have one memory.
         """
 
+    def approach_tables(self, ends: jax.Array) -> tuple[Any, ...]:
+        """What :meth:`reading` reads, with panels that end at ``ends`` [m]; empty for nothing."""
+        return ()
+
+    def reading(self, tables: tuple[Any, ...], pieces: int) -> RoughPlanes:
+        """The same planes, whose means over one plane are read from tables.
+
+        Parameters
+        ----------
+        tables
+            What :meth:`approach_tables` gave.
+        pieces
+            Even pieces of a quadrature over bonds that are not of the branch of approach (static).
+        """
+        return self
+
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
         """Mean pressure [Pa], positive when it pushes apart (``integrated`` 1: N per 2 pi R)."""
         return jnp.sum(self.measure(separation, memory, integrated).parts, axis=0)

@@ -166,8 +166,10 @@ class Law(eqx.Module):
     @property
     def losses(self) -> jax.Array:
         """Energy [J] lost when one bond forms, and when it breaks."""
-        gaps = jnp.stack([jnp.asarray(gap, float) for gap in (self.forming_gap, self.breaking_gap)])
-        return (self.energy(gaps) - self.bonded_energy(gaps)) * np.array([1.0, -1.0])
+        ends = [jnp.asarray(gap, float) for gap in (self.forming_gap, self.breaking_gap)]
+        gaps = jnp.stack(jnp.broadcast_arrays(*ends))
+        drop = jax.vmap(lambda gap: self.energy(gap) - self.bonded_energy(gap))(gaps)
+        return jnp.stack([drop[0], -drop[1]])
 
     @property
     def formation_loss(self) -> jax.Array:

@@ -1,0 +1,60 @@
+"""Quantities over separation, as Chebyshev polynomials on panels."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from .._jax import jax, jnp
+from ..numerics.compilation import kept
+from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local
+
+_TO_COEFFICIENTS = from_points(NODES)
+_SLOPE = np.arange(NODES) ** 2 * (-1.0) ** np.arange(1, NODES + 1)  # at the lower end
+_TAIL = 2.0  # power with which attraction across a gap falls: that of an asperity, beyond the table
+
+
+def places_of(ends: jax.Array) -> jax.Array:
+    """Separations [m] at which values are asked for, shape (panels, NODES)."""
+    nodes = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
+    return ends[:-1, None] + jnp.diff(ends)[:, None] * nodes
+
+
+@kept
+class PanelTable(NamedTuple):
+    """Rows of quantities, read from polynomials.
+
+    Attributes
+    ----------
+    ends
+        Ends of the panels [m], ascending. Below them values go on along their slope, above like
+        those of surface forces.
+    coefficients
+        Shape (NODES, panels, rows).
+    """
+
+    ends: jax.Array
+    coefficients: jax.Array
+
+    @classmethod
+    def through(cls, ends: jax.Array, rows: list[jax.Array]) -> PanelTable:
+        """Through values at :func:`places_of` the ends, each of that shape."""
+        return cls(ends, jnp.einsum("kn,qpn->kpq", _TO_COEFFICIENTS, jnp.stack(rows)))
+
+    def total(self) -> PanelTable:
+        """The sum of all rows, as one."""
+        return PanelTable(self.ends, jnp.sum(self.coefficients, axis=2, keepdims=True))
+
+    def __call__(self, separation: jax.Array) -> jax.Array:
+        """Values at separations [m] of any shape, rows first."""
+        ends, flat = self.ends, jnp.ravel(separation)
+        panel = jnp.clip(jnp.searchsorted(ends, flat) - 1, 0, len(ends) - 2)
+        x = local(ends[panel], ends[panel + 1], flat)[:, None]
+        found = chebyshev_sum(self.coefficients[:, panel], jnp.clip(x, -1.0, 1.0))
+        slope = jnp.tensordot(_SLOPE, self.coefficients[:, 0], axes=1)
+        below = jnp.minimum(flat - ends[0], 0.0) * 2.0 / (ends[1] - ends[0])
+        beyond = jnp.maximum(flat / ends[-1], 1.0)
+        found = (found + slope * below[:, None]) * beyond[:, None] ** -_TAIL
+        return found.T.reshape(-1, *jnp.shape(separation))
