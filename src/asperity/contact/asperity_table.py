@@ -263,7 +263,7 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
         slope,
         each([one.forming_gap for one in hysteretic]),
         each([one.breaking_gap for one in hysteretic]),
-        each([jnp.sum(one.losses) for one in hysteretic]),
+        each([jnp.sum(one.losses, axis=0) for one in hysteretic]),
         gap.ravel()[jnp.argmax(tension)],
         range_on_approach(slope[-1]),
     )

@@ -121,5 +121,5 @@ def loss_error(make: Callable[[Any], Law], radii: np.ndarray, classes: int = CLA
 def _bond_losses(make: Callable[[Any], Law], radii: np.ndarray) -> np.ndarray:
     """Energy [J] that one bond of each radius loses, over the laws that need classes."""
     laws = [law for law in terms(make(jnp.asarray(radii))) if law.radius_power == 0.0]
-    lost = [jnp.sum(law.losses) for law in laws if law.hysteretic]
+    lost = [jnp.sum(law.losses, axis=0) for law in laws if law.hysteretic]
     return np.asarray(sum(lost, jnp.zeros(radii.shape)))
