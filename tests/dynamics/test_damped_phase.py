@@ -67,8 +67,9 @@ def _in_time(problem, start, sign, memory, film, until=None):
 
     ends.terminal, ends.direction = True, -sign if until is None else 0
     method = "DOP853" if until is None else "Radau"
-    answer = solve_ivp(rate, (0, 1e7), [start * 1e9, sign * 1e-9], method, events=ends,
-                       rtol=1e-10 if until is None else 1e-8, atol=1e-12)  # fmt: skip
+    rtol, atol = (1e-10, 1e-12) if until is None else (1e-8, 1e-25)
+    start = [start * 1e9, sign * 1e-9]
+    answer = solve_ivp(rate, (0, 1e20), start, method, events=ends, rtol=rtol, atol=atol)
     place, speed = answer.y_events[0][0]
     return place * 1e-9, answer.t_events[0][0] * 1e-6, abs(speed) * 1e-3
 
@@ -128,7 +129,7 @@ def test_restitution_counts_what_passes_the_end_of_contact(problem, integrated):
     assert found**2 > weight * (apex - place) / (weight * (start - place))
 
 
-@pytest.mark.parametrize("viscosity", [2e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("viscosity", [2e-4, 1e-2, 1.0, 100.0, 1e4, 1e7])
 def test_a_body_that_the_gas_holds_creeps_to_rest(problem, integrated, viscosity):
     motion, measures = integrated(viscosity, 0.0)
     assert ENDS[int(motion.end.outcome)] is Outcome.REST
@@ -140,12 +141,11 @@ def test_a_body_that_the_gas_holds_creeps_to_rest(problem, integrated, viscosity
         problem, float(problem.body.release), -1, problem.contact.initial_memory(), film, until=goal
     )
     assert float(measures.time_to_rest) == pytest.approx(time, rel=2e-4)
-    assert float(motion.impacts.energy_balance_error[0] / motion.impacts.maximum_kinetic[0]) < 1e-8
-
-
-def test_a_drag_that_cannot_be_followed_is_a_failure(integrated):
-    motion, _ = integrated(0.1, 0.0)
-    assert ENDS[int(motion.end.outcome)] is Outcome.FAILED
+    fall = float(problem.body.weight) * (float(problem.body.release) - rest)
+    assert float(motion.impacts.energy_balance_error[0]) < 1e-11 * fall
+    if viscosity < 0.05:  # else its kinetic energy is lost in the rounding of the other
+        fastest = motion.impacts.maximum_kinetic[0]
+        assert float(motion.impacts.energy_balance_error[0] / fastest) < 1e-8
 
 
 @pytest.mark.long

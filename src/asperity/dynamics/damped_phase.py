@@ -16,7 +16,7 @@ from .drag import POINTS, SHARES, DampedPiece, PieceMotion, move_on, whole_of
 from .external_forces import Load
 from .phase import TurningPoint, Work, work_along
 from .phase_time import time_along
-from .record import Body
+from .record import Body, Phase
 from .resolved_pieces import resolved
 
 STILL = 1e-9
@@ -90,7 +90,7 @@ def integrate_phase(body: Body, pieces: Pieces, kinetic: jax.Array) -> DampedPha
     found = jnp.logical_not(now.going)
     stop = turning_place(body, piece, now.kinetic)
     stopped = found & _left_alone(body, piece, stop)
-    stop = jnp.where(stopped, _spent(body, piece, now.kinetic, stop), stop)
+    stop = jnp.where(stopped, spent_at(body, piece, now.kinetic, stop), stop)
     moved = move_on(body, piece, now.kinetic, stop)
     turn = TurningPoint(
         piece=now.piece,
@@ -160,7 +160,7 @@ def _left_alone(body: Body, piece: DampedPiece, place: jax.Array) -> jax.Array:
     return (body.weight == 0.0) & (push <= STILL * body.kinetic)
 
 
-def _spent(body: Body, piece: DampedPiece, kinetic: jax.Array, place: jax.Array) -> jax.Array:
+def spent_at(body: Body, piece: DampedPiece, kinetic: jax.Array, place: jax.Array) -> jax.Array:
     """Where on a piece, entered with a kinetic energy [J], drag has taken all momentum [m].
 
     By Newton's method from a place near by. Energies, which are squares of momenta, tell a place
@@ -221,16 +221,21 @@ def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
 
 
 def kinetic_and_time_at(
-    body: Body, pieces: Pieces, kinetic: jax.Array, unloading: jax.Array, place: jax.Array
+    body: Body,
+    pieces: Pieces,
+    phase: Phase,
+    unloading: jax.Array,
+    place: jax.Array,
 ) -> tuple[jax.Array, jax.Array]:
     """Kinetic energy [J] with which a body passes a place [m] of a phase, and when [s].
 
     Since the start of the phase. Without energy where it turns before.
     """
+    kinetic = phase.kinetic
     if not body.damped:
         passed = cut(pieces, unloading, place)
         work = work_along(passed, kinetic, body.load)
         return work.kinetic[-1], time_along(work, (passed.enter, passed.leave), body.mass)
-    passed = cut(resolved(body, pieces, kinetic)[0], unloading, place)
+    passed = cut(resolved(body, pieces, kinetic, phase.spent)[0], unloading, place)
     now, _ = _over_pieces(body, work_along(passed, kinetic, body.load), lambda *_: ())
     return jnp.where(now.going, now.kinetic, 0.0), now.time

@@ -30,7 +30,6 @@ from .overdamped import Rest, come_to_rest
 from .phase import TurningPoint, in_order, look_ahead, mechanical_at_end, pull_work, row_at
 from .phase_time import travel_time
 from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
-from .resolved_pieces import resolved
 from .scanning_table import inner_pieces, solve_reversals
 from .static_equilibrium import Reference, find_reference
 from .turning_point import find_turning_point
@@ -202,11 +201,11 @@ def _phase_of_impact(
         inwards = jnp.logical_or(bool(body.forces), jnp.logical_not(unloading))
         wanted = jnp.logical_and(progress.made == 0, inwards)
         turn, dissipated = find_turning_point(ahead, wanted), jnp.zeros(0)
+        spent = jnp.asarray(jnp.nan)
         time = progress.time + travel_time(ahead, turn, body.mass)
     else:
         pieces = join(table, branch, inner, progress.place, unloading)
-        pieces, part = resolved(body, pieces, progress.kinetic)
-        done = come_to_rest(body, pieces, progress.kinetic, rest, unloading)
+        done, part, spent = come_to_rest(body, pieces, progress.kinetic, rest, unloading)
         turn = done.turn._replace(piece=part[done.turn.piece])
         turn, dissipated = in_order(ahead, turn), done.lost
         fate = done.at_rest, done.followed, done.stopped
@@ -219,7 +218,7 @@ def _phase_of_impact(
     drawn = inner._replace(values=inner.values[..., : layout.components.stop])
     phase = Phase(
         progress.place, turn.place, progress.kinetic, progress.time, branch, drawn,
-        progress.lost, progress.bonds, jumps,
+        progress.lost, progress.bonds, jumps, spent,
     )  # fmt: skip
     held = Held(turn.piece >= ahead.pieces, unloading, row[SIZE], row[layout.field])
     after = progress._replace(

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from .curve_table import Pieces
-from .damped_phase import DampedPhase, integrate_phase, slow_at
+from .damped_phase import DampedPhase, integrate_phase, slow_at, spent_at
 from .drag import DampedPiece, move_on
 from .phase import TurningPoint, Work, work_along
 from .record import Body
+from .resolved_pieces import resolved
 
+_ATTEMPTS = 4  # to find where drag has taken the momentum
+_BRAKED = 0.02  # of the energy is left: a piece on which drag takes more is too long
 _NEAR = 0.1  # of the mean force on the way to it: more force at a place is no equilibrium
 
 
@@ -35,7 +41,7 @@ class Rest(NamedTuple):
 
 def come_to_rest(
     body: Body, pieces: Pieces, kinetic: jax.Array, rest: Rest, unloading: jax.Array
-) -> DampedPhase:
+) -> tuple[DampedPhase, jax.Array, jax.Array]:
     """A phase of :func:`asperity.dynamics.damped_phase.integrate_phase` that may creep to rest.
 
     A drag that is strong enough brings a body to its equilibrium without a turn, in infinite
@@ -50,10 +56,15 @@ def come_to_rest(
         What counts as rest.
     unloading
         Whether the body moves outwards.
+
+    Returns
+    -------
+    The phase, on finer pieces; which of ``pieces`` each of these is a part of; and where drag has
+    taken the momentum of a body that goes on from there [m], or NaN.
     """
-    whole = integrate_phase(body, pieces, kinetic)
+    pieces, part, whole, spent = _followed(body, pieces, kinetic, rest, unloading)
     if not body.damped_apart:
-        return whole
+        return whole, part, spent
     turn, work = whole.turn, work_along(pieces, kinetic, body.load)
     if body.forces:
         goal, here, near = _before_turn(body, pieces, turn, rest)
@@ -78,9 +89,70 @@ def come_to_rest(
         lambda a, b: jnp.where(at_rest, a, b), crept, turned
     )
     followed = at_rest | whole.followed
-    return whole._replace(
+    whole = whole._replace(
         turn=turn, duration=duration, lost=lost, at_rest=at_rest, followed=followed
     )
+    return whole, part, spent
+
+
+_Followed = tuple[Pieces, jax.Array, DampedPhase, jax.Array]
+
+
+def _followed(
+    body: Body, pieces: Pieces, kinetic: jax.Array, rest: Rest, unloading: jax.Array
+) -> _Followed:
+    """A phase on pieces that resolve where drag takes the body's momentum, if its weight goes on.
+
+    There the speed falls, over far less than a piece, to that at which drag balances the weight,
+    and the body seems to turn. It is followed again with pieces that narrow to that place.
+    """
+
+    @jax.jit  # traced once, for its shapes and for itself
+    def attempt(spent: jax.Array) -> tuple[Pieces, jax.Array, DampedPhase]:
+        finer, part = resolved(body, pieces, kinetic, spent)
+        return finer, part, integrate_phase(body, finer, kinetic)
+
+    never = jnp.asarray(jnp.nan)
+    if not body.damped_apart or body.forces:
+        return *attempt(never), never
+    blank = jax.tree_util.tree_map(
+        lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), jax.eval_shape(attempt, never)
+    )
+
+    def again(carry: tuple[Any, jax.Array, jax.Array], _: None) -> tuple[Any, None]:
+        before, spent, done = carry
+        found = jax.lax.cond(unvmap_any(~done), lambda: attempt(spent), lambda: before)
+        found = jax.tree_util.tree_map(lambda a, b: jnp.where(done, a, b), before, found)
+        finer, _, whole = found
+        near = _above_rest(body, finer, whole.turn, rest, unloading)[2]
+        number, sharp = _braked(body, finer, kinetic, whole)
+        coarse = ~done & (sharp | (~whole.followed & ~near))
+        piece = DampedPiece.of(work_along(finer, kinetic, body.load), number)
+        stop = jnp.where(sharp, piece.leave, whole.turn.place)
+        place = spent_at(body, piece, whole.kinetic[number], stop)
+        return (found, jnp.where(coarse, place, spent), ~coarse), None
+
+    start = blank, never, jnp.asarray(False)
+    (found, spent, _), _ = jax.lax.scan(again, start, length=_ATTEMPTS)
+    return *found, spent
+
+
+def _braked(
+    body: Body, pieces: Pieces, kinetic: jax.Array, whole: DampedPhase
+) -> tuple[jax.Array, jax.Array]:
+    """The first piece on which drag takes nearly all of the energy of a body that is pushed on.
+
+    And whether there is one; else the piece on which it turns.
+    """
+    before, after = whole.kinetic[:-1], whole.kinetic[1:]
+    taken = jnp.sum(jnp.diff(whole.dissipated, axis=0), axis=-1)
+    passed = np.arange(before.shape[0]) < whole.turn.piece
+    most = passed & (after < _BRAKED * before) & (taken > 0.5 * before)
+    number = jnp.argmax(most)
+    piece = DampedPiece.of(work_along(pieces, kinetic, body.load), number)
+    on = piece.ahead * piece.push(piece.leave, body.load) > 0.0
+    sharp = jnp.any(most) & on
+    return jnp.where(sharp, number, whole.turn.piece), sharp
 
 
 def _above_rest(

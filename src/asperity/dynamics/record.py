@@ -97,7 +97,11 @@ class Body(eqx.Module):
 
 @kept
 class Phase(NamedTuple):
-    """What a monotone phase started from; enough to draw it again."""
+    """What a monotone phase started from; enough to draw it again.
+
+    ``spent`` is where drag has taken the momentum of a body that other forces push on [m]; NaN
+    where that does not happen.
+    """
 
     start: jax.Array
     stop: jax.Array
@@ -108,6 +112,7 @@ class Phase(NamedTuple):
     lost: jax.Array
     bonds: jax.Array
     jumps: Jumps
+    spent: jax.Array
 
 
 class Limits(NamedTuple):

@@ -24,7 +24,9 @@ _LIGHT = 0.5  # of the largest momentum: a drag that takes less over a phase tur
 _NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the distance: cuts about its start and about them
 
 
-def resolved(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[Pieces, jax.Array]:
+def resolved(
+    body: Body, pieces: Pieces, kinetic: jax.Array, spent: jax.Array
+) -> tuple[Pieces, jax.Array]:
     """Pieces cut where drags ask for it, and which one each is a part of.
 
     Parameters
@@ -35,18 +37,31 @@ def resolved(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[Pieces, ja
         The polynomials ahead of it.
     kinetic
         Kinetic energy at the start [J].
+    spent
+        Where drag has taken the body's momentum, if it goes on from there [m]; else NaN.
     """
     count = pieces.low.shape[0]
     ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
     ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
     cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, kinetic, ahead)]
-    if not cuts:
+    if not cuts and not body.damped_apart:
         return pieces, jnp.arange(count)
+    if body.damped_apart:
+        cuts = [*cuts, _about(spent, jnp.sort(ahead * jnp.concatenate([ends, *cuts])), ahead)]
     places = jnp.sort(ahead * jnp.concatenate([ends, *cuts]))
     middles = 0.5 * (places[1:] + places[:-1])
     part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
     low, high, _, _, values = (leaf[part] for leaf in pieces)
     return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
+
+
+def _about(spent: jax.Array, ends: jax.Array, ahead: jax.Array) -> jax.Array:
+    """Cuts closer and closer to where drag has taken a momentum, on both sides of it."""
+    place = jax.lax.stop_gradient(ahead * spent)
+    piece = jnp.clip(jnp.searchsorted(ends, place), 1, ends.shape[0] - 1)
+    before, after = place - ends[piece - 1], ends[piece] - place
+    cuts = jnp.concatenate([place[None], place - before * _NEARER, place + after * _NEARER])
+    return ahead * jnp.where(jnp.isnan(place), ends[-1], cuts)
 
 
 def _in_film(body: Body, pieces: Pieces, ends: jax.Array, ahead: jax.Array) -> list[jax.Array]:

@@ -197,6 +197,7 @@ class Ledger(NamedTuple):
             "lost": start.lost[0],
             "bonds": start.rows[0, layout.bonds],
             "jumps": Jumps(none, none),
+            "spent": np.asarray(np.nan),
         }
         return Phase(**columns)
 

@@ -142,7 +142,8 @@ def _draw_one(
     """Time, separation, speed, rows, dissipated, drag and whether to keep, in the order of time."""
     pieces = join(table, phase.branch, phase.inner, phase.start, unloading)
     if body.damped:
-        return _draw_damped(body, resolved(body, pieces, phase.kinetic)[0], phase, unloading)
+        finer, _ = resolved(body, pieces, phase.kinetic, phase.spent)
+        return _draw_damped(body, finer, phase, unloading)
     work = work_along(pieces, phase.kinetic, body.load)
     ahead = jnp.where(unloading, 1.0, -1.0)
     path = _path(pieces, phase, places)

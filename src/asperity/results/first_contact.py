@@ -120,7 +120,7 @@ def _passing(
         pieces = join(table, phase.branch, phase.inner, phase.start, unloads)
         return jax.lax.cond(
             real,
-            lambda: kinetic_and_time_at(body, pieces, phase.kinetic, unloads, place),
+            lambda: kinetic_and_time_at(body, pieces, phase, unloads, place),
             lambda: (jnp.zeros(()), jnp.zeros(())),
         )
 
