@@ -9,6 +9,7 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
+from ..contact.plane_adhesion import refuse_one_contact
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
@@ -72,10 +73,12 @@ def integrate(
     Raises
     ------
     InputError
-        If the release lies inside contact.
+        If the release lies inside contact, or the rough surfaces adhere as smooth ones do.
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
+    if isinstance(problem.contact, ElasticContact):  # of a bulk that relaxes, once it has
+        refuse_one_contact(problem.contact)
     if not may_jump(problem):
         return _integrated(problem, report, stop, many=many, drawn=drawn)
     try:

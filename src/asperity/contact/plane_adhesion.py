@@ -1,0 +1,76 @@
+"""How rough planes adhere as a whole, and whether they draw a body to a single contact."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..errors import InputError
+from ..interface.rough_planes import RoughPlanes
+from ..numerics.compilation import AT_ONCE, Program, kept
+from .elastic import ElasticContact
+from .resolution import LINEAR
+
+LIMIT = 2.0
+"""Tabor number of the planes above which the edge of a contact is sharper than rings resolve."""
+
+_DEEP = 30.0  # rms heights below the mean planes, from which their work is counted
+_PLACES = 600
+
+
+@kept
+class PlaneAdhesion(NamedTuple):
+    """The adhesion of rough planes, without bonds and with all that can hold.
+
+    Attributes
+    ----------
+    work
+        Work against their attraction [J/m^2], shape (2,).
+    pull
+        Their largest tension [Pa], likewise.
+    """
+
+    work: jax.Array
+    pull: jax.Array
+
+
+def _adhesion(planes: RoughPlanes) -> PlaneAdhesion:
+    scale = LINEAR * planes.scale.rms
+    high = planes.scale.top + planes.interaction_range
+    ends = jnp.arcsinh(-_DEEP / LINEAR), jnp.arcsinh(high / scale)
+    places = scale * jnp.sinh(jnp.linspace(*ends, _PLACES))
+    memory = planes.initial_memory(places), planes.saturated_memory(places)
+    tension = jnp.stack([jnp.maximum(-planes.pressure(places, one), 0.0) for one in memory])
+    work = jnp.sum(0.5 * (tension[:, 1:] + tension[:, :-1]) * jnp.diff(places), axis=1)
+    return PlaneAdhesion(work, jnp.max(tension, axis=1))
+
+
+_of = Program(_adhesion, AT_ONCE)
+
+
+def refuse_one_contact(contact: ElasticContact) -> None:
+    """Refuse a body whose rough surfaces adhere as two smooth ones do.
+
+    Raises
+    ------
+    InputError
+        If the Tabor number of the planes is above the limit: (R W^2/(E*^2 d^3))^(1/3) with their
+        own work W and its range d, that work over their largest tension (Tabor 1977, for planes
+        in place of atoms).
+    """
+    work, pull = (np.asarray(x) for x in _of(contact.interface))
+    radius, modulus = float(contact.shape.radius), float(contact.modulus)
+    some = work > 0.0
+    cubes = radius * pull**3 / (modulus**2 * np.where(some, work, 1.0))
+    tabor = np.where(some, cubes, 0.0) ** (1.0 / 3.0)
+    worst = int(np.argmax(tabor))
+    if tabor[worst] > LIMIT:
+        raise InputError(
+            "adhesion draws the rough surfaces together as one: their own work of adhesion is "
+            f"{work[worst] * 1e3:.4g} mJ/m^2 and their Tabor number {tabor[worst]:.3g} (the limit "
+            f"is {LIMIT:g}), so that the edge of the contact is sharper than its rings; take JKR's "
+            "smooth sphere with that work, a case without [roughness]",
+            key="adhesion.work",
+        )
