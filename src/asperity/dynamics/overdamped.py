@@ -108,22 +108,22 @@ def _followed(
     """
 
     @jax.jit  # traced once, for its shapes and for itself
-    def attempt(spent: jax.Array) -> tuple[Pieces, jax.Array, DampedPhase]:
+    def attempt(spent: jax.Array) -> _Followed:
         finer, part = resolved(body, pieces, kinetic, spent)
-        return finer, part, integrate_phase(body, finer, kinetic)
+        return finer, part, integrate_phase(body, finer, kinetic), spent
 
     never = jnp.asarray(jnp.nan)
     if not body.damped_apart or body.forces:
-        return *attempt(never), never
+        return attempt(never)
     blank = jax.tree_util.tree_map(
         lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), jax.eval_shape(attempt, never)
     )
 
-    def again(carry: tuple[Any, jax.Array, jax.Array], _: None) -> tuple[Any, None]:
+    def again(carry: tuple[_Followed, jax.Array, jax.Array], _: None) -> tuple[Any, None]:
         before, spent, done = carry
         found = jax.lax.cond(unvmap_any(~done), lambda: attempt(spent), lambda: before)
         found = jax.tree_util.tree_map(lambda a, b: jnp.where(done, a, b), before, found)
-        finer, _, whole = found
+        finer, _, whole, _ = found
         near = _above_rest(body, finer, whole.turn, rest, unloading)[2]
         number, sharp = _braked(body, finer, kinetic, whole)
         coarse = ~done & (sharp | (~whole.followed & ~near))
@@ -133,8 +133,8 @@ def _followed(
         return (found, jnp.where(coarse, place, spent), ~coarse), None
 
     start = blank, never, jnp.asarray(False)
-    (found, spent, _), _ = jax.lax.scan(again, start, length=_ATTEMPTS)
-    return *found, spent
+    (found, *_), _ = jax.lax.scan(again, start, length=_ATTEMPTS)
+    return found
 
 
 def _braked(
