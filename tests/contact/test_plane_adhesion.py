@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 from asperity._jax import jnp
 from asperity.contact import ElasticContact
-from asperity.contact.plane_adhesion import LIMIT, refuse_one_contact
+from asperity.contact.plane_adhesion import LIMIT, tabor_number_of_planes
 from asperity.contact.profile import Sphere
 from asperity.errors import InputError
 from asperity.interface.interface import Interface
@@ -40,7 +40,7 @@ def test_the_tabor_number_is_that_of_their_work_and_pull():
         Interface(Hertz(TIP, STIFF) + Dmt(TIP, W), Gaussian(RMS), DENSITY), Sphere(RADIUS), E
     )
     with pytest.raises(InputError, match="draws the rough surfaces together as one") as raised:
-        refuse_one_contact(contact)
+        tabor_number_of_planes(contact)
     words = str(raised.value).split()
     assert float(words[words.index("mJ/m^2") - 1]) == pytest.approx(work * 1e3, rel=2e-3)
     number = words[words.index("(the") - 1]
@@ -53,17 +53,18 @@ def test_the_limit_is_a_modulus_at_which_it_is_met(factor):
     planes = Interface(Hertz(TIP, STIFF) + Dmt(TIP, W), Gaussian(RMS), DENSITY)
     soft = ElasticContact(planes, Sphere(RADIUS), E)
     with pytest.raises(InputError) as raised:
-        refuse_one_contact(soft)
+        tabor_number_of_planes(soft)
     words = str(raised.value).split()
     number = float(words[words.index("(the") - 1])
     limit = ElasticContact(planes, Sphere(RADIUS), E * (number / LIMIT) ** 1.5 * factor)
     if factor > 1.0:
-        refuse_one_contact(limit)
+        found = tabor_number_of_planes(limit)
+        assert found == pytest.approx(LIMIT * factor ** (-2.0 / 3.0), rel=5e-3)
     else:
         with pytest.raises(InputError):
-            refuse_one_contact(limit)
+            tabor_number_of_planes(limit)
 
 
 def test_planes_that_do_not_attract_are_let_through():
     planes = Interface(Hertz(TIP, STIFF), Gaussian(RMS), DENSITY)
-    refuse_one_contact(ElasticContact(planes, Sphere(RADIUS), jnp.asarray(1e3)))
+    assert tabor_number_of_planes(ElasticContact(planes, Sphere(RADIUS), jnp.asarray(1e3))) == 0.0

@@ -16,6 +16,10 @@ from .resolution import LINEAR
 LIMIT = 2.0
 """Tabor number of the planes above which the edge of a contact is sharper than rings resolve."""
 
+FOLDS = 0.6
+"""Tabor number of the planes above which equilibria are likely to fold: 0.7 with DMT's asperities,
+0.9 to 1.5 with those of Maugis and of Johnson, Kendall and Roberts."""
+
 _DEEP = 30.0  # rms heights below the mean planes, from which their work is counted
 _PLACES = 600
 
@@ -50,15 +54,16 @@ def _adhesion(planes: RoughPlanes) -> PlaneAdhesion:
 _of = Program(_adhesion, AT_ONCE)
 
 
-def refuse_one_contact(contact: ElasticContact) -> None:
-    """Refuse a body whose rough surfaces adhere as two smooth ones do.
+def tabor_number_of_planes(contact: ElasticContact) -> float:
+    """Tabor number of a body with its rough planes in place of atoms (Tabor 1977).
+
+    (R W^2/(E*^2 d^3))^(1/3) with their own work W and its range d, that work over their largest
+    tension; of the bonds that hold or not, whichever give the larger.
 
     Raises
     ------
     InputError
-        If the Tabor number of the planes is above the limit: (R W^2/(E*^2 d^3))^(1/3) with their
-        own work W and its range d, that work over their largest tension (Tabor 1977, for planes
-        in place of atoms).
+        If it is above the limit: the rough surfaces adhere as two smooth ones do.
     """
     work, pull = (np.asarray(x) for x in _of(contact.interface))
     radius, modulus = float(contact.shape.radius), float(contact.modulus)
@@ -74,3 +79,4 @@ def refuse_one_contact(contact: ElasticContact) -> None:
             "smooth sphere with that work, a case without [roughness]",
             key="adhesion.work",
         )
+    return float(tabor[worst])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
-from ..contact.plane_adhesion import refuse_one_contact
+from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
@@ -77,10 +77,13 @@ def integrate(
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
-    if isinstance(problem.contact, ElasticContact):  # of a bulk that relaxes, once it has
-        refuse_one_contact(problem.contact)
+    contact = problem.contact  # of a bulk that relaxes, once it has
+    number = tabor_number_of_planes(contact) if isinstance(contact, ElasticContact) else 0.0
     if not may_jump(problem):
         return _integrated(problem, report, stop, many=many, drawn=drawn)
+    if number > FOLDS:
+        report(0.02, "where equilibria fold")
+        return _integrated(jumping(problem), report, stop, many=many, drawn=drawn)
     try:
         return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
     except Unsolved:
