@@ -4,10 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 
+from .._jax import jax
 from ..contact import ElasticContact
 from ..contact.folding import folding
+from ..dynamics import Body
 from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import Problem
+from ..numerics.compilation import AT_ONCE, Program
+
+
+def _lower_bound(contact: ElasticContact, body: Body) -> jax.Array:
+    return contact.lower_bound(body.release, body.kinetic, body.load.potential)
+
+
+_lowest = Program(_lower_bound, AT_ONCE)
 
 
 def may_jump(problem: Problem) -> bool:
@@ -26,8 +36,7 @@ def jumping(problem: Problem) -> Problem:
     """
     contact, body = problem.contact, problem.body
     assert isinstance(contact, ElasticContact)
-    low = float(contact.lower_bound(body.release, body.kinetic, body.load.potential))
-    folded = folding(contact, low)
+    folded = folding(contact, float(_lowest(contact, body)))
     if folded is None:
         return problem
     return problem._replace(contact=folded, body=dataclasses.replace(body, in_bulk=(INSTABILITY,)))
