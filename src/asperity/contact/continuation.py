@@ -28,7 +28,8 @@ from .scanning_curve import piece_points, pieces_to
 _BELOW = 5.0  # rms below the deepest separation, where the tables of means begin
 _TO = 8.0  # times the outermost separation, where they end: rings lie as far apart
 _FINER = 4  # panels of these tables for each of the curves
-_ABOUT = np.linspace(-6.0, 6.0, 9)  # rms, panels about the ends of bonds: means differ to 1e-12
+_MEASURED = 8  # times as many over measured heights, whose density is a cubic spline
+_ABOUT = np.linspace(-8.0, 8.0, 12)  # rms, panels about the ends of bonds
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
@@ -224,11 +225,12 @@ def with_table(
 def table_ends(contact: Deforming, low: jax.Array, high: jax.Array) -> jax.Array:
     """Ends of panels [m] on which means of the planes are smooth, for a body between separations.
 
-    Polynomials on them are off by some 1e-13 of the largest value.
+    Polynomials on them are off by some 1e-13 of the largest value, over measured heights by 1e-8.
     """
     rms = contact.interface.scale.rms
     scale, low, high = LINEAR * rms, low - _BELOW * rms, _TO * high
-    count = _FINER * contact.resolved.panels
+    measured = contact.interface.panel_lengths.error_floor > 0.0
+    count = _FINER * contact.resolved.panels * (_MEASURED if measured else 1)
     even = jnp.linspace(jnp.arcsinh(low / scale), jnp.arcsinh(high / scale), count + 1)
     even = scale * jnp.sinh(even)
     bonds = contact.interface.hysteretic

@@ -209,13 +209,13 @@ class ElasticContact(RoughContact):
     def pieces_beside(self) -> int:
         """Pieces of 16 nodes for bonds that are not of the branch of approach (static).
 
-        Means are good to 1e-11 of the largest; to 3e-8 of bridges that stretch over thirty times
+        Means are good to 1e-11 of the largest; to 5e-8 of bridges that stretch over thirty times
         the length on which they fall off.
         """
         return 1 + ceil(self.resolved.nodes * self.resolved.pieces / 16)
 
     def means(self, low: jax.Array, high: jax.Array) -> Any:
-        """None where bonds stretch far: their quadratures would cost as much as the whole."""
+        """Empty where pieces beside are many: their quadrature would cost as the whole does."""
         if not self.mechanisms or self.pieces_beside > _MOST_BESIDE:
             return ()
         return self.interface.approach_tables(

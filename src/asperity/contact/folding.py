@@ -219,8 +219,7 @@ def _followed(
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes of the mesh and rings along one side of a branch, in the direction of motion.
 
-    As :func:`asperity.contact.continuation.continue_branch`, but for the jump, and with the means
-    of the planes read from a table throughout.
+    As :func:`asperity.contact.continuation.continue_branch`, but for the jump.
     """
     ahead = jnp.where(corners[-1] > corners[0], 1.0, -1.0)
     rms, flat = contact.interface.scale.rms, jnp.zeros(contact.rings + 1)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from ..errors import InputError
+from ..errors import InputError, SimulationError
 from ..interface.rough_planes import RoughPlanes
 from ..numerics.compilation import AT_ONCE, Program, kept
 from .elastic import ElasticContact
@@ -64,9 +64,13 @@ def tabor_number_of_planes(contact: ElasticContact) -> float:
     ------
     InputError
         If it is above the limit: the rough surfaces adhere as two smooth ones do.
+    SimulationError
+        If their adhesion is not a number.
     """
     work, pull = (np.asarray(x) for x in _of(contact.interface))
     radius, modulus = float(contact.shape.radius), float(contact.modulus)
+    if not np.all(np.isfinite([work, pull])):
+        raise SimulationError("the adhesion of the rough planes is not a number")
     some = work > 0.0
     cubes = radius * pull**3 / (modulus**2 * np.where(some, work, 1.0))
     tabor = np.where(some, cubes, 0.0) ** (1.0 / 3.0)
@@ -77,6 +81,6 @@ def tabor_number_of_planes(contact: ElasticContact) -> float:
             f"{work[worst] * 1e3:.4g} mJ/m^2 and their Tabor number {tabor[worst]:.3g} (the limit "
             f"is {LIMIT:g}), so that the edge of the contact is sharper than its rings; take JKR's "
             "smooth sphere with that work, a case without [roughness]",
-            key="adhesion.work",
+            key="adhesion.work" if "adhesion" in contact.components else None,
         )
     return float(tabor[worst])

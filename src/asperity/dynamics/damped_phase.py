@@ -173,6 +173,7 @@ def spent_at(body: Body, piece: DampedPiece, kinetic: jax.Array, place: jax.Arra
         drag = jnp.sum(drags, axis=0)
         taken = jnp.abs(place - piece.enter) * whole_of(drag[:-1])
         place = place + piece.ahead * (momentum - taken) / drag[-1]
+        place = jnp.clip(place, *jnp.sort(jnp.stack([piece.enter, piece.leave])))
     return place
 
 

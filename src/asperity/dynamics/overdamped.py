@@ -17,6 +17,7 @@ from .resolved_pieces import resolved
 
 _ATTEMPTS = 4  # to find where drag has taken the momentum
 _BRAKED = 0.02  # of the energy is left: a piece on which drag takes more is too long
+_COUNTS = 1e-6  # of the largest kinetic energy: less is not followed that closely
 _NEAR = 0.1  # of the mean force on the way to it: more force at a place is no equilibrium
 
 
@@ -133,8 +134,8 @@ def _followed(
         return (found, jnp.where(coarse, place, spent), ~coarse), None
 
     start = blank, never, jnp.asarray(False)
-    (found, *_), _ = jax.lax.scan(again, start, length=_ATTEMPTS)
-    return found
+    ((pieces, part, whole, spent), _, done), _ = jax.lax.scan(again, start, length=_ATTEMPTS)
+    return pieces, part, whole._replace(followed=whole.followed & done), spent
 
 
 def _braked(
@@ -147,7 +148,8 @@ def _braked(
     before, after = whole.kinetic[:-1], whole.kinetic[1:]
     taken = jnp.sum(jnp.diff(whole.dissipated, axis=0), axis=-1)
     passed = np.arange(before.shape[0]) < whole.turn.piece
-    most = passed & (after < _BRAKED * before) & (taken > 0.5 * before)
+    counts = before > _COUNTS * jnp.max(whole.kinetic)
+    most = passed & counts & (after < _BRAKED * before) & (taken > 0.5 * before)
     number = jnp.argmax(most)
     piece = DampedPiece.of(work_along(pieces, kinetic, body.load), number)
     on = piece.ahead * piece.push(piece.leave, body.load) > 0.0

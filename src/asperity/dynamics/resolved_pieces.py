@@ -32,7 +32,7 @@ def resolved(
     Parameters
     ----------
     body
-        The body; without a film, and without a spring under drag, nothing is cut.
+        The body; without a drag outside contact nothing is cut.
     pieces
         The polynomials ahead of it.
     kinetic
@@ -44,9 +44,10 @@ def resolved(
     ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
     ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
     cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, kinetic, ahead)]
-    if not cuts and not body.damped_apart:
+    goes_on = body.damped_apart and not body.forces
+    if not cuts and not goes_on:
         return pieces, jnp.arange(count)
-    if body.damped_apart:
+    if goes_on:
         cuts = [*cuts, _about(spent, jnp.sort(ahead * jnp.concatenate([ends, *cuts])), ahead)]
     places = jnp.sort(ahead * jnp.concatenate([ends, *cuts]))
     middles = 0.5 * (places[1:] + places[:-1])
@@ -57,7 +58,7 @@ def resolved(
 
 def _about(spent: jax.Array, ends: jax.Array, ahead: jax.Array) -> jax.Array:
     """Cuts closer and closer to where drag has taken a momentum, on both sides of it."""
-    place = jax.lax.stop_gradient(ahead * spent)
+    place = jnp.clip(jax.lax.stop_gradient(ahead * spent), ends[0], ends[-1])
     piece = jnp.clip(jnp.searchsorted(ends, place), 1, ends.shape[0] - 1)
     before, after = place - ends[piece - 1], ends[piece] - place
     cuts = jnp.concatenate([place[None], place - before * _NEARER, place + after * _NEARER])

@@ -81,15 +81,22 @@ def integrate(
     number = tabor_number_of_planes(contact) if isinstance(contact, ElasticContact) else 0.0
     if not may_jump(problem):
         return _integrated(problem, report, stop, many=many, drawn=drawn)
-    if number > FOLDS:
-        report(0.02, "where equilibria fold")
-        return _integrated(jumping(problem), report, stop, many=many, drawn=drawn)
+    if number <= FOLDS:
+        try:
+            return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
+        except Unsolved:
+            pass
+    report(0.02, "where equilibria fold")
     try:
-        return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
+        folded, sharp = jumping(problem), None
+    except SimulationError as error:  # it may not come so near
+        folded, sharp = problem, error
+    try:
+        return _integrated(folded, report, stop, many=many, drawn=drawn)
     except Unsolved:
-        report(0.02, "where equilibria fold")
-        problem = jumping(problem)
-    return _integrated(problem, report, stop, many=many, drawn=drawn)
+        if sharp is None:
+            raise
+        raise sharp from None
 
 
 def _integrated(

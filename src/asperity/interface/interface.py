@@ -161,7 +161,7 @@ class Interface(RoughPlanes):
         return dataclasses.replace(self, approach=tables, pieces=pieces)
 
     def _read(self, number: int, edge: jax.Array, separation: jax.Array) -> dict[str, jax.Array]:
-        """The same for one plane: the branch of approach, and the bonds that differ from it."""
+        """Means over one plane: of the branch of approach, and of the bonds that differ from it."""
         law, table = self.laws[number], self.approach[number]
         assert table is not None
         names = sorted((*(law.counts or {law.mechanism}), "energy"))
@@ -170,7 +170,7 @@ class Interface(RoughPlanes):
             return found
         begin, shape = jnp.asarray(law.forming_gap, float), separation.shape
         flat = jnp.broadcast_to(edge, shape).ravel(), separation.ravel()
-        more = between(law, self.heights, begin, *flat, 0, self.pieces)
+        more = between(law, self.heights, begin, *flat, 0, self.pieces * self.heights.cuts)
         return {name: row + more[name].reshape(shape) for name, row in found.items()}
 
     def _pairs(self, memory: Memory) -> list[tuple[int, tuple[Law, jax.Array | None]]]:

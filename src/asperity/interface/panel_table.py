@@ -29,8 +29,8 @@ class PanelTable(NamedTuple):
     Attributes
     ----------
     ends
-        Ends of the panels [m], ascending. Below them values go on along their slope, above like
-        those of surface forces.
+        Ends of the panels [m], ascending. Below them values go on along their slope; above all fall
+        as the pressure of surface forces does.
     coefficients
         Shape (NODES, panels, rows).
     """
