@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
+from typing import TypeVar
 
 from .._jax import jax
 from ..contact import ElasticContact
 from ..contact.folding import folding
+from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes
 from ..dynamics import Body
 from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import Problem
+from ..errors import SimulationError
 from ..numerics.compilation import AT_ONCE, Program
+from .clock import Report, silently
+from .panel_cuts import PATIENCE, Unsolved
+
+Answer = TypeVar("Answer")
 
 
 def _lower_bound(contact: ElasticContact, body: Body) -> jax.Array:
@@ -18,6 +26,52 @@ def _lower_bound(contact: ElasticContact, body: Body) -> jax.Array:
 
 
 _lowest = Program(_lower_bound, AT_ONCE)
+
+
+def over_folds(
+    problem: Problem, run: Callable[[Problem, int], Answer], report: Report = silently
+) -> Answer:
+    """What a run of a problem gives, whose body jumps where its equilibria fold.
+
+    Folds are looked for first where the planes' Tabor number says that they are likely, else
+    where the curves without them have no equilibrium.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    run
+        What runs a problem, with the tries without an equilibrium before that counts.
+    report
+        Called with a fraction done and a line of text.
+
+    Raises
+    ------
+    InputError
+        If the rough surfaces adhere as smooth ones do.
+    SimulationError
+        If the curves miss the tolerance; where folds were sought in vain, why.
+    """
+    contact = problem.contact  # of a bulk that relaxes, once it has
+    number = tabor_number_of_planes(contact) if isinstance(contact, ElasticContact) else 0.0
+    if not may_jump(problem):
+        return run(problem, PATIENCE)
+    if number <= FOLDS:
+        try:
+            return run(problem, 0)
+        except Unsolved:
+            pass  # it is run again, with its folds
+    report(0.02, "where equilibria fold")
+    try:
+        folded, sharp = jumping(problem), None
+    except SimulationError as error:  # the body may not come so near
+        folded, sharp = problem, error
+    try:
+        return run(folded, PATIENCE)
+    except Unsolved:
+        if sharp is None:
+            raise
+        raise sharp from None
 
 
 def may_jump(problem: Problem) -> bool:

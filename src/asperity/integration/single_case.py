@@ -9,7 +9,6 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact
 from ..contact.delayed_formation import DelayedContact
-from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
@@ -24,8 +23,8 @@ from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
-from .jumping import jumping, may_jump
-from .panel_cuts import PATIENCE, Unsolved
+from .jumping import over_folds
+from .panel_cuts import PATIENCE
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
@@ -77,26 +76,11 @@ def integrate(
     SimulationError
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
-    contact = problem.contact  # of a bulk that relaxes, once it has
-    number = tabor_number_of_planes(contact) if isinstance(contact, ElasticContact) else 0.0
-    if not may_jump(problem):
-        return _integrated(problem, report, stop, many=many, drawn=drawn)
-    if number <= FOLDS:
-        try:
-            return _integrated(problem, report, stop, many=many, drawn=drawn, patience=0)
-        except Unsolved:
-            pass
-    report(0.02, "where equilibria fold")
-    try:
-        folded, sharp = jumping(problem), None
-    except SimulationError as error:  # it may not come so near
-        folded, sharp = problem, error
-    try:
-        return _integrated(folded, report, stop, many=many, drawn=drawn)
-    except Unsolved:
-        if sharp is None:
-            raise
-        raise sharp from None
+
+    def run(problem: Problem, patience: int) -> Solution:
+        return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
+
+    return over_folds(problem, run, report)
 
 
 def _integrated(
@@ -106,7 +90,7 @@ def _integrated(
     *,
     many: bool,
     drawn: bool,
-    patience: int = PATIENCE,
+    patience: int,
 ) -> Solution:
     tolerance = problem.inputs.tolerance
     motion = _of_one(

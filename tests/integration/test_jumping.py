@@ -1,0 +1,79 @@
+"""When folds are looked for, and what a run says that has looked for them in vain."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from asperity.contact import ElasticContact
+from asperity.contact.plane_adhesion import FOLDS, tabor_number_of_planes
+from asperity.contact.profile import Sphere
+from asperity.errors import SimulationError
+from asperity.integration import jumping
+from asperity.integration.panel_cuts import PATIENCE, Unsolved
+from asperity.interface.interface import Interface
+from asperity.laws import Dmt, Hertz
+from asperity.surfaces.heights import Gaussian
+
+RMS, TIP, STIFF, W, DENSITY, RADIUS = 5e-9, 5e-8, 33e6, 0.05, 2e14, 1e-5
+PLANES = Interface(Hertz(TIP, STIFF) + Dmt(TIP, W), Gaussian(RMS), DENSITY)
+
+
+def problem(modulus):
+    contact = ElasticContact(PLANES, Sphere(RADIUS), modulus)
+    return SimpleNamespace(contact=contact, delayed=None, relaxation=None)
+
+
+SOFT, STIFF_ONE = problem(33e6), problem(500e6)
+
+
+class Runs:
+    """A run that has no equilibrium on problems of this list; it keeps what it was asked."""
+
+    def __init__(self, unsolved):
+        self.unsolved, self.asked = unsolved, []
+
+    def __call__(self, one, patience):
+        self.asked.append((one, patience))
+        if one in self.unsolved:
+            raise Unsolved("no equilibrium")
+        return "answer"
+
+
+def test_the_planes_tell_where_folds_are_likely():
+    assert tabor_number_of_planes(SOFT.contact) > FOLDS
+    assert tabor_number_of_planes(STIFF_ONE.contact) < FOLDS
+
+
+def test_folds_are_looked_for_first_where_they_are_likely(monkeypatch):
+    monkeypatch.setattr(jumping, "jumping", lambda _: "folded")
+    runs = Runs([])
+    assert jumping.over_folds(SOFT, runs) == "answer"
+    assert runs.asked == [("folded", PATIENCE)]
+
+
+def test_elsewhere_they_are_looked_for_where_no_equilibrium_follows(monkeypatch):
+    monkeypatch.setattr(jumping, "jumping", lambda _: "folded")
+    runs = Runs([])
+    assert jumping.over_folds(STIFF_ONE, runs) == "answer"
+    assert runs.asked == [(STIFF_ONE, 0)]
+    runs = Runs([STIFF_ONE])
+    assert jumping.over_folds(STIFF_ONE, runs) == "answer"
+    assert runs.asked == [(STIFF_ONE, 0), ("folded", PATIENCE)]
+
+
+def test_a_search_in_vain_leaves_the_curves_their_turn_and_else_gives_its_reason(monkeypatch):
+    def sharp(_):
+        raise SimulationError("the edge is too sharp")
+
+    monkeypatch.setattr(jumping, "jumping", sharp)
+    runs = Runs([])
+    assert jumping.over_folds(SOFT, runs) == "answer"
+    assert runs.asked == [(SOFT, PATIENCE)]
+    with pytest.raises(SimulationError, match="too sharp"):
+        jumping.over_folds(SOFT, Runs([SOFT]))
+
+
+def test_a_run_without_folds_says_what_it_lacks(monkeypatch):
+    monkeypatch.setattr(jumping, "jumping", lambda one: one)
+    with pytest.raises(Unsolved, match="no equilibrium"):
+        jumping.over_folds(SOFT, Runs([SOFT]))
