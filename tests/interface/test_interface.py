@@ -219,7 +219,10 @@ BRUTE = HERTZ + DMT + MENISCUS
 
 @cache
 def brute_tools():
-    """Compiled: the memory's step on the sampled heights, and each asperity's branches."""
+    """Compiled: the memory's step on the sampled heights, and each asperity's branches.
+
+    With the gap at which bonds break, what one loses, and its pull.
+    """
     interface = means(BRUTE, Points(jnp.asarray(HEIGHTS)))
 
     @jax.jit
@@ -234,30 +237,30 @@ def brute_tools():
         kept = jnp.where(bonded, MENISCUS.bonded_energy(gap), 0.0)
         return jnp.mean(force + held), jnp.mean(energy + kept)
 
-    return interface, step, single
+    one = MENISCUS.breaking_gap, MENISCUS.formation_loss, MENISCUS.rupture_loss, MENISCUS.pull
+    return interface, step, single, [float(x) for x in one], np.concatenate(interface.losses())
 
 
 @settings(max_examples=60)
 @given(st.lists(st.floats(-3.0, 4.5), min_size=2, max_size=25))
 def test_memory_is_the_bonds_of_all_asperities_over_random_reversals(path):
     """Brute force: 400 asperities, each with its own bond, against one threshold."""
-    interface, step, single = brute_tools()
-    c, (formation, rupture) = float(MENISCUS.breaking_gap), interface.losses()
+    interface, step, single, (c, at_formation, at_rupture, pull), (made, broken) = brute_tools()
     bonded, memory = np.zeros(400, bool), interface.initial_memory()
     lost = brute_lost = bonds = 0.0
     for reduced in path:
         h = reduced * SIGMA
         gap = h - HEIGHTS
         now = (gap <= 0.0) | (bonded & (gap < c))
-        brute_lost += (now & ~bonded).sum() / 400 * float(MENISCUS.formation_loss)
-        brute_lost += (bonded & ~now).sum() / 400 * float(MENISCUS.rupture_loss)
+        brute_lost += (now & ~bonded).sum() / 400 * at_formation
+        brute_lost += (bonded & ~now).sum() / 400 * at_rupture
         bonded = now
         found, memory = step(memory, jnp.asarray(h))
         change, bonds = float(found.bonds[0]) - bonds, float(found.bonds[0])
-        lost += max(change, 0.0) * float(formation[0]) + max(-change, 0.0) * float(rupture[0])
+        lost += max(change, 0.0) * made + max(-change, 0.0) * broken
         pressure, energy = (N * float(x) for x in single(jnp.asarray(gap), jnp.asarray(bonded)))
-        size = N * float(MENISCUS.pull)
-        assert float(jnp.sum(found.parts)) == pytest.approx(pressure, rel=1e-10, abs=1e-10 * size)
+        size = N * pull
+        assert np.sum(found.parts) == pytest.approx(pressure, rel=1e-10, abs=1e-10 * size)
         assert float(found.energy) == pytest.approx(energy, rel=1e-10, abs=1e-10 * size * c)
         assert lost == pytest.approx(N * brute_lost, rel=1e-10, abs=1e-12 * size * c)
 

@@ -158,8 +158,9 @@ class Steps(NamedTuple):
     @classmethod
     def of_one(cls, contact: Contact, body: Body, *, many: bool, drawn: bool = False) -> Steps:
         """Those of one case; ``many`` as for :func:`asperity.integration.integrate`."""
-        few = isinstance(contact, ElasticContact) and not many
-        programs = _OF_ONE_ON_HALF_SPACE if few else _OF_ONE
+        programs = _OF_ONE
+        if isinstance(contact, ElasticContact):
+            programs = _ON_HALF_SPACE if many else _FEW_ON_HALF_SPACE
         return cls(*programs, 1, _impacts_together(contact, body), many, drawn)
 
     def compile_ahead(self, batch: Batch, cuts: np.ndarray | None = None) -> None:
@@ -195,12 +196,12 @@ def _impacts_together(contact: Contact, body: Body) -> int:
 _Programs = tuple[Program[..., Any], Program[..., Any], Program[..., Any]]
 
 
-def _compiled(curves: Options, impacts: Options, measure: Options) -> _Programs:
-    """The curves, the impacts and the measures, each with XLA's options."""
-    return Program(_curves, curves), Program(_impacts, impacts), Program(_measure, measure)
+def _compiled(options: Options) -> _Programs:
+    """The curves, the impacts and the measures, with XLA's options."""
+    return Program(_curves, options), Program(_impacts, options), Program(_measure, options)
 
 
-_OF_MANY, _OF_FEW = _compiled(_FAST, _FAST, _FAST), _compiled(_SOON, _SOON, _SOON)
-_OF_ONE = _compiled(QUICKLY, QUICKLY, QUICKLY)
-# The curves of one that deforms come 2 s sooner at first, and 10 ms later afterwards.
-_OF_ONE_ON_HALF_SPACE: _Programs = (Program(_curves, AT_ONCE), *_OF_ONE[1:])
+_OF_MANY, _OF_FEW, _OF_ONE = _compiled(_FAST), _compiled(_SOON), _compiled(AT_ONCE)
+# Rings take longer to solve than their curves to compile, but where these serve a few impacts.
+_ON_HALF_SPACE: _Programs = (*_compiled(QUICKLY)[:2], _OF_ONE[2])
+_FEW_ON_HALF_SPACE: _Programs = (_OF_ONE[0], *_ON_HALF_SPACE[1:])

@@ -89,7 +89,8 @@ class Program(Generic[P, Answer]):
         options: Options = QUICKLY,
     ) -> None:
         self._function = function
-        self._options = dict(options)
+        asked = os.environ.get("XLA_FLAGS", "")
+        self._options = {name: value for name, value in options.items() if name not in asked}
         self._held: OrderedDict[Any, _Held] = OrderedDict()
         self._lock = threading.Lock()
 

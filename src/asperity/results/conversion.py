@@ -37,7 +37,7 @@ from .result import Result
 _ROWS = 256
 """Rows of impacts that are measured at least: more than most motions have."""
 
-_measure = Program(measure)
+_measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
 
 
