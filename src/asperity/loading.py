@@ -13,7 +13,8 @@ from .dynamics.external_forces import Load
 from .dynamics.problem import CLEARANCE, Problem
 from .dynamics.static_equilibrium import find_reference
 from .errors import InputError, SimulationError
-from .integration import prepared
+from .integration import over_folds, prepared
+from .integration.panel_cuts import RESIDUAL, Unsolved
 from .laws.law import as_float64
 from .numerics.compilation import AT_ONCE, Program
 
@@ -62,12 +63,24 @@ def turning_at(
     body = Body(mass, 0.0, release, rebounds_from=problem.body.rebounds_from)
     for step in range(_STEPS):
         speed = np.sqrt(2.0 * _LEAST * _FACTOR**step / mass)
-        table, _ = prepared(contact, dataclasses.replace(body, speed=speed))
+        table = _tabulated(problem._replace(body=dataclasses.replace(body, speed=speed)))
         place = _place(table, load) if load is not None else -float(depth or 0.0)
         if place is not None and float(table.ends[0]) < place:
             return problem._replace(body=_turning(body, table, place))
     wanted = f"a load of {load:.6g} N" if depth is None else f"a depth of {1e9 * depth:.6g} nm"
     raise SimulationError(f"no approach was found that reaches {wanted}")
+
+
+def _tabulated(problem: Problem) -> Table:
+    """The curves of a problem, with the jumps of a contact whose equilibria fold."""
+
+    def run(one: Problem, patience: int) -> Table:
+        table, _ = prepared(one.contact, one.body)
+        if not patience and not float(table.residual) <= RESIDUAL:
+            raise Unsolved("no equilibrium follows from the one before")
+        return table
+
+    return over_folds(problem, run)
 
 
 def _place(table: Table, load: float) -> float | None:

@@ -1,13 +1,16 @@
 """When folds are looked for, and what a run says that has looked for them in vain."""
 
+import dataclasses
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from asperity.contact import ElasticContact
+from asperity._jax import jax
+from asperity.contact import ElasticContact, RigidContact
 from asperity.contact.plane_adhesion import FOLDS, tabor_number_of_planes
 from asperity.contact.profile import Sphere
-from asperity.errors import SimulationError
+from asperity.errors import InputError, SimulationError
 from asperity.integration import jumping
 from asperity.integration.panel_cuts import PATIENCE, Unsolved
 from asperity.interface.interface import Interface
@@ -42,6 +45,24 @@ class Runs:
 def test_the_planes_tell_where_folds_are_likely():
     assert tabor_number_of_planes(SOFT.contact) > FOLDS
     assert tabor_number_of_planes(STIFF_ONE.contact) < FOLDS
+
+
+def test_of_a_batch_those_are_likely_to_jump_that_are_alone():
+    moduli = np.geomspace(20e6, 500e6, 10)
+    batch = jax.tree_util.tree_map(
+        lambda leaf: np.repeat(np.asarray(leaf)[None], moduli.size, axis=0), SOFT.contact
+    )
+    likely = jumping.likely_to_jump(dataclasses.replace(batch, modulus=moduli), moduli.size)
+    alone = []
+    for modulus in moduli:
+        try:
+            alone.append(tabor_number_of_planes(problem(modulus).contact) > FOLDS)
+        except InputError:
+            alone.append(True)
+    np.testing.assert_array_equal(likely, alone)
+    assert 0 < likely.sum() < moduli.size
+    rigid = RigidContact(PLANES, Sphere(RADIUS))
+    assert not np.any(jumping.likely_to_jump(rigid, 3))
 
 
 def test_folds_are_looked_for_first_where_they_are_likely(monkeypatch):

@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.errors import ENDS, InputError
+from asperity.contact import ElasticContact
+from asperity.errors import ENDS, InputError, Outcome, SimulationError
 from asperity.integration.clock import Stopped
+from asperity.integration.panel_cuts import Unsolved
 from asperity.solver import solve
+from asperity.sweeps.compute import batch
 from asperity.sweeps.compute.batch import compute, evaluate
 from asperity.sweeps.compute.building import built
+from asperity.sweeps.compute.integrate_batch import BatchSolution
 from asperity.sweeps.study.study import parse
 from chosen import long_but
 
@@ -188,6 +192,31 @@ def test_a_case_has_the_same_columns_wherever_it_stands_in_its_lanes():
             np.testing.assert_allclose(some[name], array[[4, 2]], rtol=1e-9, err_msg=name)
         else:
             assert (some[name] == array[[4, 2]]).all(), name
+
+
+def test_a_case_without_an_equilibrium_is_solved_by_itself(monkeypatch):
+    """It may jump from one equilibrium to another; one that fails otherwise has failed."""
+    failed = np.full(3, ENDS.index(Outcome.FAILED))
+    reasons = {0: Unsolved("no equilibrium"), 2: SimulationError("too coarse")}
+
+    def none(group, clock):
+        assert type(group.batch.contact) is ElasticContact
+        body = group.batch.body
+        empty = np.zeros(3, int), np.zeros(3), np.zeros((3, 1)), {}, {}, np.zeros((3, 3))
+        return BatchSolution(failed, *empty, dict(reasons), np.zeros(3), body)
+
+    def alone(case, **_):
+        assert case.capillary.humidity == 0.3
+        raise SimulationError("solved by itself")
+
+    monkeypatch.setattr(batch, "integrate_batch", none)
+    monkeypatch.setattr(batch, "compile_ahead", lambda groups: None)
+    monkeypatch.setattr(batch, "solve", alone)
+    axis = "[axes]\n'capillary.humidity' = {values = [0.3, 0.5, 0.7]}\n"
+    text = axis + ROUGH.replace('"rigid"', '"half-space"')
+    columns, _ = compute(parse('schema = 1\nkeep = ["captured"]\n' + text), 0)
+    said = [bytes(row).rstrip(b"\0").decode() for row in columns["reason"]]
+    assert said == ["solved by itself", "", "too coarse"]
 
 
 def test_turning_points_are_kept_in_order_of_time():

@@ -114,6 +114,7 @@ class Counterface(Made):
     """The flat surface that it meets."""
 
     needed: ClassVar[tuple[str, ...]] = ("youngs_modulus", "poisson")
+    loss: ClassVar[str] = "instability"
 
     material: str | None = entry(
         "", "Name from the catalogue or of a [materials.NAME] table.", "silicon", default=None,

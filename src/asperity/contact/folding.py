@@ -236,10 +236,12 @@ def _followed(
             lambda: displacement,
         )
         size, displacement = fit(contact, there, thresholds, last_size, displacement)
-        # About the fold the mesh is that on which it lies.
+        # Towards the fold the mesh becomes that on which it lies: smoothly, as energies must be.
         apart = ahead * (fold - corner)
-        held = before | ((apart > 0.0) & (apart < (1.0 + _BESIDE) * rms))
-        return (displacement, size, jnp.asarray(False)), jnp.where(held, fold_size, size)
+        near = jnp.clip(1.0 - apart / rms, 0.0, 1.0)
+        share = jnp.where(before | (apart > 0.0), near**2 * (3.0 - 2.0 * near), 0.0)
+        held = jnp.where(share > 0.0, share * fold_size + (1.0 - share) * size, size)
+        return (displacement, size, jnp.asarray(False)), held
 
     again = jnp.append(corners[1:] == corners[:-1], False)
     begin = flat, first_size(contact, corners[0]), jnp.asarray(True)

@@ -51,7 +51,11 @@ def _adhesion(planes: RoughPlanes) -> PlaneAdhesion:
     return PlaneAdhesion(work, jnp.max(tension, axis=1))
 
 
-_of = Program(_adhesion, AT_ONCE)
+def _adhesion_of_each(planes: RoughPlanes) -> PlaneAdhesion:
+    return jax.vmap(_adhesion)(planes)
+
+
+_of, _of_each = Program(_adhesion, AT_ONCE), Program(_adhesion_of_each, AT_ONCE)
 
 
 def tabor_number_of_planes(contact: ElasticContact) -> float:
@@ -68,12 +72,9 @@ def tabor_number_of_planes(contact: ElasticContact) -> float:
         If their adhesion is not a number.
     """
     work, pull = (np.asarray(x) for x in _of(contact.interface))
-    radius, modulus = float(contact.shape.radius), float(contact.modulus)
     if not np.all(np.isfinite([work, pull])):
         raise SimulationError("the adhesion of the rough planes is not a number")
-    some = work > 0.0
-    cubes = radius * pull**3 / (modulus**2 * np.where(some, work, 1.0))
-    tabor = np.where(some, cubes, 0.0) ** (1.0 / 3.0)
+    tabor = _tabor_numbers(contact, work, pull)
     worst = int(np.argmax(tabor))
     if tabor[worst] > LIMIT:
         raise InputError(
@@ -84,3 +85,24 @@ def tabor_number_of_planes(contact: ElasticContact) -> float:
             key="adhesion.work" if "adhesion" in contact.components else None,
         )
     return float(tabor[worst])
+
+
+def tabor_numbers_of_planes(contacts: ElasticContact) -> np.ndarray:
+    """The same for a batch of contacts, shape (contacts,); NaN where it is not a number.
+
+    Parameters
+    ----------
+    contacts
+        Contacts whose arrays have an axis more, the first one.
+    """
+    work, pull = (np.asarray(x) for x in _of_each(contacts.interface))
+    found: np.ndarray = np.max(_tabor_numbers(contacts, work, pull), axis=-1)
+    return found
+
+
+def _tabor_numbers(contact: ElasticContact, work: np.ndarray, pull: np.ndarray) -> np.ndarray:
+    """Of the bonds that hold or not, along the last axis."""
+    radius, modulus = (np.asarray(x)[..., None] for x in (contact.shape.radius, contact.modulus))
+    cubes = radius * pull**3 / (modulus**2 * np.where(work > 0.0, work, 1.0))
+    tabor: np.ndarray = np.where(work > 0.0, cubes, work) ** (1.0 / 3.0)
+    return tabor

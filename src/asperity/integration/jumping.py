@@ -6,19 +6,24 @@ import dataclasses
 from collections.abc import Callable
 from typing import TypeVar
 
+import numpy as np
+
 from .._jax import jax
-from ..contact import ElasticContact
+from ..contact import Contact, ElasticContact
 from ..contact.folding import folding
-from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes
+from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes, tabor_numbers_of_planes
 from ..dynamics import Body
 from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import Problem
 from ..errors import SimulationError
 from ..numerics.compilation import AT_ONCE, Program
+from .batch_records import slices, taken
 from .clock import Report, silently
 from .panel_cuts import PATIENCE, Unsolved
 
 Answer = TypeVar("Answer")
+
+_TOGETHER = 8  # contacts of a compiled call
 
 
 def _lower_bound(contact: ElasticContact, body: Body) -> jax.Array:
@@ -78,6 +83,25 @@ def may_jump(problem: Problem) -> bool:
     """Whether the body may jump: not where its contact is solved as it moves."""
     in_time = problem.delayed is not None or problem.relaxation is not None
     return type(problem.contact) is ElasticContact and not in_time
+
+
+def likely_to_jump(contacts: Contact, count: int) -> np.ndarray:
+    """Which of a batch of contacts are likely to jump, or are refused, shape (count,).
+
+    Parameters
+    ----------
+    contacts
+        Contacts whose arrays have an axis more, the first one.
+    count
+        Their number.
+    """
+    found = np.zeros(count, bool)
+    if type(contacts) is not ElasticContact:
+        return found
+    for some in slices(np.arange(count), _TOGETHER):
+        numbers = tabor_numbers_of_planes(taken(contacts, some))
+        found[some[some >= 0]] = ~(numbers <= FOLDS)[some >= 0]
+    return found
 
 
 def jumping(problem: Problem) -> Problem:

@@ -12,14 +12,16 @@ import numpy as np
 
 from asperity.config import Case
 from asperity.config.resolve import resolve
+from asperity.contact import ElasticContact
 from asperity.dynamics.problem import Problem
 from asperity.errors import ENDS, InputError, Outcome, SimulationError
 from asperity.integration.clock import Clock
+from asperity.integration.panel_cuts import Unsolved
 from asperity.model import build
 from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.result import Result
 from asperity.solver import solve
-from asperity.sweeps.compute.building import Group, Values, built
+from asperity.sweeps.compute.building import Group, Values, built, case_at
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
 from asperity.sweeps.compute.realised import realised
@@ -127,6 +129,8 @@ def _computed(
     compile_ahead(whole.groups)
     for group in whole.groups:
         solution = integrate_batch(group, clock)
+        unsolved = [int(group.rows[place]) for place in _unsolved(group, solution)]
+        whole.alone.extend((row, case_at(study, values, row)) for row in unsolved)
         if (
             any(column.name == "critical_velocity" for column in study.columns)
             and solution.measures
@@ -151,6 +155,16 @@ def _computed(
     wall = time.perf_counter() - began
     compiled = min(clock.compiled, wall)
     return out, Effort(count, clock.batch_use, compiled, wall, len(lines), tuple(sorted(warned)))
+
+
+def _unsolved(group: Group, solution: BatchSolution) -> list[int]:
+    """Places of cases without an equilibrium, which may jump by themselves: failures no longer."""
+    if type(group.batch.contact) is not ElasticContact:
+        return []
+    found = [place for place, why in solution.failures.items() if isinstance(why, Unsolved)]
+    for place in found:
+        del solution.failures[place]
+    return found
 
 
 def _built(study: Study, number: int) -> Problem:
@@ -238,7 +252,7 @@ def _turns(past: Columns, name: str, size: int) -> np.ndarray:
 
 
 def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> list[str] | None:
-    """A case that is stepped in time, by itself; its warnings, None where it cannot be solved."""
+    """A case that is solved by itself; its warnings, None where it cannot be."""
     clock.look()
     try:
         critical = any(column.name == "critical_velocity" for column in study.columns)
