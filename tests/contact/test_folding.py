@@ -1,6 +1,8 @@
 """A rough sphere on a soft half-space jumps into contact and out of it."""
 
+import dataclasses
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +15,9 @@ from asperity.contact.equilibrium import compliance, pressed, profile_of
 from asperity.contact.folding import FoldingContact, folding
 from asperity.errors import SimulationError
 from asperity.model import build
+from asperity.sweeps.compute import batch
 from asperity.sweeps.compute.batch import compute
+from asperity.sweeps.compute.building import built
 from asperity.sweeps.study.study import parse
 
 RMS = 5e-9
@@ -184,22 +188,44 @@ def test_its_losses_are_drawn_as_steps():
     assert len(np.unique(np.round(drawn / drawn[-1], 9))) == 3
 
 
-def in_a_study(speeds):
-    """The columns of a study of bodies that come with these speeds."""
-    head, *tables = text(60.0).split("[")
+KEPT = ["captured", "restitution", "minimum_separation", "lost_instability"]
+
+
+def study_of(key, values, placement="mean", keep=KEPT):
+    """A study of such bodies over one key."""
+    head, *tables = (
+        text(60.0).replace("rms_height", f"placement = '{placement}'\nrms_height").split("[")
+    )
     base = "".join(f"[base.{table}" for table in tables)
-    keep = "captured", "restitution", "minimum_separation", "lost_instability"
-    axis = f"[axes.'impact.speed']\nvalues = {[f'{speed} mm/s' for speed in speeds]}\n"
-    study = parse(f"{head}keep = {list(keep)}\nkeep_impacts = 1\n{axis}{base}")
-    return compute(study, 0)[0]
+    axis = f"[axes.{key}]\nvalues = {values}\n"
+    return parse(f"{head}keep = {keep}\nkeep_impacts = 1\n{axis}{base}")
 
 
 def test_cases_of_a_study_jump_as_they_do_alone():
-    found, alone = in_a_study([100.0]), thrown()
+    found, alone = compute(study_of("'impact.speed'", ["100 mm/s"]), 0)[0], thrown()
     assert found["lost_instability"][0] == alone.ledger["lost"]["instability"]
     assert found["restitution"][0, 0] == alone.measures["restitution"][0]
     assert found["minimum_separation"][0] == alone.events["closest_approach_separation"][0]
     assert found["captured"][0] == 0
+
+
+def test_of_a_study_those_that_jump_are_taken_from_their_group():
+    works = np.array([50e-3, 1e-3, 2e-3, 0.5e-3])
+    study = study_of("'adhesion.work'", [f"{work} J/m^2" for work in works])
+    found = built(study, {"adhesion.work": works})
+    assert [row for row, _ in found.alone] == [0]
+    (group,) = found.groups
+    assert group.rows.tolist() == [1, 2, 3]
+    adhering = group.batch.contact.interface.laws[1]
+    np.testing.assert_array_equal(adhering.work_of_adhesion, works[1:])
+
+
+def test_single_bodies_of_a_case_that_jumps_are_kept(monkeypatch):
+    bodies = SimpleNamespace(columns=lambda: {"capture_probability": 0.25})
+    result = dataclasses.replace(thrown(), realisations=bodies)
+    monkeypatch.setattr(batch, "solve", lambda case, **_: result)
+    study = study_of("'impact.speed'", ["100 mm/s"], "random", ["capture_probability"])
+    assert compute(study, 0)[0]["capture_probability"][0] == 0.25
 
 
 def test_an_edge_that_rings_do_not_resolve_is_said():

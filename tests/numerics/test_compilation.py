@@ -129,6 +129,15 @@ def test_an_error_of_the_function_reaches_the_caller(folder):
         Program(double)(LAW, X, "two")
 
 
+def test_options_that_the_environment_names_are_left_to_it(folder, monkeypatch):
+    options = {"xla_no_such_option": True}
+    monkeypatch.setenv("XLA_FLAGS", "--xla_no_such_option_either=1")
+    with pytest.raises(RuntimeError, match="xla_no_such_option"):
+        Program(double, options)(LAW, X, 2)
+    monkeypatch.setenv("XLA_FLAGS", "--xla_other --xla_no_such_option=true")
+    assert Program(double, options)(LAW, X, 2).twice.tolist() == [0.0, 2.0, 4.0]
+
+
 def test_a_long_session_keeps_only_the_kinds_used_last_in_memory(folder, monkeypatch):
     """Linux gives a process 65530 memory maps, and each compiled kind takes hundreds."""
     monkeypatch.setattr(compilation, "HELD", 2)

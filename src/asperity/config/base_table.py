@@ -15,7 +15,7 @@ class Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, strict=True)
 
     loss: ClassVar[str | None] = None
-    """Name of what the table's mechanism takes, in the ledger; None for one that takes nothing."""
+    """Name of what is lost by what the table describes, in the ledger; None where nothing is."""
 
     drives: ClassVar[bool] = False
     """Whether the table's mechanism sets a body in motion that is at rest."""

@@ -236,7 +236,8 @@ def _followed(
             lambda: displacement,
         )
         size, displacement = fit(contact, there, thresholds, last_size, displacement)
-        # Towards the fold the mesh becomes that on which it lies: smoothly, as energies must be.
+        # Over an rms height the mesh becomes that on which the fold lies. Were it to change at
+        # once, energies would differ there by the error of the rings.
         apart = ahead * (fold - corner)
         near = jnp.clip(1.0 - apart / rms, 0.0, 1.0)
         share = jnp.where(before | (apart > 0.0), near**2 * (3.0 - 2.0 * near), 0.0)

@@ -88,7 +88,7 @@ def tabor_number_of_planes(contact: ElasticContact) -> float:
 
 
 def tabor_numbers_of_planes(contacts: ElasticContact) -> np.ndarray:
-    """The same for a batch of contacts, shape (contacts,); NaN where it is not a number.
+    """The larger Tabor number of each of a batch, shape (contacts,), NaN where there is none.
 
     Parameters
     ----------

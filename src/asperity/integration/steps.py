@@ -202,6 +202,6 @@ def _compiled(options: Options) -> _Programs:
 
 
 _OF_MANY, _OF_FEW, _OF_ONE = _compiled(_FAST), _compiled(_SOON), _compiled(AT_ONCE)
-# Rings take longer to solve than their curves to compile, but where these serve a few impacts.
+# Rings are solved so often that optimised code pays, but for curves that serve one motion.
 _ON_HALF_SPACE: _Programs = (*_compiled(QUICKLY)[:2], _OF_ONE[2])
 _FEW_ON_HALF_SPACE: _Programs = (_OF_ONE[0], *_ON_HALF_SPACE[1:])

@@ -80,7 +80,7 @@ class Program(Generic[P, Answer]):
         A function that JAX can trace. Its answer is made of arrays, tuples and records that
         :func:`kept` knows.
     options
-        XLA's options.
+        XLA's options, but for those that ``XLA_FLAGS`` names in the environment.
     """
 
     def __init__(
@@ -89,7 +89,8 @@ class Program(Generic[P, Answer]):
         options: Options = QUICKLY,
     ) -> None:
         self._function = function
-        asked = os.environ.get("XLA_FLAGS", "")
+        flags = os.environ.get("XLA_FLAGS", "").split()
+        asked = {flag.lstrip("-").partition("=")[0] for flag in flags}
         self._options = {name: value for name, value in options.items() if name not in asked}
         self._held: OrderedDict[Any, _Held] = OrderedDict()
         self._lock = threading.Lock()

@@ -280,12 +280,14 @@ def _read(result: Result) -> dict[str, Any]:
     """The columns of a result."""
     ledger = result.ledger
     events = result.events
+    bodies = {} if result.realisations is None else result.realisations.columns()
     places, times = (
         np.stack([events[f"{at}_{what}"] for at in ("closest_approach", "apex")], axis=1).ravel()
         for what in ("separation", "time")
     )
     return {
         **result.measures,
+        **bodies,
         "impacts": len(result.measures["restitution"]),
         "energy_balance_error": ledger["energy_balance_error"],
         "energy_lost": sum(ledger["lost"].values()),

@@ -103,12 +103,12 @@ def built(study: Study, values: Values) -> Built:
     else:
         for rows in _kinds(values, count):
             _together(study, values, rows, out)
-    groups = [_together_still(study, values, _joined(same), out) for same in _alike(out.groups)]
+    groups = [_without_jumps(study, values, _joined(same), out) for same in _alike(out.groups)]
     return out._replace(groups=[group for group in groups if group.rows.size])
 
 
-def _together_still(study: Study, values: Values, group: Group, out: Built) -> Group:
-    """A group without the cases that may jump, each of which is solved by itself."""
+def _without_jumps(study: Study, values: Values, group: Group, out: Built) -> Group:
+    """A group without the cases that are likely to jump, each of which is solved by itself."""
     jumps = likely_to_jump(group.batch.contact, group.rows.size)
     if not np.any(jumps):
         return group
