@@ -1,15 +1,17 @@
 """The critical velocity: below it the first impact captures."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import asperity
 from asperity.config import load_file
 from asperity.config.resolve import resolve
-from asperity.critical_velocity import Launcher
+from asperity.critical_velocity import Launcher, sought
 from asperity.dynamics import Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
-from asperity.errors import InputError
+from asperity.errors import InputError, Outcome
 from asperity.integration import integrate
 from asperity.integration.batch_motion import BatchMotion
 from asperity.model import build
@@ -132,6 +134,14 @@ DRAGGED = {
     "gas": ("examples/drop-in-air.toml", {}),
     "waves": ("examples/jkr-stick.toml", {"waves": {"model": "hunter"}}),
 }
+
+
+def test_it_is_not_sought_where_each_impact_takes_seconds():
+    contact = SimpleNamespace(sides=2, mechanisms=("adhesion",))
+    solution = SimpleNamespace(outcome=Outcome.ESCAPED, contact=contact, trajectory=None)
+    found = sought(solution, None, None, None)
+    assert found["critical_velocity"] is None
+    assert found["critical_velocity_note"].startswith("not sought: each impact on a half-space")
 
 
 @pytest.mark.parametrize("drag", DRAGGED)

@@ -52,9 +52,9 @@ class Rebound(NamedTuple):
     margin: float
 
 
-_STEPPED = (
-    "not sought: each impact of a motion that is stepped on a half-space takes seconds; "
-    "`asperity restitution` seeks it"
+_SLOW = (
+    "not sought: each impact on a half-space that is stepped in time, or that jumps and has bonds, "
+    "takes seconds; `asperity restitution` seeks it"
 )
 
 _UNKNOWN = Rebound(np.nan, np.nan, False, np.nan, np.nan)
@@ -255,8 +255,11 @@ def sought(
     """
     if not solution.outcome.ok:
         return _without("not sought: the motion did not come to its end")
-    if solution.trajectory is not None and isinstance(solution.contact, ElasticContact):
-        return _without(_STEPPED)
+    contact = solution.contact
+    jumps_with_bonds = contact.sides > 1 and bool(contact.mechanisms)
+    stepped = solution.trajectory is not None and isinstance(contact, ElasticContact)
+    if stepped or jumps_with_bonds:
+        return _without(_SLOW)
     try:
         launcher = Launcher(problem, solution, limits, many=many, stop=stop)
         return critical_measures(launcher.edges(solution))

@@ -227,7 +227,7 @@ def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     """The curve of what was built from a case."""
     contact, motion = first_impact(problem, report)
     problem = problem._replace(contact=contact)
-    warnings = assessment_of(name, problem, contact, motion).warnings
+    warnings = assessment_of(name, problem, motion).warnings
     report(0.6, "unloading")
     spring = problem.inputs.suspension
     stiffness = None if spring is None else spring.stiffness
@@ -262,7 +262,7 @@ def assess(
     problem = build(resolve(case))
     contact, motion = first_impact(problem, report)
     report(1.0, "done")
-    return assessment_of(name, problem._replace(contact=contact), contact, motion)
+    return assessment_of(name, problem._replace(contact=contact), motion)
 
 
 def _kept_elastic(inputs: Inputs, report: Report) -> float | None:

@@ -148,6 +148,17 @@ def test_the_critical_velocity_is_that_of_the_loss():
     assert result.measures["critical_velocity"] == pytest.approx(0.1 * share**0.5, rel=1e-5)
 
 
+def test_restitution_against_speed_is_that_of_the_loss():
+    """Bodies that are launched jump, and what is said of the case is said of that contact."""
+    speeds = np.array([0.04, 0.06, 0.1])
+    found = asperity.restitution_curve(load(text(60.0)), speeds)
+    share = thrown().ledger["lost"]["instability"] / thrown().ledger["initial"]
+    left = 1.0 - share * (0.1 / speeds) ** 2
+    assert found.captured.tolist() == [True, False, False]
+    np.testing.assert_allclose(found.restitution[1:], np.sqrt(left[1:]), rtol=1e-5)
+    np.testing.assert_allclose(found.critical_velocity, 0.1 * share**0.5, rtol=1e-5)
+
+
 def test_the_loss_is_the_area_between_its_loading_and_unloading_curves():
     found, lost = curve(), thrown().ledger["lost"]["instability"]
     area = np.trapezoid(found.force_loading - found.force_unloading, found.rigid_separation)

@@ -98,7 +98,7 @@ def likely_to_jump(contacts: Contact, count: int) -> np.ndarray:
     found = np.zeros(count, bool)
     if type(contacts) is not ElasticContact:
         return found
-    for some in slices(np.arange(count), _TOGETHER):
+    for some in slices(np.arange(count), _TOGETHER if count > 1 else 1):
         numbers = tabor_numbers_of_planes(taken(contacts, some))
         found[some[some >= 0]] = ~(numbers <= FOLDS)[some >= 0]
     return found

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .. import regimes
-from ..contact import Contact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..regimes.liquid_regime import liquid_state
@@ -33,7 +32,7 @@ class Assessment(NamedTuple):
     warnings: list[str]
 
 
-def assessment_of(name: str, problem: Problem, contact: Contact, motion: Motion) -> Assessment:
+def assessment_of(name: str, problem: Problem, motion: Motion) -> Assessment:
     """What a case's numbers say, from a motion of one impact.
 
     Parameters
@@ -41,11 +40,11 @@ def assessment_of(name: str, problem: Problem, contact: Contact, motion: Motion)
     name
         What to call it.
     problem
-        What was built from a case.
-    contact, motion
-        The contact that it was integrated with, and the motion.
+        What was built from a case, with the contact that it was integrated with.
+    motion
+        The motion.
     """
-    at_depth = AtDepth.of(contact, motion)
+    at_depth = AtDepth.of(problem.contact, motion)
     check_surface(problem, at_depth)
     regime = regime_of(problem, at_depth)
     inputs = problem.inputs

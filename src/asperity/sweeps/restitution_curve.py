@@ -257,7 +257,7 @@ def restitution_curve(
     inputs = resolve(case).one_impact()
     problem, limits = build(inputs), Limits.of(inputs.tolerance)
     solution = integrate(problem, report, stop, drawn=False)
-    about = assessment_of(name, problem, solution.contact, solution.motion)
+    about = assessment_of(name, problem._replace(contact=solution.contact), solution.motion)
     measures = measured(solution, problem.body)
     own = float(measures.impact_speed)  # none where gas stops the body before
     own = own if np.isfinite(own) else float(measures.maximum_speed)
