@@ -18,6 +18,7 @@ from asperity.model import build
 from asperity.sweeps.compute import batch
 from asperity.sweeps.compute.batch import compute
 from asperity.sweeps.compute.building import built
+from asperity.sweeps.compute.jumping_cases import without_jumps
 from asperity.sweeps.study.study import parse
 
 RMS = 5e-9
@@ -223,7 +224,8 @@ def test_cases_of_a_study_jump_as_they_do_alone():
 def test_of_a_study_those_that_jump_are_taken_from_their_group():
     works = np.array([50e-3, 1e-3, 2e-3, 0.5e-3])
     study = study_of("'adhesion.work'", [f"{work} J/m^2" for work in works])
-    found = built(study, {"adhesion.work": works})
+    values = {"adhesion.work": works}
+    found = without_jumps(study, values, built(study, values))
     assert [row for row, _ in found.alone] == [0]
     (group,) = found.groups
     assert group.rows.tolist() == [1, 2, 3]

@@ -12,11 +12,9 @@ import numpy as np
 
 from asperity.config import Case
 from asperity.config.resolve import resolve
-from asperity.contact import ElasticContact
 from asperity.dynamics.problem import Problem
 from asperity.errors import ENDS, InputError, Outcome, SimulationError
 from asperity.integration.clock import Clock
-from asperity.integration.panel_cuts import Unsolved
 from asperity.model import build
 from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.result import Result
@@ -24,6 +22,7 @@ from asperity.solver import solve
 from asperity.sweeps.compute.building import Group, Values, built, case_at
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
+from asperity.sweeps.compute.jumping_cases import without_equilibrium, without_jumps
 from asperity.sweeps.compute.realised import realised
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
 from asperity.sweeps.study.columns import REASON_SIZE
@@ -121,7 +120,7 @@ def _computed(
     began = time.perf_counter()
     count = next(iter(values.values())).shape[0]
     out = _blank(study, count)
-    whole = built(study, values)
+    whole = without_jumps(study, values, built(study, values))
     looked = [number - first for number in corners]
     lines: dict[int, list[str]] = {}
     for row, reason in whole.refused.items():
@@ -129,7 +128,7 @@ def _computed(
     compile_ahead(whole.groups)
     for group in whole.groups:
         solution = integrate_batch(group, clock)
-        unsolved = [int(group.rows[place]) for place in _unsolved(group, solution)]
+        unsolved = without_equilibrium(group, solution)
         whole.alone.extend((row, case_at(study, values, row)) for row in unsolved)
         if (
             any(column.name == "critical_velocity" for column in study.columns)
@@ -155,16 +154,6 @@ def _computed(
     wall = time.perf_counter() - began
     compiled = min(clock.compiled, wall)
     return out, Effort(count, clock.batch_use, compiled, wall, len(lines), tuple(sorted(warned)))
-
-
-def _unsolved(group: Group, solution: BatchSolution) -> list[int]:
-    """Places of cases without an equilibrium, which may jump by themselves: failures no longer."""
-    if type(group.batch.contact) is not ElasticContact:
-        return []
-    found = [place for place, why in solution.failures.items() if isinstance(why, Unsolved)]
-    for place in found:
-        del solution.failures[place]
-    return found
 
 
 def _built(study: Study, number: int) -> Problem:

@@ -24,8 +24,7 @@ from asperity.contact.rough import RoughContact
 from asperity.dynamics import Limits
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError
-from asperity.integration.batch_records import Batch, taken
-from asperity.integration.jumping import likely_to_jump
+from asperity.integration.batch_records import Batch
 from asperity.model import build
 from asperity.numerics.compilation import Program
 from asperity.sweeps.compute.batch_values import BatchValues, Mixed
@@ -103,23 +102,7 @@ def built(study: Study, values: Values) -> Built:
     else:
         for rows in _kinds(values, count):
             _together(study, values, rows, out)
-    groups = [_without_jumps(study, values, _joined(same), out) for same in _alike(out.groups)]
-    return out._replace(groups=[group for group in groups if group.rows.size])
-
-
-def _without_jumps(study: Study, values: Values, group: Group, out: Built) -> Group:
-    """A group without the cases that are likely to jump, each of which is solved by itself."""
-    jumps = likely_to_jump(group.batch.contact, group.rows.size)
-    if not np.any(jumps):
-        return group
-    out.alone.extend((row, case_at(study, values, row)) for row in group.rows[jumps].tolist())
-    stay = np.flatnonzero(~jumps)
-    if not stay.size:
-        return group._replace(rows=group.rows[stay])
-    problems = tuple(group.problems[place] for place in stay.tolist()) if group.problems else ()
-    return Group(
-        group.rows[stay], taken(group.batch, stay), group.tolerance[stay], problems, group.launched
-    )
+    return out._replace(groups=[_joined(same) for same in _alike(out.groups)])
 
 
 def _kinds(values: Values, count: int) -> Iterator[np.ndarray]:

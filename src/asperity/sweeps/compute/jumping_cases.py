@@ -1,0 +1,60 @@
+"""Cases that may jump from one equilibrium to another: each leaves its group, solved alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asperity.contact import ElasticContact
+from asperity.integration.batch_records import taken
+from asperity.integration.jumping import likely_to_jump
+from asperity.integration.panel_cuts import Unsolved
+from asperity.sweeps.compute.building import Built, Group, Values, case_at
+from asperity.sweeps.compute.integrate_batch import BatchSolution
+
+if TYPE_CHECKING:
+    from asperity.sweeps.study.study import Study
+
+
+def without_jumps(study: Study, values: Values, whole: Built) -> Built:
+    """The cases with those alone that are likely to jump.
+
+    Parameters
+    ----------
+    study, values
+        The study, and the values of its axes.
+    whole
+        All cases that were asked for.
+    """
+    groups, alone = [], [*whole.alone]
+    for group in whole.groups:
+        jumps = likely_to_jump(group.batch.contact, group.rows.size)
+        alone += [(row, case_at(study, values, row)) for row in group.rows[jumps].tolist()]
+        stay = np.flatnonzero(~jumps)
+        if stay.size:
+            groups.append(group if stay.size == jumps.size else _some(group, stay))
+    return Built(groups, alone, whole.refused)
+
+
+def _some(group: Group, places: np.ndarray) -> Group:
+    """Cases of a group."""
+    problems = tuple(group.problems[place] for place in places.tolist()) if group.problems else ()
+    batch = taken(group.batch, places)
+    return Group(group.rows[places], batch, group.tolerance[places], problems, group.launched)
+
+
+def without_equilibrium(group: Group, solution: BatchSolution) -> list[int]:
+    """Rows of cases without an equilibrium beside others, which may jump: failures no longer.
+
+    Parameters
+    ----------
+    group, solution
+        The cases, and what became of them.
+    """
+    if type(group.batch.contact) is not ElasticContact:
+        return []
+    found = [place for place, why in solution.failures.items() if isinstance(why, Unsolved)]
+    for place in found:
+        del solution.failures[place]
+    return [int(group.rows[place]) for place in found]
