@@ -11,6 +11,7 @@ from numpy.polynomial import chebyshev
 from .._jax import jax
 from ..contact.contact import Contact
 from ..numerics.compilation import AT_ONCE, Program
+from .common_shapes import common_phases, common_table
 from .curve_table import CENTRAL, FORCE, STORED, Table, quantities
 from .jumps import Segment, jumps
 from .record import Impacts
@@ -140,8 +141,10 @@ def _places(pieces: list[_Piece], deepest: float, top: float) -> np.ndarray:
 
 def first_unloading(table: Table, impacts: Impacts) -> Unloading:
     """What the first of some impacts is pulled back by, as numbers."""
-    first = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[0], impacts.rise)
-    return unloading_of(table, first)
+    laws = impacts.bonds.shape[1]
+    phases = jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[:1], impacts.rise)
+    first = jax.tree_util.tree_map(lambda leaf: leaf[0], common_phases(phases, laws))
+    return unloading_of(common_table(table, laws), first)
 
 
 unloading_of = Program(unloading, AT_ONCE)

@@ -10,6 +10,7 @@ from .._jax import jax
 from ..config import Case
 from ..contact import Contact
 from ..dynamics import Body, Motion, time_series
+from ..dynamics.common_shapes import common_table, filled_up, with_phases, without_curves
 from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
 from ..dynamics.problem import Problem
 from ..dynamics.static_equilibrium import Reference, end_of_contact
@@ -29,14 +30,13 @@ from ..regimes.validity import (
     warnings_of,
 )
 from .assessment import regime_of
-from .first_contact import FirstContact, least_peak
+from .first_contact import FirstContact, first_contact, least_peak, passing_at
 from .measures import Measures, measure
 from .realisations import Realisations
 from .result import Result
 
-_ROWS = 256
-"""Rows of impacts that are measured at least: more than most motions have."""
-
+_first_contact = Program(first_contact, AT_ONCE)
+_passing_at = Program(passing_at, AT_ONCE)
 _measure = Program(measure, AT_ONCE)
 _end_of_contact = Program(end_of_contact, AT_ONCE)
 
@@ -61,32 +61,31 @@ def contact_end(table: Table, peak: float) -> float:
 
 def compile_ahead(motion: Motion, body: Body) -> None:
     """Compile in threads what measures and draws a motion that is given by its shapes."""
-
-    def rows(leaf: Any) -> Any:
-        return jax.ShapeDtypeStruct((_ROWS, *leaf.shape[1:]), leaf.dtype)
-
-    impacts = jax.tree_util.tree_map(rows, motion.impacts)
-    _measure.ahead(motion._replace(impacts=impacts), body, None, None)
-    time_series.compile_ahead(body, motion.table, impacts)
+    time_series.compile_ahead(body, motion.table, motion.impacts)
+    blank = jax.tree_util.tree_map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), motion)
+    table, impacts = with_phases(blank, body)
+    first = _first_contact.ahead(table, impacts, body)
+    passing = None
+    if body.damped_apart:
+        passing = _passing_at.ahead(body, table, impacts, first.end)
+    _measure.ahead(without_curves(blank), body, passing, first)
 
 
 def measured(solution: Solution, body: Body) -> Measures:
-    """Measures over a power of two of rows, seldom more than the first: one compilation."""
+    """Measures, by programs that serve many kinds of case."""
     motion, body = solution.motion, solution.body or body
-    rows = motion.impacts.made.shape[0]
-    size = max(_ROWS, 1 << (rows - 1).bit_length())
-
-    def pad(leaf: Any) -> Any:
-        return np.concatenate([leaf, np.zeros((size - rows, *leaf.shape[1:]), leaf.dtype)])
-
-    whole = motion._replace(impacts=jax.tree_util.tree_map(pad, motion.impacts))
+    plain, passing = without_curves(motion), None
     if solution.trajectory is None:
-        return _measure(whole, body, None, None)
-    first, passing = _stepped_contact(solution.trajectory, motion, body), None
+        table, impacts = with_phases(motion, body)
+        first = _first_contact(table, impacts, body)
+        if body.damped_apart:
+            passing = _passing_at(body, table, impacts, first.end)
+        return _measure(plain, body, passing, first)
+    first = _stepped_contact(solution.trajectory, motion, body)
     if body.damped_apart:
         found = solution.trajectory.passing(float(first.end), float(body.mass))
-        passing = jax.tree_util.tree_map(pad, found)
-    return _measure(whole, body, passing, first)
+        passing = jax.tree_util.tree_map(filled_up, found)
+    return _measure(plain, body, passing, first)
 
 
 def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> FirstContact:
@@ -94,11 +93,12 @@ def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> Firs
     bonds = Quantities(motion.impacts.bonds.shape[1], 0).bonds
     pulled, series = trajectory.unloading(bonds), trajectory.series
     peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
-    end = contact_end(motion.table, peak)
+    table = common_table(motion.table, motion.impacts.bonds.shape[1])
+    end = contact_end(table, peak)
     held = float(motion.impacts.apex[0]) < end
     time = np.nan if held else trajectory.contact_time(end)
     force = float(np.max(series.rows[series.phase < 2, FORCE]))
-    outset = contact_end(motion.table, float(least_peak(body, pulled.pull_off, peak)))
+    outset = contact_end(table, float(least_peak(body, pulled.pull_off, peak)))
     return FirstContact(
         as_float64(end), as_float64(time), as_float64(force), pulled, as_float64(outset)
     )
