@@ -18,7 +18,7 @@ from asperity.model import build
 from asperity.sweeps.compute import batch
 from asperity.sweeps.compute.batch import compute
 from asperity.sweeps.compute.building import built
-from asperity.sweeps.compute.jumping_cases import without_jumps
+from asperity.sweeps.compute.cases_alone import without_jumps
 from asperity.sweeps.study.study import parse
 
 RMS = 5e-9

@@ -39,7 +39,7 @@ class Resolution(NamedTuple):
     pieces
         Number of these pieces, for each law.
     shared
-        Even pieces of the quadratures that the places of one panel share.
+        Even pieces of the quadratures that the places of one panel share; 0 where each has its own.
     reversals
         Scanning curves that are solved for each direction, where they stand for all.
     error_floor

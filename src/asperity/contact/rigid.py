@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from math import pi
 from typing import Any
 
@@ -67,12 +68,28 @@ class RigidContact(RoughContact):
         return self._state(separation, self.interface.measure(separation, memory, integrated=1))
 
     def _branch(self, ends: jax.Array, places: jax.Array, memory: Thresholds) -> State:
-        """Places of one panel share their quadrature; far out only where all forces have ended."""
+        """Places of one panel share their quadrature; far out only where all forces have ended.
+
+        That holds for places within some 27 rms heights, as panels are but far below the mean
+        plane: see :meth:`place_by_place`.
+        """
+        if not self.resolved.shared:
+            return super()._branch(ends, places, memory)
         count = places.shape[0] - (0 if self.interface.only_bonded else self.far)
         states = [self._states(Near(True, self.resolved.shared), places[:count], memory)]
         if count < places.shape[0]:
             states.append(super()._branch(ends, places[count:], memory))
         return jax.tree_util.tree_map(lambda *rows: jnp.concatenate(rows), *states)
+
+    def place_by_place(self) -> RigidContact | None:
+        """The contact with a quadrature at each place of a panel, where places share theirs.
+
+        It takes longer to compile and to solve. None where means are closed forms, or each place
+        has its own already.
+        """
+        if type(self) is not RigidContact or self.interface.closed or not self.resolved.shared:
+            return None
+        return dataclasses.replace(self, resolved=self.resolved._replace(shared=0))
 
     def _states(self, near: Near, places: jax.Array, memory: Thresholds) -> State:
         """The contact at rows of places [m], those of a row near one another."""

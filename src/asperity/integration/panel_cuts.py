@@ -26,6 +26,10 @@ class Unsolved(SimulationError):
     """A contact has no equilibrium that follows from the one before."""
 
 
+class Inaccurate(SimulationError):
+    """Force curves miss the tolerance however they are cut."""
+
+
 class CutPanels(NamedTuple):
     """Panels of one case's curves, cut again and again.
 
@@ -103,7 +107,7 @@ def curve_failure(error: float, tolerance: float, residual: float) -> Simulation
             "contact has no equilibrium that follows from the one before (strong adhesion on "
             "soft bodies folds it)"
         )
-    return SimulationError(
+    return Inaccurate(
         f"force curves reach a relative error of {error:.1e}, "
         f"not `numerics.tolerance` = {tolerance:.1e}"
     )

@@ -7,7 +7,7 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact
+from ..contact import Contact, ElasticContact, RigidContact
 from ..contact.delayed_formation import DelayedContact
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
@@ -24,7 +24,7 @@ from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
 from .jumping import over_folds
-from .panel_cuts import PATIENCE
+from .panel_cuts import PATIENCE, Inaccurate
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
@@ -80,7 +80,21 @@ def integrate(
     def run(problem: Problem, patience: int) -> Solution:
         return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
 
-    return over_folds(problem, run, report)
+    try:
+        return over_folds(problem, run, report)
+    except Inaccurate:
+        deep = _place_by_place(problem)
+        if deep is None:
+            raise
+    return over_folds(deep, run, report)
+
+
+def _place_by_place(problem: Problem) -> Problem | None:
+    """The problem with another quadrature: see :meth:`RigidContact.place_by_place`."""
+    if not isinstance(problem.contact, RigidContact) or _in_time(problem):
+        return None
+    contact = problem.contact.place_by_place()
+    return None if contact is None else problem._replace(contact=contact)
 
 
 def _integrated(

@@ -20,9 +20,9 @@ from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.result import Result
 from asperity.solver import solve
 from asperity.sweeps.compute.building import Group, Values, built, case_at
+from asperity.sweeps.compute.cases_alone import unfinished, without_jumps
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
-from asperity.sweeps.compute.jumping_cases import without_equilibrium, without_jumps
 from asperity.sweeps.compute.realised import realised
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
 from asperity.sweeps.study.columns import REASON_SIZE
@@ -128,8 +128,8 @@ def _computed(
     compile_ahead(whole.groups)
     for group in whole.groups:
         solution = integrate_batch(group, clock)
-        unsolved = without_equilibrium(group, solution)
-        whole.alone.extend((row, case_at(study, values, row)) for row in unsolved)
+        again = unfinished(group, solution)
+        whole.alone.extend((row, case_at(study, values, row)) for row in again)
         if (
             any(column.name == "critical_velocity" for column in study.columns)
             and solution.measures

@@ -1,4 +1,4 @@
-"""Cases that may jump from one equilibrium to another: each leaves its group, solved alone."""
+"""Cases that leave their group and are solved alone: those that may jump, and those too deep."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asperity.contact import ElasticContact
+from asperity.contact import ElasticContact, RigidContact
+from asperity.errors import SimulationError
 from asperity.integration.batch_records import taken
 from asperity.integration.jumping import likely_to_jump
-from asperity.integration.panel_cuts import Unsolved
+from asperity.integration.panel_cuts import Inaccurate, Unsolved
 from asperity.sweeps.compute.building import Built, Group, Values, case_at
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 
@@ -44,17 +45,25 @@ def _some(group: Group, places: np.ndarray) -> Group:
     return Group(group.rows[places], batch, group.tolerance[places], problems, group.launched)
 
 
-def without_equilibrium(group: Group, solution: BatchSolution) -> list[int]:
-    """Rows of cases without an equilibrium beside others, which may jump: failures no longer.
+def unfinished(group: Group, solution: BatchSolution) -> list[int]:
+    """Rows of cases that failed beside others and may not alone: failures no longer.
+
+    Those on a half-space without an equilibrium, which may jump; those of a rigid body whose curves
+    miss the tolerance while places share a quadrature.
 
     Parameters
     ----------
     group, solution
         The cases, and what became of them.
     """
-    if type(group.batch.contact) is not ElasticContact:
+    contact = group.batch.contact
+    if type(contact) is ElasticContact:
+        ends: type[SimulationError] = Unsolved
+    elif isinstance(contact, RigidContact) and contact.place_by_place() is not None:
+        ends = Inaccurate
+    else:
         return []
-    found = [place for place, why in solution.failures.items() if isinstance(why, Unsolved)]
+    found = [place for place, why in solution.failures.items() if isinstance(why, ends)]
     for place in found:
         del solution.failures[place]
     return [int(group.rows[place]) for place in found]
