@@ -15,10 +15,9 @@ from .curve_table import Pieces, Quantities, Table
 from .instability import Jumps
 from .record import Body, Impacts, Motion, Phase
 
-ROWS = 256
-"""Rows of impacts that are measured at least: more than most motions have."""
-
-_BRANCHES, _PANELS, _PIECES, _LAWS = 2, 8, 2, 3  # at least, and each so many times more
+_ROWS = 256  # of impacts at least: more than most motions have
+_BRANCHES, _LAWS = 2, 3  # at least, and in multiples
+_PANELS, _PIECES = 8, 2  # at least, and doubled as often as needed
 
 
 def without_curves(motion: Motion) -> Motion:
@@ -94,9 +93,9 @@ def _first(leaf: Any) -> np.ndarray:
 
 
 def filled_up(leaf: Any) -> np.ndarray:
-    """An array of impacts with zeros in the rows of those that were not made, 256 rows or more."""
+    """An array of impacts with zeros in the rows of those that were not made: a power of two."""
     made = leaf.shape[0]
-    size = max(ROWS, 1 << (made - 1).bit_length())
+    size = max(_ROWS, 1 << (made - 1).bit_length())
     return np.pad(leaf, [(0, size - made), *[(0, 0)] * (leaf.ndim - 1)])
 
 
