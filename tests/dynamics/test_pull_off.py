@@ -56,8 +56,10 @@ def test_nothing_pulls_where_nothing_adheres():
 def test_a_run_measures_what_its_curve_does():
     case = smooth("jkr")
     measures, curve = asperity.solve(case, critical=False).measures, asperity.curve(case)
-    for name in ("pull_off", "pull_off_separation", "work_of_separation", "preload"):
-        assert measures[name] == getattr(curve, name)
+    assert measures["preload"] is curve.preload is None
+    for name in ("pull_off", "pull_off_separation", "work_of_separation"):
+        # Two compiled programs may round differently.
+        assert measures[name] == pytest.approx(getattr(curve, name), rel=1e-12)
 
 
 def test_bonds_made_by_contact_pull_more_after_a_larger_load_and_say_so():
