@@ -8,7 +8,7 @@ import pytest
 import asperity
 from asperity.config import load_file
 from asperity.config.resolve import resolve
-from asperity.critical_velocity import Launcher, sought
+from asperity.critical_velocity import Launcher, critical_measures, sought
 from asperity.dynamics import Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges
 from asperity.errors import InputError, Outcome
@@ -40,6 +40,20 @@ def test_without_a_loss_every_speed_rebounds_and_that_is_said():
     assert measures["critical_velocity"] is None
     assert measures["capture_edges"] == []
     assert measures["critical_velocity_note"] == "every speed rebounds: nothing takes energy"
+
+
+def test_speeds_that_could_not_be_computed_are_counted():
+    speeds = np.geomspace(1e-2, 10.0, 16)
+
+    def launch(_: np.ndarray, launched: np.ndarray) -> FirstImpacts:
+        known = np.where(launched > 1.0, np.nan, launched)
+        return FirstImpacts(known, np.zeros(launched.size, bool), np.ones(launched.size))
+
+    (edges,) = capture_edges(launch, np.array([1.0]), np.array([1.0]))
+    assert edges.unknown == np.sum(speeds > 1.0)
+    note = critical_measures(edges)["critical_velocity_note"]
+    assert note.startswith("every speed tried rebounds, 10 mm/s to")
+    assert note.endswith(f"; at {edges.unknown} others no first impact could be computed")
 
 
 def test_restitution_follows_the_critical_velocity_of_jkr():

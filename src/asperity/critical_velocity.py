@@ -155,6 +155,9 @@ class Launcher:
     def edges(self, solution: Solution) -> Edges | None:
         """The edges of capture about a motion; None where nothing can take energy.
 
+        Where no edge is found among speeds of which some could not be computed, these are tried
+        again with finer curves.
+
         Raises
         ------
         SimulationError
@@ -170,6 +173,9 @@ class Launcher:
             np.asarray(impacts.maximum_kinetic[:1]), np.asarray([lost]), float(body.mass)
         )
         found = capture_edges(self.together, *ends)[0]
+        if found.unknown and not found.speeds and self._refinements != REFINEMENTS:
+            self._refinements = REFINEMENTS
+            found = capture_edges(self.together, *ends)[0]
         if self._stop is not None and self._stop.is_set():
             raise SimulationError("stopped while the critical velocity was sought")
         return found
@@ -218,6 +224,8 @@ def critical_measures(edges: Edges | None) -> dict[str, Any]:
     elif not edges.speeds:
         low, high = (amount(speed, "m/s") for speed in edges.tried)
         note = f"every speed tried {'is captured' if edges.lowest else 'rebounds'}, {low} to {high}"
+        if edges.unknown:
+            note += f"; at {edges.unknown} others no first impact could be computed"
     elif len(edges.speeds) > 1 or not edges.lowest:
         note = _intervals(edges)
     speeds = [] if edges is None else list(edges.speeds)

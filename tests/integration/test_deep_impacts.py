@@ -43,12 +43,16 @@ work = "0.028 J/m^2"
 
 
 def test_a_body_that_comes_9000_rms_heights_deep_is_answered(monkeypatch: pytest.MonkeyPatch):
-    found = asperity.solve(load(TEXT), critical=False)
+    found = asperity.solve(load(TEXT))
     deepest = float(found.events["closest_approach_separation"][0])
     assert deepest < -9e3 * 0.153e-9
     assert abs(found.ledger["energy_balance_error"]) < 1e-9
     # Dry JKR asperities lose their pull-off energy: the same on the way out of any depth.
     assert 0.999 < found.measures["restitution"][0] < 1.0
+    critical = found.measures["critical_velocity"]
+    for share, captured in ((0.99, True), (1.01, False)):
+        slow = load(TEXT.replace("28 m/s", f"{share * critical} m/s"))
+        assert asperity.solve(slow, critical=False).measures["captured"] is captured
     monkeypatch.setattr(RigidContact, "place_by_place", lambda contact: None)
     with pytest.raises(Inaccurate, match=r"tolerance"):
         asperity.solve(load(TEXT), critical=False)

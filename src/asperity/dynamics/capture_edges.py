@@ -71,11 +71,14 @@ class Edges(NamedTuple):
         Whether the lowest speed that was tried captures.
     tried
         Lowest and highest speed of approach that were tried [m/s]; NaN where none could be.
+    unknown
+        Number of speeds of the scan at which no first impact could be computed.
     """
 
     speeds: tuple[float, ...]
     lowest: bool
     tried: tuple[float, float]
+    unknown: int
 
 
 def speeds_about(
@@ -132,10 +135,11 @@ def capture_edges(launch: Launch, low: np.ndarray, high: np.ndarray) -> list[Edg
 
 def _edges(scanned: FirstImpacts, of_case: np.ndarray, speeds: list[float]) -> Edges:
     known = np.flatnonzero(of_case & np.isfinite(scanned.speed))
+    unknown = int(np.count_nonzero(of_case)) - known.size
     if not known.size:
-        return Edges((), False, (np.nan, np.nan))
+        return Edges((), False, (np.nan, np.nan), unknown)
     tried = float(scanned.speed[known[0]]), float(scanned.speed[known[-1]])
-    return Edges(tuple(sorted(speeds)), bool(scanned.captured[known[0]]), tried)
+    return Edges(tuple(sorted(speeds)), bool(scanned.captured[known[0]]), tried, unknown)
 
 
 def _changes(scanned: FirstImpacts, of_case: np.ndarray) -> np.ndarray:
