@@ -130,9 +130,40 @@ def test_on_a_half_space_summits_feel_one_another():
     assert not np.any(found.interaction)
 
 
-def test_without_placement_nothing_is_drawn():
-    text = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
-    assert resolve(load(text)).placement is None
+OPEN = CASE.replace('placement = "random"\nrealisations = 300\nseed = 3\n', "")
+
+
+def test_single_bodies_stand_beside_a_mean_of_few_asperities():
+    result = asperity.solve(load(OPEN))
+    assert result.regime["loaded_asperities"] < 1.0
+    assert result.realisations.size == 256
+    assert "rebounds" not in result.realisations.values
+    assert "Of single bodies" in result.summary().split("Regime")[0]
+    assert not [line for line in result.warnings if "expected to touch" in line]
+
+
+def test_a_mean_stands_alone_where_it_is_asked_for_or_enough():
+    alone = asperity.solve(load(OPEN.replace("[adhesion]", 'placement = "mean"\n[adhesion]')))
+    assert alone.realisations is None
+    (line,) = [line for line in alone.warnings if "expected to touch" in line]
+    assert "asperity run" not in line
+    (line,) = [
+        line
+        for line in asperity.solve(load(OPEN), critical=False).warnings
+        if "expected to touch" in line
+    ]
+    assert line.endswith("`asperity run` has single bodies beside it")
+    fast = asperity.solve(load(OPEN.replace("3 mm/s", "60 mm/s")))
+    assert fast.regime["loaded_asperities"] > 3.0
+    assert fast.realisations is None
+    assert not [line for line in fast.warnings if "expected to touch" in line]
+
+
+def test_a_mean_says_why_no_single_bodies_stand_beside_it(monkeypatch):
+    monkeypatch.setattr(launching, "MOST_SUMMITS", 2)
+    result = asperity.solve(load(OPEN))
+    assert result.realisations is None
+    assert "there are no single bodies beside this mean: single bodies" in result.warnings[-1]
 
 
 @pytest.mark.parametrize(

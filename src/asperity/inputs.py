@@ -256,8 +256,6 @@ class Inputs:
         Whether that strength was given in place of a solid's own.
     plasticity_allowed
         Whether a case may have a law of yielding beside its other models.
-    single_bodies_allowed
-        Whether a case may have single bodies beside its other models.
     work_of_adhesion
         Work of adhesion [J/m^2]; 0 without adhesion.
     equilibrium_spacing
@@ -297,7 +295,10 @@ class Inputs:
     release
         How the body is let go; None where only curves can be asked for.
     placement
-        Single bodies on summits of their own; None where the mean over all is asked for alone.
+        Single bodies on summits of their own; None where the case does not ask for them.
+    beside
+        Those that stand beside a mean of few asperities; None where the case asks for the mean
+        alone, or its models leave no room for them.
     published
         What the publication assumes; None in every other case.
     tolerance
@@ -318,7 +319,6 @@ class Inputs:
     yielding: Yielding | None
     strength_given: bool
     plasticity_allowed: bool
-    single_bodies_allowed: bool
     work_of_adhesion: float
     equilibrium_spacing: float
     adhesion_reason: str | None
@@ -339,6 +339,7 @@ class Inputs:
     relaxation_time: float
     release: Release | None
     placement: Placement | None
+    beside: Placement | None
     published: Assumptions | None
     tolerance: Tolerance
 
@@ -351,6 +352,10 @@ class Inputs:
     def chosen_release(self) -> bool:
         """Whether the body is let go from where the solver chooses."""
         return self.release is not None and self.release.separation is None
+
+    def with_bodies(self) -> Inputs:
+        """The same with single bodies: those that the case asks for, or those beside a mean."""
+        return dataclasses.replace(self, placement=self.placement or self.beside)
 
     def one_impact(self) -> Inputs:
         """The same with one impact alone, however long it takes."""

@@ -21,7 +21,7 @@ from .model import build
 from .regimes.validity import pull_warnings
 from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
-from .results.conversion import Solution, first_restitution, result_of
+from .results.conversion import Solution, beside_mean, first_restitution, result_of
 from .results.result import Curve, Result
 from .single_bodies import realise
 
@@ -50,7 +50,8 @@ def solve(
     throw
         Whether a numerical failure raises, or comes back as the result's outcome.
     critical
-        Whether the critical velocity is sought: that takes some twenty first impacts.
+        Whether the critical velocity is sought, and single bodies are launched beside a mean of
+        few asperities: that takes some twenty first impacts, and 256.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def solve(
     _ = case.launch
     report, problem = progress or silently, build(resolve(case))
     solution = integrate(problem, report, stop)
-    result = _result(case, name, problem, solution, report, stop, None)
+    result = _result(case, name, problem, solution, report, stop, None, beside=critical)
     if critical:
         report(0.92, "critical velocity")
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
@@ -152,6 +153,8 @@ def _result(
     report: Report,
     stop: threading.Event | None,
     most: int | None,
+    *,
+    beside: bool = True,
 ) -> Result:
     """The result of a motion, and of single bodies beside it."""
     # Of a contact that folds both differ from what was built.
@@ -159,19 +162,25 @@ def _result(
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
-    bodies = None
-    if problem.inputs.placement is not None and not stopped:
+    asked, bodies, why = problem.inputs.placement is not None, None, ""
+    placed = beside_mean(problem, solution) if beside and not stopped else problem
+    if placed.inputs.placement is not None and not stopped:
         try:
-            turning_point = float(solution.motion.impacts.closest_approach[0])
             bodies = realise(
-                problem, solution.body or problem.body, turning_point,
-                lambda _, text: report(0.9, text), stop, rebounds=most is None,
+                placed, problem.body, float(solution.motion.impacts.closest_approach[0]),
+                lambda _, text: report(0.9, text), stop, rebounds=asked and most is None,
             )  # fmt: skip
-        except SimulationError:
-            if stop is None or not stop.is_set():
+            problem = placed
+        except (InputError, SimulationError) as error:
+            if stop is not None and stop.is_set():
+                solution = solution._replace(outcome=Outcome.INTERRUPTED)
+            elif asked:
                 raise
-            solution = solution._replace(outcome=Outcome.INTERRUPTED)
-    return result_of(case, name, problem, solution, elastic, most, bodies)
+            else:
+                why = f"there are no single bodies beside this mean: {error}"
+    result = result_of(case, name, problem, solution, elastic, most, bodies)
+    result.warnings.extend([why] if why else [])
+    return result
 
 
 def _failure(problem: Problem, contact: Contact) -> str:

@@ -11,7 +11,7 @@ from asperity.config.asperities import asperities_of
 from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.limits import refuse_rough
 from asperity.config.plasticity import Plasticity
-from asperity.config.roughness import REALISATIONS, Roughness
+from asperity.config.roughness import BESIDE, REALISATIONS, Roughness
 from asperity.errors import InputError, Tolerance
 from asperity.inputs import (
     CLASSES,
@@ -89,7 +89,6 @@ def resolve(case: CaseTables) -> Inputs:
         yielding=case_yielding(case.plasticity, (body, counterface)),
         strength_given=_strength_given(case),
         plasticity_allowed=_plasticity_allowed(case),
-        single_bodies_allowed=_single_bodies_allowed(case),
         work_of_adhesion=0.0 if adhesion.law == "none" else _given(case.adhesion.work),
         equilibrium_spacing=_or_zero(case.adhesion.equilibrium_spacing),
         adhesion_reason=adhesion.reason,
@@ -104,6 +103,7 @@ def resolve(case: CaseTables) -> Inputs:
         relaxation_time=_relaxation(case, "relaxation_time") if relaxing else 0.0,
         release=_release(case),
         placement=_placement(table),
+        beside=_beside(case),
         published=_assumptions(case),
         tolerance=_tolerance(case),
     )
@@ -193,6 +193,18 @@ def _placement(table: Roughness | None) -> Placement | None:
     return Placement(table.placement == "measured", count, table.seed or 0)
 
 
+def _beside(case: CaseTables) -> Placement | None:
+    """Single bodies beside a mean of few asperities, where the case leaves that open."""
+    table = case.roughness
+    if table is None or table.placement is not None:
+        return None
+    try:
+        table.model_copy(update={"placement": "random"}).check_beside(case)
+    except InputError:
+        return None
+    return Placement(measured=False, realisations=BESIDE, seed=0)
+
+
 def _tolerance(case: CaseTables) -> Tolerance:
     table = case.numerics
     limit = math.inf if table.time_limit is None else table.time_limit
@@ -218,17 +230,6 @@ def _plasticity_allowed(case: CaseTables) -> bool:
     try:
         table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
         table.refuse_under(case.counterface, case.roughness)
-    except InputError:
-        return False
-    return True
-
-
-def _single_bodies_allowed(case: CaseTables) -> bool:
-    """Whether single bodies could be launched beside the mean."""
-    if case.roughness is None:
-        return False
-    try:
-        case.roughness.model_copy(update={"placement": "random"}).check_beside(case)
     except InputError:
         return False
     return True

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 REALISATIONS = 1000
 """Single bodies where a case with ``placement = "random"`` names no number."""
 
+BESIDE = 256
+"""Single bodies beside a mean of few asperities, where a case leaves `placement` open."""
+
 NUMBERS = ("asperity_density", "asperity_radius", "rms_height")
 
 
@@ -85,15 +88,16 @@ class Roughness(Table):
     )  # fmt: skip
 
     placement: Literal["mean", "random", "measured"] | None = entry(
-        "", "Summits: their 'mean' over all bodies (default), or beside it single bodies, each on "
-        "summits at 'random' places, or put down at a random place of a 'measured' map.", "random",
+        "", "Summits: their 'mean' over all bodies alone, or beside it single bodies, each on "
+        "summits at 'random' places, or put down at a random place of a 'measured' map. Without "
+        "it, 256 at random places where fewer than 3 asperities carry the load.", "random",
         default=None,
     )  # fmt: skip
     realisations: Annotated[int, Number("[1, 1000000]", whole=True)] | None = entry(
-        "1", "Without placement = 'mean': single bodies; 1000.", 1000, default=None
+        "1", "With a placement but 'mean': single bodies; 1000.", 1000, default=None
     )
     seed: Annotated[int, Number("[0, 4294967295]", whole=True)] | None = entry(
-        "1", "Without placement = 'mean': seed of the places; 0.", 0, default=None
+        "1", "With a placement but 'mean': seed of the places; 0.", 0, default=None
     )
 
     of_files: ClassVar[tuple[str, ...]] = (

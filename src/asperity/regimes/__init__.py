@@ -2,7 +2,8 @@
 
 `dimensionless_numbers`: Tabor number, plasticity index and the like. `choice`: the adhesion law
 for a Tabor number. `boundaries`: the adhesion map of Johnson and Greenwood. `verdicts`: what a
-number says, in words. `liquid_regime`: dry, pendular, coalesced, flooded.
+number says, in words. `loaded_asperities`: how many carry the load, effectively.
+`liquid_regime`: dry, pendular, coalesced, flooded.
 `validity` collects the warnings of `accuracy`, `ambient`, `model_domain`, `plastic_validity` and
 `wave_limits`: each threshold is a constant beside the warning that uses it.
 """
@@ -16,15 +17,16 @@ from .dimensionless_numbers import (
     plasticity_index,
     tabor_number,
 )
-from .verdicts import FEW, Situation, Verdict, missed, verdicts
+from .loaded_asperities import LOADED_FOR_A_MEAN, loaded_asperities
+from .verdicts import Situation, Verdict, missed, verdicts
 
 __all__ = [
     "BORDER_FACTOR",
     "DMT_BELOW",
     "ELASTICITY_PER_TABOR",
-    "FEW",
     "JKR_ABOVE",
     "LAW_NAMES",
+    "LOADED_FOR_A_MEAN",
     "Boundary",
     "Frame",
     "Place",
@@ -35,6 +37,7 @@ __all__ = [
     "choose_adhesion",
     "hertz_load",
     "load_parameter",
+    "loaded_asperities",
     "missed",
     "plasticity_index",
     "region",

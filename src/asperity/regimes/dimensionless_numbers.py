@@ -33,6 +33,8 @@ class Regime(NamedTuple):
         The number and the rule that say so.
     contacting_asperities
         How many are expected to touch at closest approach; None for a smooth body.
+    loaded_asperities
+        How many carry the load there, effectively; likewise.
     """
 
     tabor_number: float | None
@@ -44,6 +46,7 @@ class Regime(NamedTuple):
     liquid_regime: str = "dry"
     liquid_regime_reason: str = "there is no liquid"
     contacting_asperities: float | None = None
+    loaded_asperities: float | None = None
 
 
 def tabor_number(radius: float, work: float, modulus: float, spacing: float) -> float:

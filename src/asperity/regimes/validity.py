@@ -15,7 +15,16 @@ from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import sample
 from ..errors import InputError
 from ..inputs import Inputs
-from . import DMT_BELOW, FEW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, missed, tabor_number
+from . import (
+    DMT_BELOW,
+    JKR_ABOVE,
+    LAW_NAMES,
+    LOADED_FOR_A_MEAN,
+    Regime,
+    choose_adhesion,
+    missed,
+    tabor_number,
+)
 from .accuracy import fall_warnings, ledger_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
 from .model_domain import covered_share, domain_warnings
@@ -78,7 +87,7 @@ def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Mot
     inputs = problem.inputs
     return [
         *_surface(problem),
-        *_asperities(inputs, at_depth),
+        *_asperities(inputs, at_depth, regime),
         *_publication(inputs),
         *_adhesion(regime, inputs.border_warnings, inputs.yields),
         *yielded(inputs, at_depth.central),
@@ -157,15 +166,14 @@ def check_surface(problem: Problem, at_depth: AtDepth) -> None:
         )
 
 
-def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
+def _asperities(inputs: Inputs, at_depth: AtDepth, regime: Regime) -> list[str]:
     rough = inputs.asperities
     if rough is None:
         return []
     out = []
-    contacting = max(at_depth.contacting, 0.0)
-    if contacting < FEW and inputs.placement is None:
-        allowed = inputs.single_bodies_allowed
-        out.append(_few(contacting) + ("; " + _SINGLE_BODIES if allowed else ""))
+    if few_loaded(regime) and inputs.placement is None:
+        advice = "" if inputs.beside is None else "; " + _SINGLE_BODIES
+        out.append(_few(max(at_depth.contacting, 0.0)) + advice)
     share = covered_share(rough, at_depth.central)
     if share > 0.1:
         out.append(
@@ -175,7 +183,13 @@ def _asperities(inputs: Inputs, at_depth: AtDepth) -> list[str]:
     return out
 
 
-_SINGLE_BODIES = "`placement` = 'random' in [roughness] has single bodies beside it"
+_SINGLE_BODIES = "`asperity run` has single bodies beside it"
+
+
+def few_loaded(regime: Regime) -> bool:
+    """Whether so few asperities carry the load that a mean says little of single bodies."""
+    loaded = regime.loaded_asperities
+    return loaded is not None and loaded < LOADED_FOR_A_MEAN
 
 
 def _few(contacting: float) -> str:

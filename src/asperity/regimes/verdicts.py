@@ -8,6 +8,7 @@ from typing import NamedTuple
 from .boundaries import hertz_load, region
 from .choice import DMT_BELOW, JKR_ABOVE
 from .dimensionless_numbers import Regime
+from .loaded_asperities import LOADED_FOR_A_MEAN
 
 ELASTIC_BELOW = 0.6
 """Plasticity index below which asperities stay elastic at ordinary loads (Greenwood and
@@ -15,9 +16,6 @@ Williamson 1966); above 1 they yield."""
 
 NARROW_BELOW = 0.1
 """Kelvin radius over the tip's radius below which a meniscus is narrow beside its tip."""
-
-FEW = 10.0
-"""Contacting asperities below which a mean over asperities says little of one impact."""
 
 
 class Verdict(NamedTuple):
@@ -104,6 +102,7 @@ def verdicts(situation: Situation) -> dict[str, Verdict]:
         ),
         "plasticity_index": _plasticity(situation),
         "contacting_asperities": _touching(situation),
+        "loaded_asperities": _loaded(regime.loaded_asperities),
         "kelvin_radius": _kelvin(situation),
         "kelvin_radius_over_spacing": _over_spacing(situation),
         "kelvin_radius_over_tip_radius": _over_tip(situation),
@@ -185,9 +184,16 @@ def _touching(situation: Situation) -> Verdict:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
     if value < 1.0:
         return Verdict(value, "1", f"below 1: {missed(value)}; only means over many are told")
-    if value < FEW:
-        return Verdict(value, "1", f"below {FEW:g}: single impacts scatter about the mean")
-    return Verdict(value, "1", f"expected at closest approach; {FEW:g} or more make a mean")
+    return Verdict(value, "1", "expected at closest approach, in the mean")
+
+
+def _loaded(value: float | None) -> Verdict:
+    if value is None:
+        return Verdict(None, "1", "the body is smooth: it is its own one asperity")
+    if value < LOADED_FOR_A_MEAN:
+        return Verdict(value, "1", f"below {LOADED_FOR_A_MEAN:g}: single bodies differ from a mean")
+    said = f"{LOADED_FOR_A_MEAN:g} or more carry the load, effectively: enough for a mean"
+    return Verdict(value, "1", said)
 
 
 def _kelvin(situation: Situation) -> Verdict:

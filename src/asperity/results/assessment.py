@@ -93,4 +93,7 @@ def regime_of(problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     return regimes.Regime(
         tabor, elasticity, plasticity, load, inputs.structure.adhesion, inputs.adhesion_reason,
         liquid.regime, liquid.reason, None if rough is None else contacting,
+        None if rough is None else regimes.loaded_asperities(
+            rough, contacting, at_depth.central, measured=inputs.structure.heights == "summits"
+        ),
     )  # fmt: skip

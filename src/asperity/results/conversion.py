@@ -24,6 +24,7 @@ from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
     AtDepth,
     check_surface,
+    few_loaded,
     pull_warnings,
     release_warnings,
     slow_menisci,
@@ -124,6 +125,27 @@ def _sampled(
 def first_restitution(solution: Solution, body: Body) -> float | None:
     """Restitution of a motion's first impact; None where it has none."""
     return _number(measured(solution, body).restitution[0])
+
+
+def beside_mean(problem: Problem, solution: Solution) -> Problem:
+    """The problem with single bodies, where it leaves them open and a mean is not enough.
+
+    That is where too few asperities carry the load of the first impact.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case, with the contact that it was integrated with.
+    solution
+        Its motion.
+    """
+    inputs = problem.inputs
+    if inputs.beside is None:
+        return problem
+    at_depth = AtDepth.of(solution.contact, solution.motion, solution.trajectory)
+    if not few_loaded(regime_of(problem, at_depth)):
+        return problem
+    return problem._replace(inputs=inputs.with_bodies())
 
 
 def result_of(

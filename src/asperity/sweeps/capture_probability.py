@@ -164,7 +164,7 @@ def capture_nearby(
     speed = result.measures["impact_speed"]
     if result.realisations is None or not speed:
         return None
-    problem = build(resolve(case))
+    problem = build(resolve(case).with_bodies())
     most = _FEW if isinstance(problem.contact, RigidContact) else _FEWEST
     turning_point = float(result.events["closest_approach_separation"][0])
     speeds = speed * np.geomspace(1.0 / _NEARBY, _NEARBY, _SPEEDS)
