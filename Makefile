@@ -36,7 +36,8 @@ check: lint
 	$(PYTEST) -q $(CHECKED)
 
 # pytest last, so that its summary closes the output.
-test: lint docs
+test: dev-environment
+	$(MAKE) --no-print-directory -j 2 lint docs
 	$(PYTEST) --durations=10
 
 validate: dev-environment
