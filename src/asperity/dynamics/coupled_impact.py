@@ -8,7 +8,7 @@ from .._jax import jax, jnp
 from ..contact.asperity_table import AsperityTable
 from ..contact.coupled_summits import CoupledSummits, influence_between
 from ..laws.law import Real
-from ..numerics.compilation import Program
+from ..numerics.compilation import OPTIMISED, Program
 from .coupled_path import follow
 from .single_impact import Launch, SingleImpact, rigid_approach, top_of
 
@@ -88,7 +88,7 @@ def _impacts(
     return jax.lax.map(one, (launches, offsets, classes, bulk.positions))
 
 
-coupled_impacts = Program(_impacts, {})
+coupled_impacts = Program(_impacts, OPTIMISED)
 """First impacts of many bodies on a half-space.
 
 By the arguments of :data:`~asperity.dynamics.single_impact.single_impacts`, and the

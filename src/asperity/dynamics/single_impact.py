@@ -11,7 +11,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities, AsperityTable
 from ..laws.law import Real
-from ..numerics.compilation import Program, kept
+from ..numerics.compilation import OPTIMISED, Program, kept
 from ..numerics.roots import root_between
 
 _SEPARATIONS = 48  # separations on approach, and on retraction besides the ends of bonds
@@ -243,7 +243,7 @@ def _impacts(
     return jax.tree_util.tree_map(lambda leaf: leaf.reshape(bodies, *leaf.shape[2:]), found)
 
 
-single_impacts = Program(_impacts, {})
+single_impacts = Program(_impacts, OPTIMISED)
 """First impacts of many bodies, whose number is a power of two.
 
 By their launches of shape (bodies,), the offsets [m] of their summits, descending, and the classes
