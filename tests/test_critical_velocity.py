@@ -56,6 +56,16 @@ def test_speeds_that_could_not_be_computed_are_counted():
     assert note.endswith(f"; at {edges.unknown} others no first impact could be computed")
 
 
+def test_an_edge_among_speeds_that_fail_is_not_placed_beside_it():
+    def launch(_: np.ndarray, launched: np.ndarray) -> FirstImpacts:
+        known = np.where((launched > 0.3) & (launched < 0.9), np.nan, launched)
+        return FirstImpacts(known, launched < 0.5, launched**2 - 0.25)
+
+    (edges,) = capture_edges(launch, np.array([1.0]), np.array([1.0]))
+    assert (edges.speeds, edges.lost, edges.lowest) == ((), 1, True)
+    assert "an edge of capture lies" in critical_measures(edges)["critical_velocity_note"]
+
+
 def test_restitution_follows_the_critical_velocity_of_jkr():
     curve = asperity.restitution_curve(smooth("jkr"), points=12)
     expected = np.sqrt(np.maximum(1.0 - (CRITICAL / curve.speed) ** 2, 0.0))

@@ -64,10 +64,15 @@ def test_example_of_a_built_in_case_is_that_case(name):
 
 
 SUBJECTS = {
-    "drop-in-air": ("Knudsen number of the gas film", "pressure in the gas film"),
+    "drop-in-air": (
+        "Knudsen number of the gas film",
+        "pressure in the gas film",
+        "single bodies differ",
+    ),
+    "switch": ("single bodies differ",),
     "yielding-drop": ("beyond yield", "without yielding"),
 }
-"""What an example warns of because that is what it is about."""
+"""What an example warns of because that is what it is about, or by what it is about."""
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if name != "published-exact"])

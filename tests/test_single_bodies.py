@@ -164,6 +164,31 @@ def test_a_mean_says_why_no_single_bodies_stand_beside_it(monkeypatch):
     result = asperity.solve(load(OPEN))
     assert result.realisations is None
     assert "there are no single bodies beside this mean: single bodies" in result.warnings[-1]
+    assert not [line for line in result.warnings if "`asperity run`" in line]
+
+
+def open_case(density, speed):
+    """With so many times the summits."""
+    text = OPEN.replace("6.3e13", f"{6.3e13 * density}").replace("3 mm/s", speed)
+    return load(text)
+
+
+def test_they_stand_beside_a_mean_that_is_close_to_capture_however_many_carry_it():
+    result = asperity.solve(open_case(10, "9.5 mm/s"), critical=False, beside=True)
+    assert result.regime["loaded_asperities"] > 5.0
+    assert result.measures["restitution"][0] > 0.6
+    assert result.realisations.capture_probability > 0.2
+
+
+def test_where_they_do_not_a_mean_is_off_by_less_than_five_per_cent():
+    for density, speed in ((1, "12 mm/s"), (40, "30 mm/s")):
+        case = open_case(density, speed)
+        alone = asperity.solve(case, critical=False, beside=True)
+        assert alone.realisations is None
+        placed = {"roughness.placement": "random", "roughness.realisations": 1024}
+        bodies = asperity.solve(case.replace(placed), critical=False).realisations
+        mean = float(np.mean(bodies.values["restitution"]))
+        assert alone.measures["restitution"][0] == pytest.approx(mean, rel=0.05)
 
 
 @pytest.mark.parametrize(

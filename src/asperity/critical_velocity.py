@@ -155,8 +155,8 @@ class Launcher:
     def edges(self, solution: Solution) -> Edges | None:
         """The edges of capture about a motion; None where nothing can take energy.
 
-        Where no edge is found among speeds of which some could not be computed, these are tried
-        again with finer curves.
+        Where first impacts that could not be computed hide an edge, or no edge is found, all are
+        tried again with finer curves.
 
         Raises
         ------
@@ -173,8 +173,10 @@ class Launcher:
             np.asarray(impacts.maximum_kinetic[:1]), np.asarray([lost]), float(body.mass)
         )
         found = capture_edges(self.together, *ends)[0]
-        if found.unknown and not found.speeds and self._refinements != REFINEMENTS:
+        hidden = found.lost or (found.unknown and not found.speeds)
+        if hidden and self._refinements != REFINEMENTS:
             self._refinements = REFINEMENTS
+            self._curves.clear()
             found = capture_edges(self.together, *ends)[0]
         if self._stop is not None and self._stop.is_set():
             raise SimulationError("stopped while the critical velocity was sought")
@@ -221,6 +223,8 @@ def critical_measures(edges: Edges | None) -> dict[str, Any]:
         note = "every speed rebounds: nothing takes energy"
     elif not np.isfinite(edges.tried[0]):
         note = "not known: no first impact at another speed could be computed"
+    elif edges.lost:
+        note = "not all known: an edge of capture lies where no first impact could be computed"
     elif not edges.speeds:
         low, high = (amount(speed, "m/s") for speed in edges.tried)
         note = f"every speed tried {'is captured' if edges.lowest else 'rebounds'}, {low} to {high}"

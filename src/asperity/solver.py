@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import threading
 from typing import Any
@@ -18,7 +19,7 @@ from .inputs import Inputs
 from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
-from .regimes.validity import pull_warnings
+from .regimes.few_asperities import pull_warnings
 from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
 from .results.conversion import Solution, beside_mean, first_restitution, result_of
@@ -34,6 +35,7 @@ def solve(
     stop: threading.Event | None = None,
     throw: bool = True,
     critical: bool = True,
+    beside: bool | None = None,
 ) -> Result:
     """Motion of a case from its release to its end, with everything measured.
 
@@ -50,8 +52,10 @@ def solve(
     throw
         Whether a numerical failure raises, or comes back as the result's outcome.
     critical
-        Whether the critical velocity is sought, and single bodies are launched beside a mean of
-        few asperities: that takes some twenty first impacts, and 256.
+        Whether the critical velocity is sought: that takes some twenty first impacts.
+    beside
+        Whether single bodies are launched where a mean is not enough and the case does not ask for
+        it alone; by default where the critical velocity is sought.
 
     Raises
     ------
@@ -65,7 +69,16 @@ def solve(
     _ = case.launch
     report, problem = progress or silently, build(resolve(case))
     solution = integrate(problem, report, stop)
-    result = _result(case, name, problem, solution, report, stop, None, beside=critical)
+    result = _result(
+        case,
+        name,
+        problem,
+        solution,
+        report,
+        stop,
+        None,
+        beside=critical if beside is None else beside,
+    )
     if critical:
         report(0.92, "critical velocity")
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
@@ -177,6 +190,8 @@ def _result(
             elif asked:
                 raise
             else:
+                alone = dataclasses.replace(problem.inputs, beside=None)
+                problem = problem._replace(inputs=alone)
                 why = f"there are no single bodies beside this mean: {error}"
     result = result_of(case, name, problem, solution, elastic, most, bodies)
     result.warnings.extend([why] if why else [])

@@ -69,7 +69,7 @@ def failed(error: Exception) -> Answer:
 def run(case: asperity.Case, *, critical: bool) -> Answer:
     """Motion and force curve of a case."""
     try:
-        result = asperity.solve(case, critical=critical)
+        result = asperity.solve(case, critical=critical, beside=False)
     except FAILURES as error:
         return failed(error)
     out = empty()

@@ -90,7 +90,7 @@ class Roughness(Table):
     placement: Literal["mean", "random", "measured"] | None = entry(
         "", "Summits: their 'mean' over all bodies alone, or beside it single bodies, each on "
         "summits at 'random' places, or put down at a random place of a 'measured' map. Without "
-        "it, 256 at random places where fewer than 3 asperities carry the load.", "random",
+        "it, 256 at random places where that mean is not enough.", "random",
         default=None,
     )  # fmt: skip
     realisations: Annotated[int, Number("[1, 1000000]", whole=True)] | None = entry(

@@ -11,6 +11,7 @@ _POINTS = 16  # of the scan
 _BELOW, _ABOVE = 1e-2, 10.0  # how far beyond the speeds that are given it looks
 _STEPS = 60  # of a root, at most
 _CLOSE = 1e-11  # relative: two squares of speeds so close are one
+_NEARLY = 1e-4  # relative: squares of speeds so close give an edge, should one between them fail
 _LEAST = 1e-10  # of the energy: less is no loss
 _EDGE = 1e-5  # of the energy of approach: with less left or missing, that alone decides
 
@@ -73,12 +74,15 @@ class Edges(NamedTuple):
         Lowest and highest speed of approach that were tried [m/s]; NaN where none could be.
     unknown
         Number of speeds of the scan at which no first impact could be computed.
+    lost
+        Number of edges that lie among speeds at which none could be.
     """
 
     speeds: tuple[float, ...]
     lowest: bool
     tried: tuple[float, float]
     unknown: int
+    lost: int
 
 
 def speeds_about(
@@ -137,9 +141,11 @@ def _edges(scanned: FirstImpacts, of_case: np.ndarray, speeds: list[float]) -> E
     known = np.flatnonzero(of_case & np.isfinite(scanned.speed))
     unknown = int(np.count_nonzero(of_case)) - known.size
     if not known.size:
-        return Edges((), False, (np.nan, np.nan), unknown)
+        return Edges((), False, (np.nan, np.nan), unknown, 0)
     tried = float(scanned.speed[known[0]]), float(scanned.speed[known[-1]])
-    return Edges(tuple(sorted(speeds)), bool(scanned.captured[known[0]]), tried, unknown)
+    sure = tuple(sorted(speed for speed in speeds if np.isfinite(speed)))
+    captured = bool(scanned.captured[known[0]])
+    return Edges(sure, captured, tried, unknown, len(speeds) - len(sure))
 
 
 def _changes(scanned: FirstImpacts, of_case: np.ndarray) -> np.ndarray:
@@ -156,7 +162,10 @@ def _part(impacts: FirstImpacts, index: np.ndarray) -> FirstImpacts:
 def _roots(
     launch: Launch, cases: np.ndarray, launched: np.ndarray, ends: FirstImpacts
 ) -> np.ndarray:
-    """Speeds of approach [m/s] at which capture changes between two launches, shape (2, pairs)."""
+    """Speeds of approach [m/s] at which capture changes between two launches, shape (2, pairs).
+
+    NaN where a first impact could not be computed before they were close.
+    """
     x, value = launched**2, ends.excess.copy()
     below = ends.captured[0]
     speed, before = ends.speed[0].copy(), np.zeros(cases.size)
@@ -168,7 +177,8 @@ def _roots(
         at = _between(x[:, some], value[:, some])
         tried = launch(cases[some], np.sqrt(at))
         known = np.isfinite(tried.speed)
-        speed[some] = np.where(known, tried.speed, speed[some])
+        close = x[1, some] - x[0, some] < _NEARLY * at
+        speed[some] = np.where(known, tried.speed, np.where(close, speed[some], np.nan))
         side = np.where(tried.captured == below[some], 0, 1)
         value[1 - side, some] *= np.where(side == last[some], 0.5, 1.0)
         x[side, some], value[side, some], last[some] = at, tried.excess, side

@@ -61,7 +61,7 @@ AT_ONCE: Options = {**QUICKLY, "xla_backend_optimization_level": 0}
 """Options for a third less still, for what takes longer to compile than to run many times."""
 
 
-OPTIMISED: Options = {"xla_backend_optimization_level": 2}
+OPTIMISED: Options = {"xla_backend_optimization_level": 3}
 """Options for what runs far longer than it compiles; they hold whatever ``XLA_FLAGS`` says."""
 
 

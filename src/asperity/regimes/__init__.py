@@ -4,8 +4,8 @@
 for a Tabor number. `boundaries`: the adhesion map of Johnson and Greenwood. `verdicts`: what a
 number says, in words. `loaded_asperities`: how many carry the load, effectively.
 `liquid_regime`: dry, pendular, coalesced, flooded.
-`validity` collects the warnings of `accuracy`, `ambient`, `model_domain`, `plastic_validity` and
-`wave_limits`: each threshold is a constant beside the warning that uses it.
+`validity` collects the warnings of `accuracy`, `ambient`, `few_asperities`, `model_domain`,
+`plastic_validity` and `wave_limits`: each threshold is a constant beside the warning that uses it.
 """
 
 from .boundaries import Boundary, Frame, Place, adhesion_map, hertz_load, region, regions
@@ -17,7 +17,7 @@ from .dimensionless_numbers import (
     plasticity_index,
     tabor_number,
 )
-from .loaded_asperities import LOADED_FOR_A_MEAN, loaded_asperities
+from .loaded_asperities import loaded_asperities, mean_is_enough
 from .verdicts import Situation, Verdict, missed, verdicts
 
 __all__ = [
@@ -26,7 +26,6 @@ __all__ = [
     "ELASTICITY_PER_TABOR",
     "JKR_ABOVE",
     "LAW_NAMES",
-    "LOADED_FOR_A_MEAN",
     "Boundary",
     "Frame",
     "Place",
@@ -38,6 +37,7 @@ __all__ = [
     "hertz_load",
     "load_parameter",
     "loaded_asperities",
+    "mean_is_enough",
     "missed",
     "plasticity_index",
     "region",

@@ -9,11 +9,15 @@ import numpy as np
 from ..inputs import Asperities
 
 LOADED_FOR_A_MEAN = 3.0
-"""Asperities that carry the load, effectively, from which their mean stands for single bodies.
+"""Asperities that carry the load, effectively, from which their mean may stand for single bodies.
 
-The mean field's restitution is off by 3 % there, in a case that keeps 79 % of its energy: by 9 %
-over this number (docs/single_bodies.md, "When the mean is enough").
+See docs/single_bodies.md, "When the mean is enough".
 """
+
+MOST_OFF = 0.05
+"""Relative error of the mean field's first restitution from which a mean is not enough."""
+
+_SPREAD = 2.0  # standard deviations of single bodies from the border of capture
 
 _HIGHEST = 9.0  # rms heights above the mean: the highest asperities
 _POINTS = 4001
@@ -22,12 +26,13 @@ _POINTS = 4001
 def loaded_asperities(
     rough: Asperities, contacting: float, central: float, *, measured: bool
 ) -> float:
-    r"""Effective number of loaded asperities in a mean, :math:`(\sum F)^2/\sum F^2` [-].
+    r"""Effective number of loaded asperities in a mean [-].
 
-    By Hertz's loads at offsets that are a Poisson process under a paraboloid, whose mean sums
-    follow from Campbell's theorem (Kingman, Poisson Processes, 1993, section 3.2). With
-    :math:`I_p = \int (z - d)^p \phi(z)\,\mathrm{d}z` over the heights above the plane it is
-    :math:`\tfrac{16}{25} I_{5/2}^2 / (I_1 I_4)` of those that touch: 0.3 where few do.
+    It is :math:`\langle\sum F\rangle^2/\langle\sum F^2\rangle`, by Hertz's loads at offsets that
+    are a Poisson process under a paraboloid: Campbell's theorem (Kingman, Poisson Processes, 1993,
+    section 3.2). With :math:`I_p = \int (z - d)^p \phi(z)\,\mathrm{d}z` over the heights above the
+    plane it is :math:`\tfrac{16}{25} I_{5/2}^2 / (I_1 I_4)` of those that touch: 0.3 where only the
+    highest do, 0.64 where all do. Under a half-space that has become flat it would be up to all.
 
     Parameters
     ----------
@@ -57,3 +62,27 @@ def loaded_asperities(
     if not first * squares > 0.0:
         return 0.0
     return max(contacting, 0.0) * 0.64 * load**2 / (first * squares)
+
+
+def mean_is_enough(loaded: float, kept: float, lost: float) -> bool:
+    r"""Whether the mean field says what single bodies do at their first impact.
+
+    It does not where fewer than `LOADED_FOR_A_MEAN` carry the load, where its restitution is off by
+    more than `MOST_OFF`, or where the scatter of single bodies spans the border of capture. Bonds
+    take a share L, which scatters by up to :math:`\sqrt 2\,L/\sqrt n`. Of the root of what is
+    kept, K, the mean is off by :math:`0.85\,(L/K)^{1.7}/n`, as measured to a fifth
+    (docs/single_bodies.md); on a half-space by less.
+
+    Parameters
+    ----------
+    loaded
+        Effective number n, as :func:`loaded_asperities`.
+    kept
+        Share K of the impact energy that is left at the end of contact [-]; negative where the body
+        lacks so much to leave.
+    lost
+        Share L of it that bonds take [-].
+    """
+    if loaded < LOADED_FOR_A_MEAN or abs(kept) < _SPREAD * lost * (2.0 / loaded) ** 0.5:
+        return False
+    return kept <= 0.0 or 0.85 * (lost / kept) ** 1.7 / loaded <= MOST_OFF

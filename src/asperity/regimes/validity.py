@@ -19,14 +19,13 @@ from . import (
     DMT_BELOW,
     JKR_ABOVE,
     LAW_NAMES,
-    LOADED_FOR_A_MEAN,
     Regime,
     choose_adhesion,
-    missed,
     tabor_number,
 )
 from .accuracy import fall_warnings, ledger_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
+from .few_asperities import few_warnings
 from .model_domain import covered_share, domain_warnings
 from .plastic_validity import yielded
 from .wave_limits import wave_warnings
@@ -87,7 +86,8 @@ def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Mot
     inputs = problem.inputs
     return [
         *_surface(problem),
-        *_asperities(inputs, at_depth, regime),
+        *few_warnings(problem, regime, motion),
+        *_covered(inputs, at_depth),
         *_publication(inputs),
         *_adhesion(regime, inputs.border_warnings, inputs.yields),
         *yielded(inputs, at_depth.central),
@@ -166,66 +166,14 @@ def check_surface(problem: Problem, at_depth: AtDepth) -> None:
         )
 
 
-def _asperities(inputs: Inputs, at_depth: AtDepth, regime: Regime) -> list[str]:
+def _covered(inputs: Inputs, at_depth: AtDepth) -> list[str]:
     rough = inputs.asperities
-    if rough is None:
+    share = 0.0 if rough is None else covered_share(rough, at_depth.central)
+    if share <= 0.1:
         return []
-    out = []
-    if few_loaded(regime) and inputs.placement is None:
-        advice = "" if inputs.beside is None else "; " + _SINGLE_BODIES
-        out.append(_few(max(at_depth.contacting, 0.0)) + advice)
-    share = covered_share(rough, at_depth.central)
-    if share > 0.1:
-        out.append(
-            f"contacting asperities cover {100 * share:.0f} % of the area at the axis at closest "
-            "approach: neighbours interact, which the sum over single asperities leaves out"
-        )
-    return out
-
-
-_SINGLE_BODIES = "`asperity run` has single bodies beside it"
-
-
-def few_loaded(regime: Regime) -> bool:
-    """Whether so few asperities carry the load that a mean says little of single bodies."""
-    loaded = regime.loaded_asperities
-    return loaded is not None and loaded < LOADED_FOR_A_MEAN
-
-
-def _few(contacting: float) -> str:
-    """What a mean of few contacting asperities means."""
-    so_many = f"only {contacting:.2g} asperities are expected to touch at closest approach"
-    if contacting < 1.0:
-        return (
-            f"{so_many}: {missed(contacting)}, and the numbers are means over many bodies, which "
-            "none of them shows"
-        )
-    scatter = 100.0 / np.sqrt(contacting)
-    return (
-        f"{so_many}: the result is a mean over many places, single impacts scatter by about "
-        f"{scatter:.0f} % in that number (Poisson)"
-    )
-
-
-def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
-    """A line where fewer than one asperity is expected to hold at pull-off.
-
-    Parameters
-    ----------
-    inputs
-        The quantities of a case.
-    pull_off
-        Pull-off force [N].
-    held
-        Expected number of asperities that touch or are bonded there.
-    """
-    if inputs.asperities is None or not pull_off > 0.0 or held >= 1.0 or inputs.placement:
-        return []
-    if inputs.structure.liquid == "kelvin-filling":
-        return []  # liquid between the mean planes holds the body, and no bond of an asperity
     return [
-        f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "
-        "of separation are means over many bodies, most of which nothing holds"
+        f"contacting asperities cover {100 * share:.0f} % of the area at the axis at closest "
+        "approach: neighbours interact, which the sum over single asperities leaves out"
     ]
 
 

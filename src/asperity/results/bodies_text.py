@@ -23,6 +23,7 @@ def bodies_rows(result: ResultData) -> list[tuple[str, str]]:
     mean = {
         "restitution": first,
         "contacting": result.regime.get("contacting_asperities"),
+        "loaded": result.regime.get("loaded_asperities"),
         "maximum_force": measures.get("maximum_force"),
         "pull_off": measures.get("pull_off"),
     }

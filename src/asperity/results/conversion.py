@@ -20,12 +20,11 @@ from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
 from ..regimes.accuracy import CLOSED
+from ..regimes.few_asperities import bodies_differ, pull_warnings
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
     AtDepth,
     check_surface,
-    few_loaded,
-    pull_warnings,
     release_warnings,
     slow_menisci,
     warnings_of,
@@ -130,7 +129,7 @@ def first_restitution(solution: Solution, body: Body) -> float | None:
 def beside_mean(problem: Problem, solution: Solution) -> Problem:
     """The problem with single bodies, where it leaves them open and a mean is not enough.
 
-    That is where too few asperities carry the load of the first impact.
+    That is where few asperities carry the load of the first impact, or it is close to capture.
 
     Parameters
     ----------
@@ -143,7 +142,7 @@ def beside_mean(problem: Problem, solution: Solution) -> Problem:
     if inputs.beside is None:
         return problem
     at_depth = AtDepth.of(solution.contact, solution.motion, solution.trajectory)
-    if not few_loaded(regime_of(problem, at_depth)):
+    if not bodies_differ(problem, regime_of(problem, at_depth), solution.motion):
         return problem
     return problem._replace(inputs=inputs.with_bodies())
 

@@ -55,8 +55,8 @@ class ResultData:
         Measured surfaces: files with their SHA-256, what was done to them, and what was found,
         in SI; None for a case of numbers.
     realisations : Realisations, optional
-        First impacts of single bodies, each on summits of its own; None where the case asks for
-        the mean alone.
+        First impacts of single bodies, each on summits of its own; None where the mean stands
+        alone.
     """
 
     case: Case

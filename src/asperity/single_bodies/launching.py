@@ -205,7 +205,7 @@ class SingleBodies:
         if number >= self._most:
             raise InputError(
                 f"single bodies (`placement`) are followed on up to {self._most} summits each that "
-                f"feel a force; here {number:.3g} or more do: take 'mean'",
+                f"feel a force; here {number:.3g} or more do",
                 key="roughness.placement",
             )
 

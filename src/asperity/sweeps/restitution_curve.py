@@ -73,7 +73,7 @@ class RestitutionCurve:
     warnings : list of str
         What to know before the numbers are used, for the case's own speed.
     single_bodies : CaptureProbability, optional
-        What single bodies do at these speeds; None where the case asks for the mean alone.
+        What single bodies do at these speeds; None where the case does not ask for them.
     input_sha256 : str, optional
         SHA-256 of the text that the case was read from.
     case_file : str, optional

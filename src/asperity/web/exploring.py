@@ -47,7 +47,12 @@ def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Even
             if result.realisations is not None:
                 report(0.95, "single bodies at other speeds")
                 nearby = importlib.import_module("asperity.sweeps.capture_probability")
-                bodies = nearby.capture_nearby(case, result, stop)
+                try:
+                    bodies = nearby.capture_nearby(case, result, stop)
+                except (InputError, SimulationError) as error:
+                    if stop.is_set():
+                        raise
+                    result.warnings.append(f"there is no chart of single bodies: {error}")
             return answer(renamed(result, asked.case(), uploads), curve, bodies)
 
     return compute

@@ -245,7 +245,7 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> li
     clock.look()
     try:
         critical = any(column.name == "critical_velocity" for column in study.columns)
-        result = solve(case, stop=clock.stop, critical=critical)
+        result = solve(case, stop=clock.stop, critical=critical, beside=False)
     except (InputError, SimulationError) as error:
         clock.look()
         _fail(out, row, str(error))

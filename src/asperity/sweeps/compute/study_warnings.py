@@ -6,7 +6,8 @@ from typing import Any
 
 from asperity.dynamics import Impacts, Motion
 from asperity.dynamics.problem import Problem
-from asperity.regimes.validity import AtDepth, pull_warnings, release_warnings, warnings_of
+from asperity.regimes.few_asperities import pull_warnings
+from asperity.regimes.validity import AtDepth, release_warnings, warnings_of
 from asperity.results.assessment import regime_of
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 

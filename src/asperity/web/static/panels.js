@@ -12,6 +12,7 @@ const MEASURES = [
   ["largest force", (a) => amount(a.measures.maximum_force, "N")],
   ["pull-off force", (a) => amount(a.measures.pull_off, "N") + preload(a)],
   ["work of separation", (a) => amount(a.measures.work_of_separation, "J") + preload(a)],
+  ["asperities that carry the load", (a) => amount(a.regime.loaded_asperities)],
   ["impacts", (a) => amount(a.motion.impacts)],
   ["time to capture", (a) => amount(a.measures.capture_time, "s")],
   ["time to rest", (a) => amount(a.measures.time_to_rest, "s")],

@@ -1,0 +1,84 @@
+"""What a mean says of single bodies, where few asperities carry them or capture is near."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..dynamics import Motion
+from ..dynamics.problem import Problem
+from ..inputs import Inputs
+from .dimensionless_numbers import Regime
+from .loaded_asperities import mean_is_enough
+from .verdicts import missed
+
+
+def few_warnings(problem: Problem, regime: Regime, motion: Motion) -> list[str]:
+    """A line where a mean stands alone that says too little of single bodies.
+
+    Parameters
+    ----------
+    problem, regime, motion
+        As for :func:`asperity.regimes.validity.warnings_of`.
+    """
+    inputs = problem.inputs
+    if inputs.placement is not None or not bodies_differ(problem, regime, motion):
+        return []
+    advice = "" if inputs.beside is None else "; `asperity run` has single bodies beside it"
+    return [_few(regime.contacting_asperities or 0.0, regime.loaded_asperities or 0.0) + advice]
+
+
+def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
+    """Whether a mean over asperities says too little of single bodies.
+
+    Parameters
+    ----------
+    problem, regime, motion
+        As for :func:`asperity.regimes.validity.warnings_of`.
+    """
+    loaded, impacts = regime.loaded_asperities, motion.impacts
+    if loaded is None:
+        return False
+    energy = float(impacts.maximum_kinetic[0])
+    lost = np.asarray(impacts.lost[0])[: len(names := problem.contact.mechanisms)]
+    filled = problem.inputs.structure.liquid == "kelvin-filling"  # no asperity bears that liquid
+    bonds = float(np.sum(lost, where=[not (filled and name == "capillary") for name in names]))
+    left = float(impacts.leaving[0] - problem.body.load.potential(impacts.closest_approach[0]))
+    left = left if np.isfinite(left) else energy - bonds
+    return not mean_is_enough(loaded, left / energy, bonds / energy)
+
+
+def _few(contacting: float, loaded: float) -> str:
+    """What such a mean means."""
+    if contacting < 1.0:
+        return (
+            f"only {contacting:.2g} asperities are expected to touch at closest approach: "
+            f"{missed(contacting)}, and the numbers are means over many bodies, which none of them "
+            "shows"
+        )
+    return (
+        f"{contacting:.2g} asperities are expected to touch at closest approach, and {loaded:.2g} "
+        "of them carry the load, effectively: the result is a mean over many places, and single "
+        "bodies differ from it"
+    )
+
+
+def pull_warnings(inputs: Inputs, pull_off: float, held: float) -> list[str]:
+    """A line where fewer than one asperity is expected to hold at pull-off.
+
+    Parameters
+    ----------
+    inputs
+        The quantities of a case.
+    pull_off
+        Pull-off force [N].
+    held
+        Expected number of asperities that touch or are bonded there.
+    """
+    if inputs.asperities is None or not pull_off > 0.0 or held >= 1.0 or inputs.placement:
+        return []
+    if inputs.structure.liquid == "kelvin-filling":
+        return []  # liquid between the mean planes holds the body, and no bond of an asperity
+    return [
+        f"at pull-off {held:.2g} asperities are expected to hold the body: pull-off force and work "
+        "of separation are means over many bodies, most of which nothing holds"
+    ]
