@@ -90,8 +90,10 @@ def followed(one, size, begin, end, count):
             left = h - place - profile - matrix @ pressure
             move = np.linalg.solve(np.eye(h.size) - matrix * slope, left)
             h = h - move
-            if np.max(np.abs(move)) < 1e-13 * RMS:
+            if np.max(np.abs(move)) < 1e-9 * RMS:
                 break
+        else:
+            return path
         if not np.max(np.abs(h - place - profile - displacement)) < 0.5 * RMS:
             return path
         displacement = h - place - profile

@@ -112,7 +112,7 @@ def test_cases_side_by_side_are_the_cases_one_by_one(name):
     assert effort.cases == study.size
     assert 0.0 < effort.batch_use <= 1.0
     for number in range(study.size):
-        result = solve(study.case(number))
+        result = solve(study.case(number), beside=False)
         count = len(result.measures["restitution"])
         assert ENDS[columns["outcome"][number]] is result.outcome
         assert columns["impacts"][number] == count
