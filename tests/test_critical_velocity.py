@@ -63,7 +63,11 @@ def test_an_edge_among_speeds_that_fail_is_not_placed_beside_it():
 
     (edges,) = capture_edges(launch, np.array([1.0]), np.array([1.0]))
     assert (edges.speeds, edges.lost, edges.lowest) == ((), 1, True)
+    assert edges.critical is None
     assert "an edge of capture lies" in critical_measures(edges)["critical_velocity_note"]
+    # Nor is a higher edge the critical velocity where the lowest is lost.
+    assert edges._replace(speeds=(2.0, 3.0)).critical is None
+    assert edges._replace(speeds=(2.0, 3.0), lost=0).critical == 2.0
 
 
 def test_restitution_follows_the_critical_velocity_of_jkr():

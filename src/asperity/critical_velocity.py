@@ -214,7 +214,7 @@ def critical_measures(edges: Edges | None) -> dict[str, Any]:
 
     Returns
     -------
-    ``critical_velocity``, the lowest edge [m/s] or None; ``capture_edges``, all of them; and
+    ``critical_velocity`` [m/s] or None; ``capture_edges``, all that were found; and
     ``critical_velocity_note``: why there is none, or which speeds are captured where they are not
     just those below it.
     """
@@ -232,10 +232,9 @@ def critical_measures(edges: Edges | None) -> dict[str, Any]:
             note += f"; at {edges.unknown} others no first impact could be computed"
     elif len(edges.speeds) > 1 or not edges.lowest:
         note = _intervals(edges)
-    speeds = [] if edges is None else list(edges.speeds)
     return {
-        "critical_velocity": speeds[0] if speeds else None,
-        "capture_edges": speeds,
+        "critical_velocity": None if edges is None else edges.critical,
+        "capture_edges": [] if edges is None else list(edges.speeds),
         "critical_velocity_note": note,
     }
 

@@ -84,6 +84,11 @@ class Edges(NamedTuple):
     unknown: int
     lost: int
 
+    @property
+    def critical(self) -> float | None:
+        """Critical velocity [m/s]: the lowest edge; None without one, or where one is lost."""
+        return self.speeds[0] if self.speeds and not self.lost else None
+
 
 def speeds_about(
     energy: np.ndarray, lost: np.ndarray, mass: np.ndarray | float

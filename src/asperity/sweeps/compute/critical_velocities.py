@@ -65,7 +65,7 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
     leaving, lost = past["leaving"][some, 0], np.sum(past["lost"][some, 0], axis=1)
     lost = np.where(np.isfinite(leaving), solution.release[some] - leaving, lost)
     edges = capture_edges(launch, *speeds_about(past["maximum_kinetic"][some, 0], lost, mass))
-    return np.array([each.speeds[0] if each.speeds else np.nan for each in edges])
+    return np.array([np.nan if each.critical is None else each.critical for each in edges])
 
 
 def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstImpacts:
