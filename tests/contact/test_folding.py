@@ -90,7 +90,7 @@ def followed(one, size, begin, end, count):
             left = h - place - profile - matrix @ pressure
             move = np.linalg.solve(np.eye(h.size) - matrix * slope, left)
             h = h - move
-            if np.max(np.abs(move)) < 1e-9 * RMS:
+            if np.max(np.abs(move)) < 1e-13 * RMS:
                 break
         else:
             return path

@@ -46,6 +46,30 @@ def test_the_mean_field_is_off_by_one_over_the_number_that_touch(density, count)
     assert touching * np.var(squares) == pytest.approx(0.102, rel=0.03 + 4.0 * np.sqrt(2 / count))
 
 
+@pytest.mark.parametrize(
+    ("summits", "speed", "off"),
+    long_but(
+        [
+            (1, 8, 0.123), (1, 12, 0.0331), (1, 20, 0.0067), (4, 12, 0.0788), (4, 20, 0.013),
+            (10, 12, 0.187), (10, 15, 0.0686), (10, 40, 0.0023), (40, 20, 0.0835),
+            (40, 30, 0.0148), (40, 50, 0.0025),
+        ],
+        (4, 20, 0.013),
+    ),
+)  # fmt: skip
+def test_the_error_of_a_mean_is_that_of_the_rule(summits, speed, off):
+    """So many times the summits, at a speed in mm/s: the mean over 1024 bodies, and the rule."""
+    text = FAST.replace("6.3e13", f"{6.3e13 * summits}").replace(f"{SPEED} m/s", f"{speed} mm/s")
+    result = asperity.solve(load(text.replace("= 300", "= 1024")), critical=False)
+    kept = np.asarray(result.realisations.values["restitution"])
+    alone = result.measures["restitution"][0]
+    scatter = np.std(kept) / np.mean(kept) / np.sqrt(kept.size)
+    assert alone / np.mean(kept) - 1.0 == pytest.approx(off, abs=0.05 * off + 4.0 * scatter)
+    rule = 0.85 * (1.0 / alone**2 - 1.0) ** 1.7 / result.regime["loaded_asperities"]
+    many = np.mean(result.realisations.captured) > 0.05
+    assert rule == pytest.approx(off, rel=0.34 if many else 0.21)
+
+
 def test_on_a_half_space_the_mean_field_has_a_like_error():
     """Its rings smear each load, so that a summit lowers itself too: it loses a little less."""
     text = FAST.replace('"rigid"', '"half-space"')

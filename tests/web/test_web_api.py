@@ -30,7 +30,7 @@ from asperity.config.case_file import builtin_text
 from asperity.config.fields import Length, Number, entry
 from asperity.config.problems import tables_of
 from asperity.config.resolve import resolve
-from asperity.errors import Outcome
+from asperity.errors import InputError, Outcome
 from asperity.results.read_record import read
 from asperity.results.record_layout import json_object
 from asperity.results.result import Result
@@ -599,6 +599,19 @@ def test_a_verdict_says_who_takes_the_energy():
     assert taken(gas=0.2 * energy) == "the gas film takes all of the energy lost"
     assert taken(adhesion=1e-12 * energy, capillary=0.0) == "no energy is lost"
     assert taken() == "no energy is lost"
+
+
+def test_an_answer_stands_without_the_chart_of_single_bodies(
+    client: TestClient, tables: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+):
+    def refused(*_: Any) -> None:
+        raise InputError("too many summits")
+
+    monkeypatch.setattr("asperity.sweeps.capture_probability.capture_nearby", refused)
+    found = explored(client, tables)["answer"]
+    assert found["capture"] is None
+    assert found["verdict"].startswith("Of single bodies")
+    assert found["warnings"][-1] == "there is no chart of single bodies: too many summits"
 
 
 def test_nothing_is_lost_without_adhesion_and_liquid(client: TestClient, tables: dict[str, Any]):

@@ -70,8 +70,8 @@ def mean_is_enough(loaded: float, kept: float, lost: float) -> bool:
     It does not where fewer than `LOADED_FOR_A_MEAN` carry the load, where its restitution is off by
     more than `MOST_OFF`, or where the scatter of single bodies spans the border of capture. Bonds
     take a share L, which scatters by up to :math:`\sqrt 2\,L/\sqrt n`. Of the root of what is
-    kept, K, the mean is off by :math:`0.85\,(L/K)^{1.7}/n`, as measured to a fifth
-    (docs/single_bodies.md); on a half-space by less.
+    kept, K, the mean is off by :math:`0.85\,(L/K)^{1.7}/n`: fitted to a fifth in twelve cases, to a
+    third in one where many are captured (docs/single_bodies.md). On a half-space it is less.
 
     Parameters
     ----------

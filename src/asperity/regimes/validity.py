@@ -15,14 +15,7 @@ from ..dynamics.stepped_series import Trajectory
 from ..dynamics.time_series import sample
 from ..errors import InputError
 from ..inputs import Inputs
-from . import (
-    DMT_BELOW,
-    JKR_ABOVE,
-    LAW_NAMES,
-    Regime,
-    choose_adhesion,
-    tabor_number,
-)
+from . import DMT_BELOW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, tabor_number
 from .accuracy import fall_warnings, ledger_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
 from .few_asperities import few_warnings

@@ -192,7 +192,7 @@ def _loaded(value: float | None) -> Verdict:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
     if value < LOADED_FOR_A_MEAN:
         return Verdict(value, "1", f"below {LOADED_FOR_A_MEAN:g}: single bodies differ from a mean")
-    said = f"{LOADED_FOR_A_MEAN:g} or more carry the load, effectively: a mean, but near capture"
+    said = f"{LOADED_FOR_A_MEAN:g} or more: a mean stands for single bodies, but not near capture"
     return Verdict(value, "1", said)
 
 
