@@ -33,8 +33,7 @@ _ABOUT = np.linspace(-8.0, 8.0, 12)  # rms, panels about the ends of bonds
 _FIT = 0.02  # how closely the mesh fits the pressure
 _PASSES = 12  # of that fit, at most
 _TRAIL = 4  # places behind from which the next is guessed
-_SOON = 5  # pieces, even ones, until the first rings have passed from one branch to the other
-_BENDS = 2.0  # rms heights: the others are even in asinh(separation / this)
+_BENDS = 2.0  # rms heights: later pieces are even in asinh(separation / this)
 _MORE = 1.02  # than the way at the first rate
 _MUCH_MORE = 1.2  # where liquid fills the surface: the rate falls as the bulk springs back
 
@@ -119,43 +118,28 @@ def _marks(
     start: jax.Array,
     unloading: jax.Array,
     rates: jax.Array,
+    within: tuple[Any, Any],
 ) -> jax.Array:
     """Ends of the pieces of the scanning curve, for each law.
 
-    Even ones until the fastest ring has passed from one branch to the other, and up to three more,
-    even too, until the slowest has.
+    Even ones until the fastest ring has passed from one branch to the other, and later ones, even
+    in asinh(separation) as forces change, until the slowest has.
     """
     slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rates), slowest)
-    pieces = contact.resolved.pieces
-    later = min(max(pieces // 2, 1), LATER)
+    pieces, later = contact.resolved.pieces, contact.resolved.later
+    later = later or min(max(pieces // 2, 1), LATER)
     even = np.arange(1.0, pieces - later + 1.0) / max(pieces - later, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
-    further = np.arange(1.0, later + 1.0) / later
-    shares = jnp.append(
-        even / fastest, (1.0 + further * (more * fastest / slowest - 1.0)) / fastest
-    )
-    ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
-    rows = [
-        start + ahead * (law.breaking_gap - law.forming_gap) * shares
-        for law in contact.interface.hysteretic
-    ]
-    return jnp.concatenate(rows)
-
-
-def _graded(
-    contact: Deforming, start: jax.Array, end: jax.Array, fastest: jax.Array, pieces: int
-) -> jax.Array:
-    """Ends of pieces of a scanning curve over which curves fold: as close as a branch asks for."""
-    widths = [law.breaking_gap - law.forming_gap for law in contact.interface.hysteretic]
-    first = jnp.min(jnp.stack(widths)) / jnp.maximum(fastest, 1.0)
-    first = jnp.sign(end - start) * jnp.minimum(first, jnp.abs(end - start))
     scale = _BENDS * contact.interface.scale.rms
-    ends = jnp.linspace(
-        jnp.arcsinh((start + first) / scale), jnp.arcsinh(end / scale), pieces - _SOON + 1
-    )[1:]
-    soon = start + first * np.arange(1.0, _SOON + 1.0) / _SOON
-    return jnp.concatenate([soon, scale * jnp.sinh(ends)])
+    ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
+    rows = []
+    for law in contact.interface.hysteretic:
+        width = ahead * (law.breaking_gap - law.forming_gap)
+        begin, end = jnp.clip(start + width * jnp.stack([1.0 / fastest, more / slowest]), *within)
+        further = jnp.linspace(jnp.arcsinh(begin / scale), jnp.arcsinh(end / scale), later + 1)[1:]
+        rows += [start + (begin - start) * even, scale * jnp.sinh(further)]
+    return jnp.concatenate(rows)
 
 
 def fitted(
@@ -248,23 +232,18 @@ def continue_scanning_curve(
     size: jax.Array,
     unloading: jax.Array,
     within: tuple[Any, Any],
-    *,
-    graded: bool = False,
 ) -> tuple[jax.Array, jax.Array, jax.Array, RingEquilibrium]:
     """Pieces of the scanning curve, separations on them and the rings there, from the start on.
 
-    Pieces are cut where rings reach the branch, or are ``graded``.
+    Pieces are cut where rings reach the branch.
     """
     pieces, nodes = contact.passed
     steps = piece_points(nodes)
     sigma = contact.interface.scale.rms
     held = memory.thresholds, size
     pace = rates(contact, start, *held, memory.displacement, contact.rings)
-    marks = _marks(contact, memory, start, unloading, pace)
+    marks = _marks(contact, memory, start, unloading, pace, within)
     enter, leave = pieces_to(marks, start, unloading, within)
-    if graded:
-        marks = _graded(contact, start, leave[-1], jnp.max(pace), pieces)
-        enter, leave = pieces_to(marks, start, unloading, within)
     back = jnp.where(unloading, sigma, -sigma) * 1e-2
     path = ContinuationPath.straight(start, memory.displacement, pace - 1.0, back)
 

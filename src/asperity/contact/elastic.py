@@ -190,9 +190,7 @@ class ElasticContact(RoughContact):
         @jax.jit  # traced once, for its shapes and for itself
         def back() -> ScanningCurve:
             frozen = jax.lax.stop_gradient((self, memory, start))
-            enter, leave, places, rests = continue_scanning_curve(
-                *frozen, size, unloading, within, graded=self.sides > 1
-            )
+            enter, leave, places, rests = continue_scanning_curve(*frozen, size, unloading, within)
             return ScanningCurve(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
 
         shapes = jax.eval_shape(back)

@@ -34,7 +34,7 @@ _SOLVED = 1e-6  # relative force error of a scanning curve that has equilibria
 _BELOW, _SEEN = 40.0, 161  # rms heights below the range within which planes are looked at
 _DRAWN = 8  # steps to the depth to which adhesion draws a body
 _SHORT = 0.25  # rms heights before a fold, where scanning curves end
-_PIECES = 32  # of a scanning curve for each law
+_SOON, _LATER = 5, 27  # pieces of a scanning curve for each law
 _PANELS = 4  # times those without folds
 
 
@@ -279,6 +279,6 @@ def folding(contact: ElasticContact, low: float) -> FoldingContact | None:
             f"changes over less than {finer.rings} rings resolve"
         )
     each = {f.name: getattr(finer, f.name) for f in dataclasses.fields(finer)}
-    resolved = finer.resolved
-    each["resolved"] = resolved._replace(panels=_PANELS * resolved.panels, pieces=_PIECES)
+    panels = _PANELS * finer.resolved.panels
+    each["resolved"] = finer.resolved._replace(panels=panels, pieces=_SOON + _LATER, later=_LATER)
     return FoldingContact(**each, folds=found.place, sizes=found.size)

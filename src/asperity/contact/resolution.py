@@ -17,7 +17,7 @@ LINEAR = 8.0
 """Panels are even in asinh(separation / (LINEAR rms))."""
 
 LATER = 3
-"""Pieces at most in which rings that lag behind reach the branch, and half of all at most."""
+"""Pieces at most, but for finer ones, in which rings that lag behind reach the branch."""
 
 _DEEP = 5.0  # rms below the mean plane, down to where a body may come
 _SHORTEST = 4.0  # rms, where heights end soon above the mean plane: some lie below it
@@ -44,6 +44,9 @@ class Resolution(NamedTuple):
         Scanning curves that are solved for each direction, where they stand for all.
     error_floor
         Relative error of the curves below which more panels gain nothing.
+    later
+        Of the pieces, those in which rings that lag behind reach the branch; of a contact that
+        deforms half of all at most, and :data:`LATER`, where it is 0.
     """
 
     panels: int
@@ -52,6 +55,7 @@ class Resolution(NamedTuple):
     shared: int = EVEN
     reversals: int = 10
     error_floor: float = 0.0
+    later: int = 0
 
 
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
@@ -139,12 +143,12 @@ def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
 
     Where none is, one of powers of two.
     """
-    *numbers, floor = found
+    *numbers, floor, later = found
     for one in few:
-        if all(number <= most for number, most in zip(numbers, one[:-1], strict=True)):
-            return one._replace(error_floor=floor)
+        if all(number <= most for number, most in zip(numbers, one[:-2], strict=True)):
+            return one._replace(error_floor=floor, later=later)
     powers = Resolution(*(1 << (number - 1).bit_length() for number in numbers))
-    return powers._replace(error_floor=floor)
+    return powers._replace(error_floor=floor, later=later)
 
 
 def _shared(interaction_range: float, panels: int) -> int:

@@ -68,6 +68,13 @@ def ring_warnings(problem: Problem, motion: Motion) -> list[str]:
     ]
 
 
+def balance_error(motion: Motion) -> float:
+    """Largest error of the energy balance of an impact, over the first one's kinetic energy [-]."""
+    rows = motion.impacts
+    errors = np.where(rows.made, rows.energy_balance_error, 0.0)
+    return float(np.max(errors) / rows.maximum_kinetic[0])
+
+
 def ledger_warnings(problem: Problem, motion: Motion) -> list[str]:
     """A line where the energies of a motion do not add up to what a model closes to.
 
@@ -79,10 +86,7 @@ def ledger_warnings(problem: Problem, motion: Motion) -> list[str]:
     what = "scanning curve" if problem.relaxation is None else "viscoelastic contact"
     if isinstance(problem.contact, ElasticContact) and problem.relaxation is None:
         what += f" or the deformation on {problem.contact.rings} rings"
-    rows = motion.impacts
-    off = float(
-        np.max(np.where(rows.made, rows.energy_balance_error, 0.0)) / rows.maximum_kinetic[0]
-    )
+    off = balance_error(motion)
     if off <= CLOSED:
         return []
     return [

@@ -19,7 +19,7 @@ from ..dynamics.time_series import Series, ascending, sample, until
 from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
-from ..regimes.accuracy import CLOSED
+from ..regimes.accuracy import CLOSED, balance_error
 from ..regimes.few_asperities import bodies_differ, pull_warnings
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
@@ -294,11 +294,9 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
     names = (*contact.mechanisms, *body.mechanisms)
     for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
-    impact_energy = float(motion.impacts.maximum_kinetic[0])
-    energy_balance_error = float(np.max(motion.impacts.energy_balance_error[:made])) / impact_energy
     zero = _zero_height(motion.reference)
     initial = float(motion.release) - float(body.plain_load.potential_gain(0.0, zero))
-    return {"initial": initial, "lost": lost, "energy_balance_error": energy_balance_error}
+    return {"initial": initial, "lost": lost, "energy_balance_error": balance_error(motion)}
 
 
 def _plain(measures: Measures, made: int) -> dict[str, Any]:

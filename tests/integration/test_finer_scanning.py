@@ -1,0 +1,58 @@
+"""Scanning curves that are cut finer where the energies of a motion do not add up."""
+
+import dataclasses
+
+from asperity.config import load
+from asperity.config.resolve import resolve
+from asperity.integration.finer_scanning import with_finer_scanning
+from asperity.integration.single_case import cut_in_steps, integrate
+from asperity.model import build
+from asperity.regimes.accuracy import CLOSED, balance_error
+
+SOFT = """
+schema = 1
+[body]
+radius = "38 um"
+youngs_modulus = "1.67 MPa"
+poisson = 0.25
+density = "4800 kg/m^3"
+[counterface]
+youngs_modulus = "1.67 MPa"
+poisson = 0.25
+density = "4800 kg/m^3"
+deformation = "half-space"
+[impact]
+speed = "0.06 m/s"
+[numerics]
+max_impacts = 1
+rings = 32
+[roughness]
+asperity_density = "3.76e14 1/m^2"
+asperity_radius = "1.92 nm"
+rms_height = "26.9 nm"
+[adhesion]
+model = "jkr"
+work = "0.0191 J/m^2"
+"""
+
+
+def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_asks_for():
+    """Bonds stretch by 1/20 of the rms height; the innermost pass between branches over 50."""
+    problem = cut_in_steps(build(resolve(load(SOFT))))
+    found = integrate(problem, drawn=False)
+    assert found.contact.resolved.later > 0
+    # Three pieces leave 2e-3; of 80 rings these leave 1e-7.
+    assert balance_error(found.motion) < 100.0 * CLOSED
+    # Its loss is that of bonds formed and broken, whatever scanning curves are read.
+    formation, rupture = found.motion.table.losses[:, 0]
+    lost = float(found.motion.impacts.lost[0, 0])
+    assert 0.0 < lost < found.motion.impacts.maximum_kinetic[0]
+    assert formation > rupture > 0.0
+    # Once is enough: finer ones are not cut again, nor those of a balance that closes.
+    assert with_finer_scanning(problem._replace(contact=found.contact), found.motion) is None
+    coarse = dataclasses.replace(found.contact, resolved=problem.contact.resolved)
+    impacts = found.motion.impacts
+    closed = found.motion._replace(
+        impacts=impacts._replace(energy_balance_error=0.0 * impacts.lost[:, 0])
+    )
+    assert with_finer_scanning(problem._replace(contact=coarse), closed) is None
