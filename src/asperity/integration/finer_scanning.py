@@ -32,11 +32,10 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     in_time = problem.delayed is not None or problem.relaxation is not None
     if in_time or not isinstance(contact, ElasticContact) or not contact.mechanisms:
         return None
-    lost = np.sum(motion.impacts.lost[:, : len(contact.mechanisms)], axis=1)
-    most = float(
-        np.max(np.where(motion.impacts.made, lost, 0.0)) / motion.impacts.maximum_kinetic[0]
-    )
-    if contact.resolved.later or not CLOSED < balance_error(motion) < most:
+    rows = motion.impacts
+    lost = np.sum(rows.lost[:, : len(contact.mechanisms)], axis=1)
+    by_bonds = np.max(np.where(rows.made, lost, 0.0)) / rows.maximum_kinetic[0]
+    if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     resolved = contact.resolved._replace(nodes=16, pieces=_SOON + _LATER, later=_LATER)
     return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
