@@ -46,6 +46,7 @@ MEASURES = np.concatenate(
 GAP, _FORCE, _PRESSED, _ENERGY = range(4)
 _SAMPLES = 10  # on a panel, between which folds are sought and equilibria are bracketed
 _STEPS = 10  # of Newton's method within a bracket
+_MARGIN = 1e-4  # of a bracket, that a step of Newton's method stays within it
 _BISECTIONS = 34  # for a fold
 _ROUNDING = 4e-15  # of a gap
 _FLAT = 1e-7  # slope of the gap with the measure that counts as none, over 1 + |gap|
@@ -201,8 +202,10 @@ def _measures_at(gap: jax.Array, path: Equilibria, folds: Folds) -> jax.Array:
         start, end = jnp.where(over > 0.0, place, start), jnp.where(over > 0.0, end, place)
         falls = slope < 0.0
         newton = place - over / jnp.where(falls, slope, 1.0)
-        good = falls & (newton >= start) & (newton <= end)
-        return jnp.where(good, newton, 0.5 * (start + end)), start, end
+        # It may leave the bracket by the rounding of a root at its end: there the next is close.
+        margin = _MARGIN * (end - start)
+        newton = jnp.clip(newton, start + margin, end - margin)
+        return jnp.where(falls, newton, 0.5 * (start + end)), start, end
 
     found = jax.lax.fori_loop(0, _STEPS, closer, (guess, start, end))[0]
     # At a fold rounding of the gap alone would move the measure by its square root.
