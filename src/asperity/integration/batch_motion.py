@@ -120,10 +120,11 @@ class BatchMotion:
                 moved = self._move_out(some, here, checks)
                 again.append(some[moved])
                 some = np.where(moved, -1, some)
+                # Before they are cut further: coarse curves tell this too.
+                some = np.where(self._are_outside(some, here, checks), some, -1)
                 fine, cut = self._are_fine(some, here, checks, factor)
                 again.append(some[cut])
                 some = np.where(fine, some, -1)
-                some = np.where(self._are_outside(some, here, checks), some, -1)
                 if np.any(some >= 0):
                     yield Slice(some, here, begun, self.steps.before)
             places = np.concatenate(again)
@@ -189,13 +190,14 @@ class BatchMotion:
         return again
 
     def _are_outside(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
-        """Whether each case is released outside contact; others have failed."""
+        """Whether each case is outside contact at its release, or unsolved; others have failed."""
         if not self._checked:
             return np.ones(places.shape, bool)
         held = bool(here.body.forces)
         force, _power, largest, load = (np.asarray(leaf) for leaf in checks.at_release)
         limit = negligible_force(load, largest, chosen=self._launched or held)
-        inside, release = ~(force <= limit), np.asarray(here.body.release)
+        solved = np.asarray(checks.residual) <= RESIDUAL
+        inside, release = solved & ~(force <= limit), np.asarray(here.body.release)
         for slot in np.flatnonzero(inside & (places >= 0)).tolist():
             share = "1e-3 of the weight" if load[slot] > 0.0 else "1e-6 of its peak"
             share = "1e-3 of the spring's force" if held else share
