@@ -56,3 +56,44 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
         impacts=impacts._replace(energy_balance_error=0.0 * impacts.lost[:, 0])
     )
     assert with_finer_scanning(problem._replace(contact=coarse), closed) is None
+
+
+WET = """
+schema = 1
+[body]
+radius = "11.4 um"
+youngs_modulus = "222 GPa"
+poisson = 0.25
+density = "6015 kg/m^3"
+[counterface]
+youngs_modulus = "222 GPa"
+poisson = 0.25
+density = "6015 kg/m^3"
+deformation = "rigid"
+[impact]
+speed = "0.12 mm/s"
+gravity = "0 m/s^2"
+[numerics]
+max_impacts = 1
+[roughness]
+asperity_density = "7.7e15 1/m^2"
+asperity_radius = "13 nm"
+rms_height = "0.166 nm"
+[adhesion]
+model = "jkr"
+work = "0.2137 mJ/m^2"
+[capillary]
+model = "constant-volume"
+formation = "capillary-condensation"
+liquid = "water"
+humidity = 0.667
+temperature = "321 K"
+contact_angle = "66.4 degrees"
+"""
+
+
+def test_menisci_that_stretch_far_are_read_on_as_many_pieces_as_their_force_bends():
+    problem = cut_in_steps(build(resolve(load(WET))))
+    found = integrate(problem, drawn=False)
+    assert found.contact.resolved.pieces == 4 * problem.contact.resolved.pieces
+    assert balance_error(found.motion) < 1e-10
