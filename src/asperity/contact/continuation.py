@@ -122,23 +122,34 @@ def _marks(
 ) -> jax.Array:
     """Ends of the pieces of the scanning curve, for each law.
 
-    Even ones until the fastest ring has passed from one branch to the other, and later ones, even
-    in asinh(separation) as forces change, until the slowest has.
+    Even ones until the fastest ring has passed from one branch to the other, and later ones until
+    the slowest has: even too, or, of a contact that names their number, even in asinh(separation)
+    as forces change.
     """
     slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rates), slowest)
-    pieces, later = contact.resolved.pieces, contact.resolved.later
-    later = later or min(max(pieces // 2, 1), LATER)
+    pieces, graded = contact.resolved.pieces, contact.resolved.later > 0
+    later = contact.resolved.later or min(max(pieces // 2, 1), LATER)
     even = np.arange(1.0, pieces - later + 1.0) / max(pieces - later, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
-    scale = _BENDS * contact.interface.scale.rms
+    further = np.arange(1.0, later + 1.0) / later
+    shares = jnp.append(
+        even / fastest, (1.0 + further * (more * fastest / slowest - 1.0)) / fastest
+    )
     ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
+    scale = _BENDS * contact.interface.scale.rms
     rows = []
     for law in contact.interface.hysteretic:
         width = ahead * (law.breaking_gap - law.forming_gap)
-        begin, end = jnp.clip(start + width * jnp.stack([1.0 / fastest, more / slowest]), *within)
-        further = jnp.linspace(jnp.arcsinh(begin / scale), jnp.arcsinh(end / scale), later + 1)[1:]
-        rows += [start + (begin - start) * even, scale * jnp.sinh(further)]
+        marks = start + width * shares
+        if graded:
+            begin, end = jnp.clip(jnp.stack([start + width / fastest, marks[-1]]), *within)
+            to_end = jnp.linspace(jnp.arcsinh(begin / scale), jnp.arcsinh(end / scale), later + 1)
+            steps = scale * jnp.sinh(to_end)[1:-1]
+            # No piece is a rounding wide: where nothing is left, all end at one separation.
+            steps = jnp.clip(steps, jnp.minimum(begin, end), jnp.maximum(begin, end))
+            marks = jnp.concatenate([marks[: pieces - later], steps, marks[-1:]])
+        rows.append(marks)
     return jnp.concatenate(rows)
 
 
