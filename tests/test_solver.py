@@ -11,7 +11,7 @@ import pytest
 import asperity
 from asperity import InputError, Outcome, SimulationError, integration, solver
 from asperity.config.resolve import resolve
-from asperity.integration import single_case
+from asperity.integration import finer_scanning
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -170,7 +170,7 @@ def test_a_ledger_that_does_not_close_is_said(case, monkeypatch):
     monkeypatch.setattr(solver, "build", lambda case: problem._replace(contact=coarse))
     again = solver.solve(wide)  # with finer scanning curves
     assert again.ledger["energy_balance_error"] < 1e-6
-    monkeypatch.setattr(single_case, "with_finer_scanning", lambda problem, motion: None)
+    monkeypatch.setattr(finer_scanning, "with_finer_scanning", lambda problem, motion: None)
     open_ = solver.solve(wide)
     assert open_.ledger["energy_balance_error"] > 1e-6
     assert any("ledger" in line for line in open_.warnings)

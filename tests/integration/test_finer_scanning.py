@@ -4,7 +4,8 @@ import dataclasses
 
 from asperity.config import load
 from asperity.config.resolve import resolve
-from asperity.integration.finer_scanning import with_finer_scanning
+from asperity.errors import Outcome, SimulationError
+from asperity.integration.finer_scanning import balanced, with_finer_scanning
 from asperity.integration.single_case import cut_in_steps, integrate
 from asperity.model import build
 from asperity.regimes.accuracy import CLOSED, balance_error
@@ -56,6 +57,20 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
         impacts=impacts._replace(energy_balance_error=0.0 * impacts.lost[:, 0])
     )
     assert with_finer_scanning(problem._replace(contact=coarse), closed) is None
+    # A second run that is stopped, or fails, leaves the first answer as it is.
+    impacts = impacts._replace(energy_balance_error=1e-3 * impacts.maximum_kinetic)
+    first = found._replace(motion=found.motion._replace(impacts=impacts))
+    stopped = found._replace(outcome=Outcome.INTERRUPTED)
+    for second in (stopped, SimulationError("stopped before the first impact")):
+        answers = iter((first, second))
+
+        def run(problem, answers=answers):
+            answer = next(answers)
+            if isinstance(answer, SimulationError):
+                raise answer
+            return answer
+
+        assert balanced(problem._replace(contact=coarse), run, lambda *_: None) is first
 
 
 WET = """

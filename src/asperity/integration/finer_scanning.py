@@ -3,17 +3,54 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
 from ..contact import ElasticContact, RigidContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
+from ..errors import Outcome, SimulationError
 from ..regimes.accuracy import CLOSED, balance_error
+from ..results.conversion import Solution
+from .clock import Report
 
-_SOON, _LATER = 5, 24  # pieces of a curve for each law; 3 leave 2e-3 on a soft bulk, these 1e-7
+_SOON, _LATER = (
+    5,
+    24,
+)  # pieces of a curve for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
 _STORED = 1e3  # times what bonds lose: more than they store between
 _RIGID = 4  # times the pieces without a bulk; 8 leave 3e-6 of constant-volume menisci, 32 1e-13
+
+
+def balanced(problem: Problem, run: Callable[[Problem], Solution], report: Report) -> Solution:
+    """What a run of a problem gives, run again where finer scanning curves may close its balance.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    run
+        What runs it.
+    report
+        Called with a fraction done and a line of text.
+
+    Raises
+    ------
+    SimulationError
+        As ``run``, the first time.
+    """
+    found = run(problem)
+    finer = with_finer_scanning(problem, found.motion)
+    if finer is None or found.outcome is Outcome.INTERRUPTED:
+        return found
+    report(0.02, "finer scanning curves")
+    try:
+        again = run(finer)
+    except SimulationError:  # stopped, or not to be had: the first answer says what it misses
+        return found
+    whole = [one for one in (found, again) if one.outcome is not Outcome.INTERRUPTED]
+    return min(whole, key=lambda one: balance_error(one.motion))
 
 
 def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
@@ -42,7 +79,8 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     if isinstance(contact, ElasticContact):
-        resolved = contact.resolved._replace(nodes=16, pieces=_SOON + _LATER, later=_LATER)
+        pieces = max(_SOON, contact.resolved.pieces) + _LATER
+        resolved = contact.resolved._replace(nodes=16, pieces=pieces, later=_LATER)
     else:
         pieces = _RIGID * contact.resolved.pieces
         resolved = contact.resolved._replace(nodes=16, pieces=pieces)

@@ -19,12 +19,11 @@ from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
-from ..regimes.accuracy import balance_error
 from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
-from .finer_scanning import with_finer_scanning
+from .finer_scanning import balanced
 from .jumping import over_folds
 from .panel_cuts import PATIENCE, Inaccurate
 from .steps import Steps
@@ -83,11 +82,7 @@ def integrate(
         def moved(problem: Problem) -> Solution:
             return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
 
-        found = moved(problem)
-        finer = with_finer_scanning(problem, found.motion)
-        if finer is None or found.outcome is Outcome.INTERRUPTED:
-            return found
-        return min(found, moved(finer), key=lambda one: balance_error(one.motion))
+        return balanced(problem, moved, report)
 
     try:
         return over_folds(problem, run, report)
