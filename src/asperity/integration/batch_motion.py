@@ -33,6 +33,7 @@ REFINEMENTS = (1, 2, 4, 8)
 RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
+_FAR_WITHIN = 10.0  # times the force allowed at a release: coarse curves are closer than that
 _LEAST = 4  # panels that count as one time, where a contact has fewer
 
 
@@ -120,11 +121,12 @@ class BatchMotion:
                 moved = self._move_out(some, here, checks)
                 again.append(some[moved])
                 some = np.where(moved, -1, some)
-                # Before they are cut further: coarse curves tell this too.
-                some = np.where(self._are_outside(some, here, checks), some, -1)
+                # Far within contact a release is refused before curves are cut further.
+                some = np.where(self._are_outside(some, here, checks, _FAR_WITHIN), some, -1)
                 fine, cut = self._are_fine(some, here, checks, factor)
                 again.append(some[cut])
                 some = np.where(fine, some, -1)
+                some = np.where(self._are_outside(some, here, checks), some, -1)
                 if np.any(some >= 0):
                     yield Slice(some, here, begun, self.steps.before)
             places = np.concatenate(again)
@@ -189,15 +191,20 @@ class BatchMotion:
         self.batch = self.batch._replace(body=body)
         return again
 
-    def _are_outside(self, places: np.ndarray, here: Batch, checks: Checks) -> np.ndarray:
-        """Whether each case is outside contact at its release, or unsolved; others have failed."""
+    def _are_outside(
+        self, places: np.ndarray, here: Batch, checks: Checks, times: float = 1.0
+    ) -> np.ndarray:
+        """Whether each case is released outside contact; others have failed.
+
+        Those whose force there is more than so many ``times`` what is allowed.
+        """
         if not self._checked:
             return np.ones(places.shape, bool)
         held = bool(here.body.forces)
         force, _power, largest, load = (np.asarray(leaf) for leaf in checks.at_release)
         limit = negligible_force(load, largest, chosen=self._launched or held)
-        solved = np.asarray(checks.residual) <= RESIDUAL
-        inside, release = solved & ~(force <= limit), np.asarray(here.body.release)
+        inside = ~(force <= limit) if times == 1.0 else force > times * limit
+        release = np.asarray(here.body.release)
         for slot in np.flatnonzero(inside & (places >= 0)).tolist():
             share = "1e-3 of the weight" if load[slot] > 0.0 else "1e-6 of its peak"
             share = "1e-3 of the spring's force" if held else share

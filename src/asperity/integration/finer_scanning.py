@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..contact import ElasticContact, RigidContact
+from ..contact.contact import YieldingContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..errors import Outcome, SimulationError
@@ -15,10 +16,7 @@ from ..regimes.accuracy import CLOSED, balance_error
 from ..results.conversion import Solution
 from .clock import Report
 
-_SOON, _LATER = (
-    5,
-    24,
-)  # pieces of a curve for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
+_SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
 _STORED = 1e3  # times what bonds lose: more than they store between
 _RIGID = 4  # times the pieces without a bulk; 8 leave 3e-6 of constant-volume menisci, 32 1e-13
 
@@ -49,8 +47,9 @@ def balanced(problem: Problem, run: Callable[[Problem], Solution], report: Repor
         again = run(finer)
     except SimulationError:  # stopped, or not to be had: the first answer says what it misses
         return found
-    whole = [one for one in (found, again) if one.outcome is not Outcome.INTERRUPTED]
-    return min(whole, key=lambda one: balance_error(one.motion))
+    if not again.outcome.ok:
+        return found
+    return min(found, again, key=lambda one: balance_error(one.motion))
 
 
 def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
@@ -71,7 +70,7 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     contact = problem.contact
     in_time = problem.delayed is not None or problem.relaxation is not None
     rough = isinstance(contact, ElasticContact | RigidContact)
-    if in_time or not rough or not contact.mechanisms:
+    if in_time or not rough or isinstance(contact, YieldingContact) or not contact.mechanisms:
         return None
     rows = motion.impacts
     lost = np.sum(rows.lost[:, : len(contact.mechanisms)], axis=1)

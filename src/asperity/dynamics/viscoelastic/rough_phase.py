@@ -25,15 +25,15 @@ from .ring_system import Freed, RingState, freed
 from .sample_times import flight_times
 
 TOLERANCE = 1e-9
-"""Error of a step: of the separation or the rms height, of the impact's speed and its energy."""
+"""Error of a step, relative to heights, speed and energy of the impact."""
 
 _MOST = 20_000  # steps of a phase
 _FIT = 0.05  # how closely the mesh fits the pressure of the first impact
 _PASSES = 5  # of that fit
-_TRIAL = 1e-6  # error of a step of these
+_TRIAL = 1e-6  # error of a step of these: what they find is the depth alone
 _FIRST = 0.02  # rms heights: the length of the first step into the forces
-_STRIDE = 0.5  # rms heights: the longest way of one step,
-_DEEP = 0.02  # or this share of the depth, or of how far out it is, where that is longer
+_STRIDE = 0.5  # rms heights: the longest way of one step; of a trial, if that is longer,
+_DEEP = 0.02  # this share of the separation
 _POLISH = 12  # of the length of a step that ends at a turn
 _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
 
@@ -55,8 +55,8 @@ class RoughBounce:
         Separation at which it rests, how close counts as there, and where it has left [m].
     asked
         Called before each step; it may raise to stop.
-    tolerance
-        Error of a step.
+    trial
+        Whether it falls for its depth alone, in long steps.
     """
 
     def __init__(
@@ -66,12 +66,14 @@ class RoughBounce:
         size: float,
         ends: tuple[float, float, float],
         asked: Callable[[], None],
-        tolerance: float,
+        *,
+        trial: bool = False,
     ) -> None:
         base: Any = relaxation.contact
         self._contact: ElasticContact = base
         self.relaxation, self.body, self.size = relaxation, body, size
-        self.ends, self._asked, self._tolerance = ends, asked, tolerance
+        self.ends, self._asked = ends, asked
+        self._tolerance, self._share = (_TRIAL, _DEEP) if trial else (TOLERANCE, 0.0)
         self._rms = float(base.interface.scale.rms)
         self._interaction_range = float(base.interaction_range)
         self._profile = np.asarray(_profile_of(base, np.asarray(size, float), base.rings))
@@ -246,7 +248,7 @@ class RoughBounce:
                     span *= 0.5
                     continue
                 fast = max(abs(float(done.here.speed)), abs(float(self.here.speed)))
-                stride = max(_STRIDE * self._rms, _DEEP * abs(float(done.here.separation)))
+                stride = max(_STRIDE * self._rms, self._share * abs(float(done.here.separation)))
                 self._span = min(next_span, stride / max(fast, 1e-300))
                 return done, span
             span *= min(max(factor, 0.1), 0.9)
@@ -283,8 +285,7 @@ class RoughBounce:
             return inf
         energy = max(self.maximum_kinetic, 0.5 * self._mass * float(done.here.speed) ** 2)
         speed = sqrt(2.0 * energy / self._mass)
-        height = max(self._rms, abs(float(done.here.separation)))
-        scale = np.array([height, speed, height, energy])
+        scale = np.array([self._rms, speed, self._rms, energy])
         return float(np.max(done.error / scale)) / self._tolerance
 
 
@@ -294,10 +295,10 @@ def fitted_bounce(relaxation: Relaxation, ledger: Ledger, asked: Callable[[], No
     lowest = ledger.prepared[0].ends[0]
     size = float(first_size(contact, jnp.asarray(float(lowest))))
     for _ in range(_PASSES):
-        trial = RoughBounce(relaxation, ledger.body, size, ledger.ends, asked, _TRIAL)
+        trial = RoughBounce(relaxation, ledger.body, size, ledger.ends, asked, trial=True)
         trial.start()
         end = trial.phase(inwards=True).end
         if end == FAILED or abs(trial.fit - 1.0) <= _FIT:
             break
         size *= trial.fit
-    return RoughBounce(relaxation, ledger.body, size, ledger.ends, asked, TOLERANCE)
+    return RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)
