@@ -23,7 +23,7 @@ PLANES = Interface(Hertz(TIP, STIFF) + Dmt(TIP, W), Gaussian(RMS), DENSITY)
 
 def problem(modulus):
     contact = ElasticContact(PLANES, Sphere(RADIUS), modulus)
-    return SimpleNamespace(contact=contact, delayed=None, relaxation=None)
+    return SimpleNamespace(contact=contact, in_time=False)
 
 
 SOFT, STIFF_ONE = problem(33e6), problem(500e6)

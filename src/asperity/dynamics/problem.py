@@ -42,3 +42,8 @@ class Problem(NamedTuple):
     delayed: DelayedContact | None = None
     class_error: float = 0.0
     relaxation: Relaxation | None = None
+
+    @property
+    def in_time(self) -> bool:
+        """Whether the contact is solved as the body moves; no scanning curve is read then."""
+        return self.delayed is not None or self.relaxation is not None

@@ -21,7 +21,7 @@ from .static_equilibrium import Reference
 from .stepped_phase import TURNED, Ended, Samples
 from .stepped_record import Ledger, SteppedImpact, SteppedPhase
 from .stepped_series import Trajectory
-from .viscoelastic.rough_phase import fitted_bounce
+from .viscoelastic.fitted_mesh import fitted_bounce
 from .viscoelastic.smooth_sphere import SmoothBounce
 
 

@@ -17,11 +17,14 @@ from ..results.conversion import Solution
 from .clock import Report
 
 _SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
+_RUN, _AGAIN = 0.85, 0.05  # share of the work that a run is, and that its second run counts as
 _STORED = 1e3  # times what bonds lose: more than they store between
 _RIGID = 4  # times the pieces without a bulk; 8 leave 3e-6 of constant-volume menisci, 32 1e-13
 
 
-def balanced(problem: Problem, run: Callable[[Problem], Solution], report: Report) -> Solution:
+def balanced(
+    problem: Problem, run: Callable[[Problem, Report], Solution], report: Report
+) -> Solution:
     """What a run of a problem gives, run again where finer scanning curves may close its balance.
 
     Parameters
@@ -29,7 +32,7 @@ def balanced(problem: Problem, run: Callable[[Problem], Solution], report: Repor
     problem
         The problem.
     run
-        What runs it.
+        What runs it, and reports.
     report
         Called with a fraction done and a line of text.
 
@@ -38,13 +41,13 @@ def balanced(problem: Problem, run: Callable[[Problem], Solution], report: Repor
     SimulationError
         As ``run``, the first time.
     """
-    found = run(problem)
+    found = run(problem, report)
     finer = with_finer_scanning(problem, found.motion)
     if finer is None or found.outcome is Outcome.INTERRUPTED:
         return found
-    report(0.02, "finer scanning curves")
+    report(_RUN, "finer scanning curves")
     try:
-        again = run(finer)
+        again = run(finer, lambda share, text: report(_RUN + _AGAIN * share, text))
     except SimulationError:  # stopped, or not to be had: the first answer says what it misses
         return found
     if not again.outcome.ok:
@@ -68,9 +71,9 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
         Its motion.
     """
     contact = problem.contact
-    in_time = problem.delayed is not None or problem.relaxation is not None
-    rough = isinstance(contact, ElasticContact | RigidContact)
-    if in_time or not rough or isinstance(contact, YieldingContact) or not contact.mechanisms:
+    cut = isinstance(contact, ElasticContact | RigidContact)
+    cut = cut and not isinstance(contact, YieldingContact)  # its pieces are those of its heights
+    if problem.in_time or not cut or not contact.mechanisms:
         return None
     rows = motion.impacts
     lost = np.sum(rows.lost[:, : len(contact.mechanisms)], axis=1)

@@ -81,8 +81,7 @@ def over_folds(
 
 def may_jump(problem: Problem) -> bool:
     """Whether the body may jump: not where its contact is solved as it moves."""
-    in_time = problem.delayed is not None or problem.relaxation is not None
-    return type(problem.contact) is ElasticContact and not in_time
+    return type(problem.contact) is ElasticContact and not problem.in_time
 
 
 def likely_to_jump(contacts: Contact, count: int) -> np.ndarray:

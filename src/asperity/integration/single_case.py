@@ -79,7 +79,7 @@ def integrate(
     """
 
     def run(problem: Problem, patience: int) -> Solution:
-        def moved(problem: Problem) -> Solution:
+        def moved(problem: Problem, report: Report) -> Solution:
             return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
 
         return balanced(problem, moved, report)
@@ -95,7 +95,7 @@ def integrate(
 
 def _place_by_place(problem: Problem) -> Problem | None:
     """The problem with another quadrature: see :meth:`RigidContact.place_by_place`."""
-    if not isinstance(problem.contact, RigidContact) or _in_time(problem):
+    if not isinstance(problem.contact, RigidContact) or problem.in_time:
         return None
     contact = problem.contact.place_by_place()
     return None if contact is None else problem._replace(contact=contact)
@@ -222,7 +222,7 @@ def _of_one(
     contact, body = problem.contact, problem.body
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
-        Steps.of_one(contact, body, many=many and not _in_time(problem), drawn=drawn), clock,
+        Steps.of_one(contact, body, many=many and not problem.in_time, drawn=drawn), clock,
         refinements=refinements, checked=checked, launched=launched, patience=patience,
     )  # fmt: skip
 
@@ -250,7 +250,7 @@ def _at_release(motion: BatchMotion) -> Slice:
 
 def _solution(problem: Problem, motion: BatchMotion, here: Slice | None = None) -> Solution:
     """The motion of the one case of a batch, which is not integrated yet."""
-    if _in_time(problem):
+    if problem.in_time:
         return _integrate_in_time(problem, motion, here or _at_release(motion))
     outcome = None
     try:
@@ -265,11 +265,6 @@ def _solution(problem: Problem, motion: BatchMotion, here: Slice | None = None) 
     moved = whole(unbatched(ends[0]), unbatched(rows))
     outcome = outcome or ENDS[int(moved.end.outcome)]
     return Solution(moved, problem.contact, outcome, body=_body(problem, motion))
-
-
-def _in_time(problem: Problem) -> bool:
-    """Whether the contact is solved as the body moves: such a motion reads no scanning curve."""
-    return problem.delayed is not None or problem.relaxation is not None
 
 
 def _integrate_in_time(problem: Problem, motion: BatchMotion, here: Slice) -> Solution:
@@ -312,6 +307,6 @@ def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
     release = float(problem.contact.interaction_range) + CLEARANCE
     clear = dataclasses.replace(problem.body, release=release)
-    _, reference = prepared(problem.contact, clear, many=many and not _in_time(problem))
+    _, reference = prepared(problem.contact, clear, many=many and not problem.in_time)
     at_rest = float(reference.equilibrium)
     return f"; at rest the separation is {at_rest * 1e9:.4g} nm" if np.isfinite(at_rest) else ""

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ..._jax import jax, jnp
-from ...contact.continuation import first_size
 from ...contact.elastic import ElasticContact
 from ...contact.equilibrium import profile_of
 from ...contact.viscoelastic import Relaxation
@@ -18,7 +17,7 @@ from ...numerics.compilation import Program
 from ..curve_table import CENTRAL, STORED, quantities
 from ..record import Body
 from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples
-from ..stepped_record import Ledger, SteppedPhase
+from ..stepped_record import SteppedPhase
 from .ring_menisci import FreeFlight
 from .ring_step import RingStep, step
 from .ring_system import Freed, RingState, freed
@@ -28,12 +27,10 @@ TOLERANCE = 1e-9
 """Error of a step, relative to heights, speed and energy of the impact."""
 
 _MOST = 20_000  # steps of a phase
-_FIT = 0.05  # how closely the mesh fits the pressure of the first impact
-_PASSES = 5  # of that fit
-_TRIAL = 1e-6  # error of a step of these: what they find is the depth alone
+_TRIAL = 1e-6  # error of a step of a body that falls for its depth alone
 _FIRST = 0.02  # rms heights: the length of the first step into the forces
-_STRIDE = 0.5  # rms heights: the longest way of one step; of a trial, if that is longer,
-_DEEP = 0.02  # this share of the separation
+_STRIDE = 0.5  # rms heights: the longest way of one step
+_DEEP = 0.02  # of the separation: the longest way in a trial, where that is more
 _POLISH = 12  # of the length of a step that ends at a turn
 _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
 
@@ -287,18 +284,3 @@ class RoughBounce:
         speed = sqrt(2.0 * energy / self._mass)
         scale = np.array([self._rms, speed, self._rms, energy])
         return float(np.max(done.error / scale)) / self._tolerance
-
-
-def fitted_bounce(relaxation: Relaxation, ledger: Ledger, asked: Callable[[], None]) -> RoughBounce:
-    """The body at its release, on a mesh that fits the pressure of its first impact."""
-    contact: Any = relaxation.contact
-    lowest = ledger.prepared[0].ends[0]
-    size = float(first_size(contact, jnp.asarray(float(lowest))))
-    for _ in range(_PASSES):
-        trial = RoughBounce(relaxation, ledger.body, size, ledger.ends, asked, trial=True)
-        trial.start()
-        end = trial.phase(inwards=True).end
-        if end == FAILED or abs(trial.fit - 1.0) <= _FIT:
-            break
-        size *= trial.fit
-    return RoughBounce(relaxation, ledger.body, size, ledger.ends, asked)

@@ -157,7 +157,7 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     inputs = problem.inputs
     tolerance = np.broadcast_to(np.asarray(inputs.tolerance.relative, float), rows.shape)
     group = Group(rows, batch, tolerance, launched=inputs.chosen_release)
-    return group, problem.delayed is not None or problem.relaxation is not None
+    return group, problem.in_time
 
 
 def _spread(batch: Batch, alone: list[Batch], count: int) -> Batch:
@@ -196,7 +196,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         except InputError as error:
             out.refused[row] = str(error)
             continue
-        if problem.delayed is not None or problem.relaxation is not None:
+        if problem.in_time:
             out.alone.append((row, case))
             continue
         batch = jax.tree_util.tree_map(_raised, _batch_of(problem), is_leaf=_is_array)
