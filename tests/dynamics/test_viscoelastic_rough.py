@@ -123,7 +123,6 @@ def test_a_mesh_that_was_fitted_in_long_steps_serves_as_one_fitted_in_short_ones
     """To a body that comes some 200 rms heights deep."""
     fast = replace(BODY, speed=6.0)
     found = [integrated(0.5, 3e-7, fast, told=contact(rings=16))[0]]
-    monkeypatch.setattr(rough_phase, "_DEEP", 0.0)
     monkeypatch.setattr(rough_phase, "_TRIAL", rough_phase.TOLERANCE)
     found.append(integrated(0.5, 3e-7, fast, told=contact(rings=16))[0])
     long, short = found
@@ -131,6 +130,18 @@ def test_a_mesh_that_was_fitted_in_long_steps_serves_as_one_fitted_in_short_ones
     for name in ("closest_approach", "force", "lost", "leaving"):
         value, expected = (np.asarray(getattr(one.impacts, name)[0]) for one in (long, short))
         np.testing.assert_allclose(value, expected, rtol=1e-6)
+
+
+def test_pull_off_of_a_deep_body_is_read_between_steps(monkeypatch):
+    """It pulls over a few rms heights, of the 200 that the body comes deep."""
+    fast, found = replace(BODY, speed=6.0), []
+    for stride in (0.1, 0.025):
+        monkeypatch.setattr(rough_phase, "_UNLOADING_STRIDE", stride)
+        trajectory = integrated(0.5, 3e-7, fast, told=contact(rings=16))[1]
+        found.append(trajectory.unloading(slice(6, 7), discrete=False))
+    coarse, fine = found
+    assert float(coarse.pull_off) == pytest.approx(float(fine.pull_off), rel=2e-4)
+    assert float(coarse.work) == pytest.approx(float(fine.work), rel=2e-4)
 
 
 def test_steps_are_of_the_fourth_order():

@@ -93,13 +93,14 @@ class Trajectory(NamedTuple):
             found.append(roots[0] if roots.size else along.time[k + 1])
         return float(found[1] - found[0])
 
-    def unloading(self, bonds: slice) -> Unloading:
+    def unloading(self, bonds: slice, *, discrete: bool) -> Unloading:
         """The tension on the first way out, as it was met: it depends on load and rate.
 
-        Between samples force, speed and separation are Akima's polynomials of time. ``bonds`` are
-        the columns of the bonds.
+        Between samples force, power and separation are cubic splines of time; of a ``discrete``
+        contact, whose force jumps where a bond breaks, Akima's polynomials, which do not overshoot
+        there. ``bonds`` are the columns of the bonds.
         """
-        from scipy.interpolate import Akima1DInterpolator
+        from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
         there = np.flatnonzero(self.series.phase == 1)
         points = np.concatenate([there[:1] - 1, there])
@@ -108,14 +109,15 @@ class Trajectory(NamedTuple):
         force = self.series.rows[points, FORCE]
         if time.size < 2 or not np.min(force) < 0.0:
             return _unloading(0.0, np.nan, 0.0, 0.0, False)
-        along = Akima1DInterpolator(time, force)
-        power = Akima1DInterpolator(time, force * self.series.speed[points]).antiderivative()
+        between = Akima1DInterpolator if discrete else CubicSpline
+        along = between(time, force)
+        power = between(time, force * self.series.speed[points]).antiderivative()
         rates = along.derivative().roots(extrapolate=False)
         turns = np.concatenate([time, rates[np.isfinite(rates)]])
         lowest = turns[np.argmin(along(turns))]
         zeros = along.roots(extrapolate=False)
         begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
-        place = Akima1DInterpolator(time, self.series.separation[points])(lowest)
+        place = between(time, self.series.separation[points])(lowest)
         work = float(np.max(power(begins)) - power(time[-1]))
         rows = self.series.rows[points[np.argmin(np.abs(time - lowest))]]
         held = float(max(rows[CONTACTING], np.max(rows[bonds], initial=0.0)))

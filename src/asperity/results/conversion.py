@@ -8,7 +8,7 @@ import numpy as np
 
 from .._jax import jax
 from ..config import Case
-from ..contact import Contact
+from ..contact import Contact, SmoothContact
 from ..dynamics import Body, Motion, time_series
 from ..dynamics.common_shapes import common_table, filled_up, with_phases, without_curves
 from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, quantities
@@ -81,17 +81,20 @@ def measured(solution: Solution, body: Body) -> Measures:
         if body.damped_apart:
             passing = _passing_at(body, table, impacts, first.end)
         return _measure(plain, body, passing, first)
-    first = _stepped_contact(solution.trajectory, motion, body)
+    discrete = isinstance(solution.contact, SmoothContact)
+    first = _stepped_contact(solution.trajectory, motion, body, discrete=discrete)
     if body.damped_apart:
         found = solution.trajectory.passing(float(first.end), float(body.mass))
         passing = jax.tree_util.tree_map(filled_up, found)
     return _measure(plain, body, passing, first)
 
 
-def _stepped_contact(trajectory: Trajectory, motion: Motion, body: Body) -> FirstContact:
+def _stepped_contact(
+    trajectory: Trajectory, motion: Motion, body: Body, *, discrete: bool
+) -> FirstContact:
     """The first contact of a motion that was stepped in time."""
     bonds = Quantities(motion.impacts.bonds.shape[1], 0).bonds
-    pulled, series = trajectory.unloading(bonds), trajectory.series
+    pulled, series = trajectory.unloading(bonds, discrete=discrete), trajectory.series
     peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
     table = common_table(motion.table, motion.impacts.bonds.shape[1])
     end = contact_end(table, peak)

@@ -24,13 +24,14 @@ from .ring_system import Freed, RingState, freed
 from .sample_times import flight_times
 
 TOLERANCE = 1e-9
-"""Error of a step, relative to heights, speed and energy of the impact."""
+"""Error of a step, relative to the speed and energy of the impact, and to the separation and the
+displacement of the bulk, or to the rms height where that is more."""
 
 _MOST = 20_000  # steps of a phase
 _TRIAL = 1e-6  # error of a step of a body that falls for its depth alone
 _FIRST = 0.02  # rms heights: the length of the first step into the forces
-_STRIDE = 0.5  # rms heights: the longest way of one step
-_DEEP = 0.02  # of the separation: the longest way in a trial, where that is more
+_STRIDE = 0.5  # rms heights: by so much the gap at the axis changes in one step
+_UNLOADING_STRIDE = 0.1  # the same on the first way out, which the pull-off force is read from
 _POLISH = 12  # of the length of a step that ends at a turn
 _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
 
@@ -70,7 +71,7 @@ class RoughBounce:
         self._contact: ElasticContact = base
         self.relaxation, self.body, self.size = relaxation, body, size
         self.ends, self._asked = ends, asked
-        self._tolerance, self._share = (_TRIAL, _DEEP) if trial else (TOLERANCE, 0.0)
+        self._tolerance = _TRIAL if trial else TOLERANCE
         self._rms = float(base.interface.scale.rms)
         self._interaction_range = float(base.interaction_range)
         self._profile = np.asarray(_profile_of(base, np.asarray(size, float), base.rings))
@@ -80,7 +81,7 @@ class RoughBounce:
         self._columns = quantities(base).components.stop
         self._delayed = relaxation.delayed
         self.lost = np.zeros(len(base.mechanisms) + len(body.in_bulk))
-        self.time, self.fit = 0.0, 1.0
+        self.time, self.fit, self._phases = 0.0, 1.0, 0
         gaps = float(body.release) + self._profile
         thresholds = base.interface.initial_memory(np.zeros(rings + 1))
         if relaxation.delayed is not None:  # in equilibrium with the vapour
@@ -104,6 +105,7 @@ class RoughBounce:
 
     def phase(self, inwards: bool) -> SteppedPhase:
         """The phase until the body turns."""
+        self._phases += 1
         parts: list[Samples] = [self._free_flight_samples(self._left(), np.zeros(0))]
         for _ in range(_MOST):
             self._asked()
@@ -244,9 +246,10 @@ class RoughBounce:
                         return turn
                     span *= 0.5
                     continue
-                fast = max(abs(float(done.here.speed)), abs(float(self.here.speed)))
-                stride = max(_STRIDE * self._rms, self._share * abs(float(done.here.separation)))
-                self._span = min(next_span, stride / max(fast, 1e-300))
+                # A deep body moves far while the gap at its axis hardly changes.
+                closed = abs(float(done.here.gaps[0] - self.here.gaps[0]))
+                stride = (_UNLOADING_STRIDE if self._phases == 2 else _STRIDE) * self._rms
+                self._span = min(next_span, span * stride / max(closed, 1e-300))
                 return done, span
             span *= min(max(factor, 0.1), 0.9)
         return None, span
@@ -282,5 +285,8 @@ class RoughBounce:
             return inf
         energy = max(self.maximum_kinetic, 0.5 * self._mass * float(done.here.speed) ** 2)
         speed = sqrt(2.0 * energy / self._mass)
-        scale = np.array([self._rms, speed, self._rms, energy])
+        separation = float(done.here.separation)
+        displaced = float(np.max(np.abs(done.here.gaps - self._profile - separation)))
+        lengths = np.maximum(self._rms, [abs(separation), displaced])
+        scale = np.array([lengths[0], speed, lengths[1], energy])
         return float(np.max(done.error / scale)) / self._tolerance
