@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .contact import ElasticContact, YieldingContact
+from .contact import ElasticContact, YieldingContact, interaction_range_of
 from .dynamics import Limits
 from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_about
 from .dynamics.problem import CLEARANCE, Problem
@@ -94,7 +94,7 @@ class Launcher:
         contact, body = solution.contact, solution.body or problem.body
         outset = np.asarray(measured(solution, body).outset)
         launched = launch_separation(
-            np.asarray(contact.interaction_range), outset, np.asarray(body.release),
+            np.asarray(interaction_range_of(contact)), outset, np.asarray(body.release),
             yields=isinstance(contact, YieldingContact),
         )  # fmt: skip
         body = dataclasses.replace(body, release=launched)
@@ -131,7 +131,7 @@ class Launcher:
             float(measures.impact_speed),
             float(np.asarray(measures.restitution)[0]),
             bool(measures.captured),
-            leaving - float(body.load.potential(measures.contact_end)),
+            leaving - float(body.plain.load.potential(float(measures.contact_end))),
             float(measures.margin),
         )
 

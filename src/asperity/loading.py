@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
+from .contact import interaction_range_of
 from .dynamics import Body, Table
 from .dynamics.curve_table import FORCE
 from .dynamics.external_forces import Load
@@ -53,7 +54,7 @@ def turning_at(
     if load is not None and not (np.isfinite(load) and load >= 0.0):
         raise InputError(f"`load` must be 0 N or more; got {load:.6g} N", key="load")
     contact, mass = problem.contact, float(problem.body.mass)
-    release = float(contact.interaction_range) + CLEARANCE
+    release = float(interaction_range_of(contact)) + CLEARANCE
     if depth is not None and not -release < depth < np.inf:
         raise InputError(
             f"`depth` must lie above {-release * 1e9:.6g} nm, where forces begin; "

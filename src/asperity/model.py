@@ -18,6 +18,7 @@ from .contact import (
     RigidPlasticContact,
     SmoothContact,
     SmoothPlasticContact,
+    interaction_range_of,
 )
 from .contact.delayed_formation import LATE, DelayedContact
 from .contact.profile import Sphere
@@ -68,7 +69,7 @@ def build(inputs: Inputs, resolved: Resolution | None = None) -> Problem:
         If two laws contain the same force, or adhesion alone makes the body yield.
     """
     contact = _contact(inputs, resolved)
-    clear = contact.interaction_range + CLEARANCE
+    clear = interaction_range_of(contact) + CLEARANCE
     edge = contact.pressure.end if isinstance(contact, PublishedContact) else None
     body = Body(inputs.mass, 0.0, clear, rebounds_from=edge)
     if (let_go := inputs.release) is not None:

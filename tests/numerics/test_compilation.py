@@ -105,6 +105,14 @@ def test_a_function_from_outside_is_not_kept(folder):
     assert not folder.exists()
 
 
+def test_within_another_function_it_is_a_part_of_that(folder):
+    program = Program(double)
+    slope = jax.grad(lambda x: jnp.sum(program(LAW, x, 3).twice))(X)
+    assert slope.tolist() == [3.0, 3.0, 3.0]
+    assert jax.jit(lambda x: program(LAW, x, 4).twice)(X).tolist() == [0.0, 4.0, 8.0]
+    assert not folder.exists()
+
+
 def test_arguments_may_be_named(folder):
     assert Program(double)(LAW, X, factor=5).twice.tolist() == [0.0, 5.0, 10.0]
 

@@ -12,7 +12,7 @@ solves one separation, `continuation` follows a path of them, `ring_error` estim
 A contact is immutable; its memory is passed in and out.
 """
 
-from .contact import Contact, State, YieldingContact
+from .contact import Contact, State, YieldingContact, interaction_range_of
 from .elastic import ElasticContact
 from .published_conjunction import PublishedContact
 from .rigid import RigidContact
@@ -30,4 +30,5 @@ __all__ = [
     "SmoothPlasticContact",
     "State",
     "YieldingContact",
+    "interaction_range_of",
 ]

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 
 from .._jax import jax, jnp
+from ..numerics.compilation import AT_ONCE, Program
 from .resolution import Resolution
 
 Memory = Any
@@ -271,3 +272,11 @@ class YieldingContact(Contact):
     @abc.abstractmethod
     def after(self, left: Any) -> Contact:
         """The contact as its first impact left it."""
+
+
+def _interaction_range(contact: Contact) -> jax.Array:
+    return jnp.asarray(contact.interaction_range, dtype=jnp.float64)
+
+
+interaction_range_of = Program(_interaction_range, AT_ONCE)
+"""`Contact.interaction_range` [m], compiled as a whole: asked for alone it is a dozen programs."""

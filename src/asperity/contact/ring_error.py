@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._jax import jnp
+from .._jax import jax
 from ..halfspace import PANEL_COUNT, finer_rings, ring_mesh
+from ..laws.law import Real
 from ..numerics.compilation import AT_ONCE, Program
 from .elastic import ElasticContact
 from .equilibrium import pressed
@@ -56,10 +57,15 @@ def _at(
     contact: ElasticContact, separation: float, radius: np.ndarray, displacement: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pressure [Pa] and its slope [Pa/m] on rings that never touched before."""
-    h = separation + np.asarray(contact.shape.profile(jnp.asarray(radius))) + displacement
-    thresholds = contact.interface.initial_memory(jnp.asarray(h))
-    pressure, slope = _pressure(contact, thresholds, jnp.asarray(h))
+    pressure, slope = _pressure(contact, np.asarray(separation), radius, displacement)
     return np.asarray(pressure), np.asarray(slope)
 
 
-_pressure = Program(pressed, AT_ONCE)
+def _pressed(
+    contact: ElasticContact, separation: Real, radius: Real, displacement: Real
+) -> tuple[jax.Array, jax.Array]:
+    h = separation + contact.shape.profile(radius) + displacement
+    return pressed(contact, contact.interface.initial_memory(h), h)
+
+
+_pressure = Program(_pressed, AT_ONCE)

@@ -121,7 +121,7 @@ class Load(NamedTuple):
             total = total + one.slope(place)
         return total
 
-    def potential_gain(self, start: jax.Array, distance: jax.Array) -> jax.Array:
+    def potential_gain(self, start: Real, distance: jax.Array) -> jax.Array:
         """Potential energy [J] gained from ``start`` over a ``distance`` outwards [m]."""
         gained = self.weight * distance
         for one in self.forces:
@@ -130,7 +130,7 @@ class Load(NamedTuple):
 
     def potential(self, place: jax.Array) -> jax.Array:
         """Potential energy [J] at a separation [m], above that at a separation of 0."""
-        return self.potential_gain(jnp.zeros(()), place)
+        return self.potential_gain(np.zeros(()), place)
 
     def apex_height(self, start: jax.Array, kinetic: jax.Array) -> jax.Array:
         """How far above ``start`` [m] a body with a kinetic energy [J] gets; infinite for good.

@@ -121,7 +121,7 @@ def draw(
     unloading
         Whether they go outwards.
     """
-    load, mass = body.plain_load, float(body.mass)
+    load, mass = body.plain.load, float(body.mass)
     curves = _Curves.of(table, phases, load, unloading=unloading)
     ahead = 1.0 if unloading else -1.0
     along = np.sort(ahead * _path(curves, phases, places), axis=1)

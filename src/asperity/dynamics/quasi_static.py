@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax
-from ..contact.contact import Contact
+from ..contact.contact import Contact, interaction_range_of
 from ..numerics.compilation import AT_ONCE, Program
 from .common_shapes import common_phases, common_table
 from .curve_table import CENTRAL, FORCE, STORED, Table, quantities
@@ -49,7 +49,7 @@ def quasi_static_curve(
     asperities that hold at pull-off.
     """
     deepest, pulled = float(impacts.closest_approach[0]), first_unloading(table, impacts)
-    interaction_range = float(contact.interaction_range)
+    interaction_range = float(interaction_range_of(contact))
     top = min(float(impacts.fall.start[0]), interaction_range + 0.2 * (interaction_range - deepest))
     inward, outward = _branch(table, 0), _way_out(table, impacts)
     places = _places([*inward, *outward], deepest, top)

@@ -11,7 +11,7 @@ from .._jax import jax, jnp
 from ..contact.contact import Memory
 from ..errors import Tolerance
 from ..laws.law import Real, as_float64, quantity, quantity_or_none
-from ..numerics.compilation import kept
+from ..numerics.compilation import AT_ONCE, Program, kept
 from .curve_table import Pieces, Table
 from .external_forces import Along, Drag, ExternalForce, Load
 from .instability import Jumps
@@ -84,15 +84,22 @@ class Body(eqx.Module):
         return Load(self.weight, self.forces)
 
     @property
-    def plain_load(self) -> Any:
-        """The same for arrays of NumPy: JAX would compile anew for each number of places."""
-        plain: Body = jax.tree_util.tree_map(np.asarray, self)
-        return plain.load
+    def plain(self) -> Any:
+        """The same of NumPy's arrays: what is asked of it one by one compiles nothing."""
+        return jax.tree_util.tree_map(np.asarray, self)
 
     @property
     def kinetic(self) -> jax.Array:
         """Kinetic energy at the release [J]."""
         return 0.5 * self.mass * self.speed**2
+
+
+def _resistances_apart(body: Body, central: Real) -> jax.Array:
+    return body.resistances(Along.apart(central))
+
+
+resistances_apart = Program(_resistances_apart, AT_ONCE)
+"""`Body.resistances` at central separations [m] apart from a motion, compiled as a whole."""
 
 
 @kept

@@ -9,9 +9,9 @@ from numpy.polynomial.legendre import legval
 
 from .._jax import jnp
 from ..laws.law import as_float64
+from .common_shapes import filled_up
 from .curve_table import CENTRAL, CONTACTING, FORCE
-from .external_forces import Along
-from .record import Body
+from .record import Body, resistances_apart
 from .stepped_phase import Samples
 from .time_collocation import STAGES
 from .time_series import Series
@@ -50,7 +50,8 @@ class Trajectory(NamedTuple):
         whole = whole._replace(time=np.maximum.accumulate(whole.time))
         drag = np.zeros((whole.time.size, drags))
         if body.damped:
-            drag[:] = body.resistances(Along.apart(jnp.asarray(whole.rows[:, CENTRAL]))).T
+            central = filled_up(whole.rows[:, CENTRAL])
+            drag[:] = np.asarray(resistances_apart(body, central)).T[: whole.time.size]
         series = Series(
             whole.time, whole.separation, whole.speed, whole.rows, np.concatenate(heats), drag,
             np.concatenate(phases),

@@ -7,12 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jax import jax, jnp
+from .._jax import jax
 from . import damped_series, free_series
 from .curve_table import CENTRAL, Table, read_row
-from .external_forces import Along
 from .free_series import SAMPLES
-from .record import Body, Impacts
+from .record import Body, Impacts, resistances_apart
 
 _ROUNDING = 1e-12  # of a motion's time
 _BATCH = 16  # phases that are drawn side by side
@@ -62,7 +61,7 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
     still, none = np.zeros(len(body.drags)), np.zeros(joined[4].shape[-1])
-    acting = body.resistances(Along.apart(jnp.asarray(row[CENTRAL]))) if body.drags else still
+    acting = resistances_apart(body, np.asarray(row[CENTRAL])) if body.drags else still
     release = (0.0, body.release, -np.asarray(body.speed), row, none, acting, 0)
     rest = (time, separation, speed, values, dissipated, drag, phase.ravel())
     return Series(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from .._jax import jax
-from ..contact.contact import Contact
+from ..contact.contact import Contact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
 from ..contact.smooth import SmoothContact
 from ..laws.law import terms
@@ -70,7 +70,7 @@ class Frame(NamedTuple):
     def of(cls, contact: Contact, delayed: DelayedContact, body: Body, table: Table) -> Frame:
         """The frame of a contact whose major branches are tabulated."""
         ends = float(table.ends[0]), float(table.ends[-1])
-        interaction_range = float(contact.interaction_range)
+        interaction_range = float(interaction_range_of(contact))
         forming, breaking = (
             np.array([float(gap) for gap in gaps])
             for gaps in zip(

@@ -7,7 +7,7 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact, RigidContact
+from ..contact import Contact, ElasticContact, RigidContact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
@@ -305,7 +305,7 @@ def _body(problem: Problem, motion: BatchMotion) -> Body:
 
 def _at_rest(problem: Problem, many: bool) -> str:
     """Where the body would rest, seen from outside contact; empty where nothing holds it."""
-    release = float(problem.contact.interaction_range) + CLEARANCE
+    release = float(interaction_range_of(problem.contact)) + CLEARANCE
     clear = dataclasses.replace(problem.body, release=release)
     _, reference = prepared(problem.contact, clear, many=many and not problem.in_time)
     at_rest = float(reference.equilibrium)

@@ -76,7 +76,7 @@ class Program(Generic[P, Answer]):
     """A function of pytrees, compiled once for each structure and shape of its arguments.
 
     Arrays are traced; all else in the arguments is static and hashable, as the fields of an
-    :class:`equinox.Module`. Not to be called within another compiled function.
+    :class:`equinox.Module`. Called within another function that is traced, it is a part of that.
 
     Parameters
     ----------
@@ -100,6 +100,9 @@ class Program(Generic[P, Answer]):
         self._lock = threading.Lock()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Answer:
+        leaves = jax.tree_util.tree_leaves((args, kwargs))
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return self._function(*args, **kwargs)
         return self.ready(*args, **kwargs)()
 
     def ready(self, *args: P.args, **kwargs: P.kwargs) -> Callable[[], Answer]:

@@ -27,10 +27,11 @@ def fall_warnings(problem: Problem, motion: Motion) -> list[str]:
     motion
         The motion.
     """
-    kinetic, weight = float(problem.body.kinetic), float(problem.body.weight)
+    body = problem.body.plain
+    kinetic, weight = float(body.kinetic), float(body.weight)
     if not problem.inputs.chosen_release or not weight > 0.0:
         return []
-    fall = max(float(motion.release) - kinetic, weight * float(problem.body.release))
+    fall = max(float(motion.release) - kinetic, weight * float(body.release))
     if fall <= HASTENED * kinetic:
         return []
     added = 100.0 * ((1.0 + fall / kinetic) ** 0.5 - 1.0)

@@ -42,7 +42,8 @@ def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
     lost = np.asarray(impacts.lost[0])[: len(names := problem.contact.mechanisms)]
     filled = problem.inputs.structure.liquid == "kelvin-filling"  # no asperity bears that liquid
     bonds = float(np.sum(lost, where=[not (filled and name == "capillary") for name in names]))
-    left = float(impacts.leaving[0] - problem.body.load.potential(impacts.closest_approach[0]))
+    potential = problem.body.plain.load.potential(float(impacts.closest_approach[0]))
+    left = float(impacts.leaving[0]) - float(potential)
     left = left if np.isfinite(left) else energy - bonds
     return not mean_is_enough(loaded, left / energy, bonds / energy)
 

@@ -233,9 +233,9 @@ def _histories(
     parts = rows[:, layout.components]
     forces: dict[str, np.ndarray] = {name: parts[:, k] for k, name in enumerate(contact.components)}
     forces["contact"] = rows[:, FORCE]
-    forces["weight"] = np.full(len(rows), -float(body.weight))
+    forces["weight"] = np.full(len(rows), -float(body.plain.weight))
     forces["total"] = rows[:, FORCE] + forces["weight"]
-    load = body.plain_load
+    load = body.plain.load
     for force in load.forces:
         forces[force.name] = -np.asarray(force.force(series.separation))
         forces["total"] = forces["total"] + forces[force.name]
@@ -298,7 +298,7 @@ def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str
     for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
         lost[name] = lost.get(name, 0.0) + float(value)
     zero = _zero_height(motion.reference)
-    initial = float(motion.release) - float(body.plain_load.potential_gain(0.0, zero))
+    initial = float(motion.release) - float(body.plain.load.potential_gain(0.0, zero))
     return {"initial": initial, "lost": lost, "energy_balance_error": balance_error(motion)}
 
 

@@ -19,8 +19,10 @@ from ..dynamics.problem import Problem
 from ..dynamics.single_impact import Launch, SingleImpact, single_impacts
 from ..errors import InputError, SimulationError
 from ..integration.batch_motion import RELEASE_KEY
+from ..interface.rough_planes import RoughPlanes
 from ..interface.summit_field import WIDTH, MeasuredField
 from ..laws.law import as_float64, terms
+from ..numerics.compilation import AT_ONCE, Program
 from .placement import place_summits
 
 MOST_SUMMITS = 2048
@@ -34,6 +36,14 @@ _FIRST = 16  # summits of each body, at least
 _SCATTER = 4.0  # standard deviations that their number may lie above the expected one
 _FEWER = 8  # times as few are within range where fewer are taken from then on
 _DEEPER = 2.0  # times the energy at the release, to which an asperity is tabulated
+
+
+def _lengths_of(interface: RoughPlanes) -> tuple[jax.Array, jax.Array]:
+    """Rms height and interaction range [m]."""
+    return interface.scale.rms, jnp.asarray(interface.interaction_range)
+
+
+_lengths = Program(_lengths_of, AT_ONCE)
 
 
 class SingleBodies:
@@ -56,8 +66,8 @@ class SingleBodies:
         inputs, contact = problem.inputs, problem.contact
         assert inputs.placement is not None
         assert isinstance(contact, RoughContact)
-        self._inputs, self._rms = inputs, float(contact.interface.scale.rms)
-        self._range = float(contact.interface.interaction_range)
+        self._inputs, lengths = inputs, _lengths(contact.interface)
+        self._rms, self._range = map(float, lengths)
         self._lowest = turning_point - self._range - _BELOW * self._rms
         self.field, self._laws, self._tips = place_summits(inputs, self._lowest)
         self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
@@ -155,7 +165,7 @@ class SingleBodies:
         energy = _DEEPER * float(np.nanmax(launches.kinetic + launches.weight * np.abs(fall)))
         if self._table is None or self._table[0] < energy:
             self._table = energy, asperity_table(self._laws, energy)
-            self._felt = float(np.max(self._table[1].approach_range))
+            self._felt = float(np.max(np.asarray(self._table[1].approach_range)))
         return self._table[1]
 
     def _block(
@@ -171,6 +181,7 @@ class SingleBodies:
                 found = single_impacts(table, *summits, with_pull_off)
             else:
                 found = coupled_impacts(table, *summits, self._bulk(number, count))
+            found = jax.tree_util.tree_map(np.asarray, found)
             most = int(np.max(found.within_range))
             if most < count:
                 if not np.all(np.isfinite(found.closest_approach) | np.isnan(launches.kinetic)):
@@ -182,7 +193,8 @@ class SingleBodies:
     def _bulk(self, number: int, count: int) -> Bulk:
         """The half-space that the summits of WIDTH bodies stand on."""
         positions = self.field.positions(self._seed, number, count)
-        return Bulk(as_float64(positions), as_float64(self._tips), as_float64(self._modulus))
+        modulus = np.asarray(self._modulus)
+        return Bulk(as_float64(positions), as_float64(self._tips), as_float64(modulus))
 
     def _summits_for(self, turning_point: float) -> int:
         """Summits that a body has within range at its turning point [m], and seldom more.

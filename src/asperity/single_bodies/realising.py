@@ -57,7 +57,8 @@ def realise(
     assert placed is not None
     report(0.9, f"{placed.realisations} single bodies")
     bodies = SingleBodies(problem, turning_point)
-    launch = (np.ravel(x)[0] for x in (body.kinetic, body.release, body.weight))
+    plain = body.plain
+    launch = (np.ravel(x)[0] for x in (plain.kinetic, plain.release, plain.weight))
     launches = Launch(*(np.full(placed.realisations, value) for value in launch))
     first = bodies.impacts(launches, stop)
     lost: dict[str, np.ndarray] = {}

@@ -74,7 +74,7 @@ def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstIm
     contact_end = made.measures["contact_end"]
     known = (made.made > 0) & (made.outcome != failed) & np.isfinite(contact_end)
     speed = np.where(known, made.measures["impact_speed"], np.nan)
-    excess = made.history["leaving"][:, 0] - body.plain_load.potential_gain(0.0, contact_end)
+    excess = made.history["leaving"][:, 0] - body.plain.load.potential_gain(0.0, contact_end)
     captured = made.measures["captured"].astype(bool)
     margin = made.measures["margin"] if body.damped_apart else None
     return FirstImpacts.of(speed, captured, excess, mass, margin)
