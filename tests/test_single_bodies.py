@@ -181,11 +181,11 @@ def test_they_stand_beside_a_mean_that_is_close_to_capture_however_many_carry_it
 
 
 def test_where_they_do_not_a_mean_is_off_by_less_than_five_per_cent():
-    for density, speed in ((1, "12 mm/s"), (40, "30 mm/s")):
+    for density, speed, count in ((1, "12 mm/s", 512), (40, "30 mm/s", 128)):
         case = open_case(density, speed)
         alone = asperity.solve(case, critical=False, beside=True)
         assert alone.realisations is None
-        placed = {"roughness.placement": "random", "roughness.realisations": 1024}
+        placed = {"roughness.placement": "random", "roughness.realisations": count}
         bodies = asperity.solve(case.replace(placed), critical=False).realisations
         mean = float(np.mean(bodies.values["restitution"]))
         assert alone.measures["restitution"][0] == pytest.approx(mean, rel=0.05)

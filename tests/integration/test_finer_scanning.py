@@ -127,6 +127,7 @@ contact_angle = "66.4 degrees"
 """
 
 
+@pytest.mark.long
 def test_menisci_that_stretch_far_are_read_on_as_many_pieces_as_their_force_bends():
     problem = cut_in_steps(build(resolve(load(WET))))
     found = integrate(problem, drawn=False)

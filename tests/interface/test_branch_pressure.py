@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity._jax import jnp
+from asperity._jax import jax, jnp
 from asperity.interface.branch_pressure import BranchPressure
 from asperity.interface.interface import Interface
 from asperity.laws import Bradley, Hertz, Maugis
@@ -16,6 +16,11 @@ PLANES = {
 }
 
 
+def _measured(one, places, memory):
+    found = one.measure(places, memory)
+    return found.energy, found.bonds, found.contacting
+
+
 @pytest.mark.parametrize("name", PLANES)
 @pytest.mark.parametrize("threshold", [np.inf, -np.inf])
 def test_it_is_that_of_the_planes(name, threshold):
@@ -26,14 +31,14 @@ def test_it_is_that_of_the_planes(name, threshold):
     table = BranchPressure(planes, memory, ends)
     places = jnp.linspace(ends[0], min(reach, 20.0 * RMS), 203)
     each = tuple(jnp.broadcast_to(b, places.shape) for b in memory)
-    exact = planes.pressure(places, each)
+    pressure, measure = jax.jit(lambda one, h, b: one.pressure(h, b)), jax.jit(_measured)
+    exact = pressure(planes, places, each)
     scale = float(jnp.max(jnp.abs(exact[places > 0.0])))
-    np.testing.assert_allclose(table.pressure(places, each), exact, rtol=1e-9, atol=1e-9 * scale)
+    np.testing.assert_allclose(pressure(table, places, each), exact, rtol=1e-9, atol=1e-9 * scale)
     outside = jnp.asarray([ends[0] - 1e-12, 2.0 * ends[-1]])
-    beyond = planes.pressure(outside, tuple(jnp.broadcast_to(b, (2,)) for b in memory))
-    np.testing.assert_allclose(table.pressure(outside, each), beyond, rtol=1e-2, atol=1e-9 * scale)
-    for name in ("energy", "bonds", "contacting"):
-        read, known = (getattr(one.measure(places, each), name) for one in (table, planes))
+    beyond = pressure(planes, outside, tuple(jnp.broadcast_to(b, (2,)) for b in memory))
+    np.testing.assert_allclose(pressure(table, outside, each), beyond, rtol=1e-2, atol=1e-9 * scale)
+    for read, known in zip(measure(table, places, each), measure(planes, places, each), strict=True):
         size = float(jnp.max(jnp.abs(known))) if known.size else 0.0
         np.testing.assert_allclose(read, known, rtol=1e-9, atol=1e-9 * size)
     assert float(table.error) < 1e-9

@@ -208,9 +208,10 @@ class ElasticContact(RoughContact):
         """Pieces of 16 nodes for bonds that are not of the branch of approach (static).
 
         Means are good to 1e-11 of the largest; to 5e-8 of bridges that stretch over thirty times
-        the length on which they fall off.
+        the length on which they fall off. Pieces for rings that lag behind count for none.
         """
-        return 1 + ceil(self.resolved.nodes * self.resolved.pieces / 16)
+        resolved = self.resolved
+        return 1 + ceil(resolved.nodes * (resolved.pieces - resolved.later) / 16)
 
     def means(self, low: jax.Array, high: jax.Array) -> Any:
         """Empty where pieces beside are many: their quadrature would cost as the whole does."""
