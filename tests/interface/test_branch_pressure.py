@@ -38,7 +38,8 @@ def test_it_is_that_of_the_planes(name, threshold):
     outside = jnp.asarray([ends[0] - 1e-12, 2.0 * ends[-1]])
     beyond = pressure(planes, outside, tuple(jnp.broadcast_to(b, (2,)) for b in memory))
     np.testing.assert_allclose(pressure(table, outside, each), beyond, rtol=1e-2, atol=1e-9 * scale)
-    for read, known in zip(measure(table, places, each), measure(planes, places, each), strict=True):
+    both = (measure(one, places, each) for one in (table, planes))
+    for read, known in zip(*both, strict=True):
         size = float(jnp.max(jnp.abs(known))) if known.size else 0.0
         np.testing.assert_allclose(read, known, rtol=1e-9, atol=1e-9 * size)
     assert float(table.error) < 1e-9
