@@ -81,7 +81,7 @@ class RoughBounce:
         self._columns = quantities(base).components.stop
         self._delayed = relaxation.delayed
         self.lost = np.zeros(len(base.mechanisms) + len(body.in_bulk))
-        self.time, self.fit, self._phases = 0.0, 1.0, 0
+        self.time, self.fit, self._phases, self._energy_at_edge = 0.0, 1.0, 0, 0.0
         gaps = float(body.release) + self._profile
         thresholds = base.interface.initial_memory(np.zeros(rings + 1))
         if relaxation.delayed is not None:  # in equilibrium with the vapour
@@ -96,8 +96,10 @@ class RoughBounce:
 
     def start(self) -> Samples:
         """The sample of the release."""
-        sample = self._free_flight_samples(self._left(), np.zeros(1))
-        if float(self.here.separation) > self._edge():
+        sample, edge = self._free_flight_samples(self._left(), np.zeros(1)), self._edge()
+        begin = self.here._replace(separation=np.asarray(edge), gaps=edge + self._profile)
+        self._energy_at_edge = float(self._try(0.0, begin).row[STORED])
+        if float(self.here.separation) > edge:
             return sample
         done = self._try(0.0)  # something acts already: the rings come to their equilibrium
         self.here = done.here
@@ -274,10 +276,13 @@ class RoughBounce:
             high, at_high = (high, at_high) if value > 0.0 else (span, value)
         return done, span
 
-    def _try(self, span: float) -> RingStep:
-        done = _step(self.relaxation, self.body, np.asarray(self.size), self.here, np.asarray(span))
+    def _try(self, span: float, here: RingState | None = None) -> RingStep:
+        here = self.here if here is None else here
+        done = _step(self.relaxation, self.body, np.asarray(self.size), here, np.asarray(span))
         answer: RingStep = jax.tree_util.tree_map(np.asarray, done)
-        return answer
+        row = np.array(answer.row)  # forces of any range end at the edge, and their energy too
+        row[STORED] -= self._energy_at_edge
+        return answer._replace(row=row)
 
     def _error(self, done: RingStep) -> float:
         """Error of a step over what is allowed; infinite where it is not solved."""
