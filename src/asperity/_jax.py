@@ -1,4 +1,4 @@
-"""JAX set up once: float64, one thread for LAPACK, a compile cache on disk, a rare collector.
+"""JAX set up once: float64, one thread for LAPACK, a compile cache on disk.
 
 Every room that computes imports ``jax`` from here, so that no array can be made
 before double precision is on.
@@ -16,9 +16,9 @@ import platformdirs
 # the BLAS library that JAX borrows from SciPy only wait for each other there: ten times slower
 # when another program runs, and for ever now and then.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# Tracing makes millions of objects, few of them in cycles: looking for these every 700 objects
-# takes a fifteenth of the time to a first answer.
-if 0 < gc.get_threshold()[0] < 50_000:
+# Tracing makes millions of objects, few of them in cycles: looking for these as often as Python
+# does by default takes a fifteenth of the time to a first answer.
+if gc.get_threshold()[0] in (700, 2000):
     gc.set_threshold(50_000, 20, 100)
 
 import jax

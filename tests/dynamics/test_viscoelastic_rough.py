@@ -152,6 +152,18 @@ def test_pull_off_of_a_deep_body_is_read_between_steps(monkeypatch):
     assert float(coarse.work) == pytest.approx(float(fine.work), rel=2e-4)
 
 
+def test_pull_off_is_not_of_what_follows_where_attraction_is_cut_off():
+    """Of a bulk that forgets within a flight, whose first sample is near the end of the forces."""
+    told, found = contact(law=Hertz(TIP, MODULUS) + Bradley(TIP, 0.02, 0.3e-9)), []
+    for time in (1e-8, 1e-11):
+        trajectory = integrated(0.5, time, replace(BODY, speed=2e-2), told=told)[1]
+        found.append(trajectory.unloading(slice(6, 6), discrete=False))
+    slow, fast = found
+    assert float(fast.pull_off) == pytest.approx(float(slow.pull_off), rel=0.01)
+    assert float(fast.work) == pytest.approx(float(slow.work), rel=0.01)
+    assert float(fast.separation) < 10.0 * SIGMA
+
+
 def test_steps_are_of_the_fourth_order():
     """Into the contact and with its bonds, against many more steps."""
     told = contact()

@@ -208,7 +208,7 @@ class ElasticContact(RoughContact):
         """Pieces of 16 nodes for bonds that are not of the branch of approach (static).
 
         Means are good to 1e-11 of the largest; to 5e-8 of bridges that stretch over thirty times
-        the length on which they fall off. Pieces for rings that lag behind count for none.
+        the length on which they fall off. Pieces that finer scanning adds count for none.
         """
         resolved = self.resolved
         return 1 + ceil(resolved.nodes * (resolved.pieces - resolved.later) / 16)

@@ -85,7 +85,7 @@ class Body(eqx.Module):
 
     @property
     def plain(self) -> Any:
-        """The same of NumPy's arrays: what is asked of it one by one compiles nothing."""
+        """The same of NumPy's arrays, whose arithmetic compiles nothing."""
         return jax.tree_util.tree_map(np.asarray, self)
 
     @property

@@ -18,6 +18,8 @@ from .time_series import Series
 from .time_stepping import KNOTS, TO_SERIES
 from .unloading import Unloading
 
+_LONE = 0.03  # of both steps beside it: a step as short counts for nothing
+
 
 class Trajectory(NamedTuple):
     """A motion in time.
@@ -105,9 +107,10 @@ class Trajectory(NamedTuple):
 
         there = np.flatnonzero(self.series.phase == 1)
         points = np.concatenate([there[:1] - 1, there])
-        time, first = np.unique(self.series.time[points], return_index=True)
-        points = points[first]
-        force = self.series.rows[points, FORCE]
+        acting = np.flatnonzero(self.series.rows[points, FORCE])  # in flight nothing acts
+        points = points[: acting[-1] + 1] if acting.size else points[:0]
+        points = points[_apart(self.series.time[points])]
+        time, force = self.series.time[points], self.series.rows[points, FORCE]
         if time.size < 2 or not np.min(force) < 0.0:
             return _unloading(0.0, np.nan, 0.0, 0.0, False)
         between = Akima1DInterpolator if discrete else CubicSpline
@@ -124,6 +127,20 @@ class Trajectory(NamedTuple):
         held = float(max(rows[CONTACTING], np.max(rows[bonds], initial=0.0)))
         return _unloading(-float(along(lowest)), float(place), work, held, True)
 
+    def maximum_force(self) -> float:
+        """Largest force of the first impact [N], by a parabola of time through three samples."""
+        force = self.series.rows[self.series.phase < 2, FORCE]
+        k = int(np.argmax(force))
+        about = slice(k - 1, k + 2)
+        span = np.ptp(self.series.time[about]) if 0 < k < force.size - 1 else 0.0
+        if not span > 0.0 or not force[k] > 0.0:
+            return float(force[k])
+        time = (self.series.time[about] - self.series.time[k]) / span
+        if np.min(np.diff(time)) < _LONE:
+            return float(force[k])
+        bend, slope, value = np.polyfit(time, force[about], 2)
+        return float(value - 0.25 * slope**2 / bend) if bend < 0.0 else float(force[k])
+
     def _kinetic(self, k: int, place: float, mass: float) -> float:
         """Kinetic energy [J] between two samples, by the polynomials of their step."""
         from scipy.optimize import brentq
@@ -135,6 +152,17 @@ class Trajectory(NamedTuple):
         low, high = 2.0 * KNOTS[k - first] - 1.0, 2.0 * KNOTS[k - first + 1] - 1.0
         x = brentq(lambda x: legval(x, there), low, high, xtol=1e-15)
         return float(0.5 * mass * legval(x, speed) ** 2)
+
+
+def _apart(time: np.ndarray) -> np.ndarray:
+    """Which samples at ascending times a spline may go through.
+
+    Not those that an event has put beside another: rounding makes a slope between them.
+    """
+    span = np.diff(time)
+    around = np.pad(span, 1, constant_values=np.inf)
+    lone = span <= _LONE * np.minimum(around[:-2], around[2:])
+    return np.concatenate([np.ones(min(time.size, 1), bool), ~lone & (span > 0.0)])
 
 
 def _unloading(

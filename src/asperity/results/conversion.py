@@ -94,13 +94,13 @@ def _stepped_contact(
 ) -> FirstContact:
     """The first contact of a motion that was stepped in time."""
     bonds = Quantities(motion.impacts.bonds.shape[1], 0).bonds
-    pulled, series = trajectory.unloading(bonds, discrete=discrete), trajectory.series
+    pulled = trajectory.unloading(bonds, discrete=discrete)
     peak = max(float(np.max(np.abs(motion.impacts.force))), float(pulled.pull_off))
     table = common_table(motion.table, motion.impacts.bonds.shape[1])
     end = contact_end(table, peak)
     held = float(motion.impacts.apex[0]) < end
     time = np.nan if held else trajectory.contact_time(end)
-    force = float(np.max(series.rows[series.phase < 2, FORCE]))
+    force = trajectory.maximum_force()
     outset = contact_end(table, float(least_peak(body, pulled.pull_off, peak)))
     return FirstContact(
         as_float64(end), as_float64(time), as_float64(force), pulled, as_float64(outset)

@@ -30,7 +30,7 @@ displacement of the bulk, or to the rms height where that is more."""
 _MOST = 20_000  # steps of a phase
 _TRIAL = 1e-6  # error of a step of a body that falls for its depth alone
 _FIRST = 0.02  # rms heights: the length of the first step into the forces
-_STRIDE = 0.5  # rms heights: by so much the gap at the axis changes in one step
+_STRIDE = 0.5  # of the rms height or half the gap: by about so much the gap at the axis changes
 _UNLOADING_STRIDE = 0.1  # the same on the first way out, which the pull-off force is read from
 _POLISH = 12  # of the length of a step that ends at a turn
 _SPENT = 1e-9  # of the energy of the fall from where a body counts as at rest
@@ -77,17 +77,16 @@ class RoughBounce:
         self._profile = np.asarray(_profile_of(base, np.asarray(size, float), base.rings))
         self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
-        rings = base.rings
         self._columns = quantities(base).components.stop
         self._delayed = relaxation.delayed
         self.lost = np.zeros(len(base.mechanisms) + len(body.in_bulk))
         self.time, self.fit, self._phases, self._energy_at_edge = 0.0, 1.0, 0, 0.0
         gaps = float(body.release) + self._profile
-        thresholds = base.interface.initial_memory(np.zeros(rings + 1))
+        thresholds = base.interface.initial_memory(np.zeros(base.rings + 1))
         if relaxation.delayed is not None:  # in equilibrium with the vapour
             goal = gaps - float(relaxation.delayed.law.forming_gap)
             thresholds = relaxation.delayed.with_threshold(thresholds, jnp.asarray(goal))
-        here = RingState(body.release, -body.speed, gaps, np.zeros(rings), thresholds)
+        here = RingState(body.release, -body.speed, gaps, np.zeros(base.rings), thresholds)
         self.here: RingState = jax.tree_util.tree_map(np.asarray, here)
         # A body may be let go at rest where forces begin; a fall by a height is its first scale.
         speed = sqrt(float(body.speed) ** 2 + 2.0 * self._gravity * self._rms)
@@ -155,9 +154,8 @@ class RoughBounce:
         )
         self.time, self.lost = float(samples.time[-1]), samples.lost[-1].copy()
         self._span = _FIRST * self._rms / max(abs(float(samples.speed[-1])), 1e-300)
-        self.maximum_kinetic = max(
-            self.maximum_kinetic, 0.5 * self._mass * float(samples.speed[-1]) ** 2
-        )
+        fast = float(np.max(np.abs(samples.speed)))
+        self.maximum_kinetic = max(self.maximum_kinetic, 0.5 * self._mass * fast**2)
         return fate, samples
 
     def _waited(self, span: float) -> Thresholds:
@@ -249,9 +247,14 @@ class RoughBounce:
                     span *= 0.5
                     continue
                 # A deep body moves far while the gap at its axis hardly changes.
-                closed = abs(float(done.here.gaps[0] - self.here.gaps[0]))
-                stride = (_UNLOADING_STRIDE if self._phases == 2 else _STRIDE) * self._rms
-                self._span = min(next_span, span * stride / max(closed, 1e-300))
+                before, gap = float(self.here.gaps[0]), float(done.here.gaps[0])
+                share = _UNLOADING_STRIDE if self._phases == 2 else _STRIDE
+                stride = share * max(self._rms, 0.5 * gap)
+                self._span = min(next_span, span * stride / max(abs(gap - before), 1e-300))
+                place, speed = float(done.here.separation), float(done.here.speed)
+                left = self._interaction_range - place
+                if speed > 0.0 < left:  # the last one ends where forces do, or little beyond
+                    self._span = min(self._span, max(left, 1e-3 * self._rms) / speed)
                 return done, span
             span *= min(max(factor, 0.1), 0.9)
         return None, span
