@@ -671,10 +671,12 @@ def test_misspelt_keys_of_an_own_case_are_told_and_can_be_taken_out(page, tmp_pa
     expect(wrong).to_contain_text("did you mean 'radius'?")
     expect(wrong).to_contain_text("colour")
     expect(page.locator("#form > .wrong")).to_contain_text("did you mean 'body'?")
-    for _ in range(3):
-        page.locator("#form .wrong button").first.click()
-        settled(page)
-    expect(page.locator("#verdicts .wrong")).to_have_count(0)
+    refused = page.locator("#verdicts .wrong")
+    for _ in range(6):  # three keys; a click is lost where the form is made anew in the same moment
+        if refused.count():
+            page.locator("#form .wrong button").first.click()
+            settled(page)
+    expect(refused).to_have_count(0, timeout=PATIENT)
     expect(page.locator("#form .wrong:visible")).to_have_count(0)
 
 

@@ -253,7 +253,7 @@ class RoughBounce:
                 self._span = min(next_span, span * stride / max(abs(gap - before), 1e-300))
                 place, speed = float(done.here.separation), float(done.here.speed)
                 left = self._interaction_range - place
-                if speed > 0.0 < left:  # the last one ends where forces do, or little beyond
+                if left > 0.0 and speed > 0.0:  # the last step ends where forces do
                     self._span = min(self._span, max(left, 1e-3 * self._rms) / speed)
                 return done, span
             span *= min(max(factor, 0.1), 0.9)
