@@ -272,9 +272,8 @@ def _losses_along(
 
 def _known(motion: Motion) -> float:
     """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
-    impacts = motion.impacts
-    energy_balance_error = np.max(np.where(impacts.made, impacts.energy_balance_error, 0.0))
-    return float(max(2.0 * energy_balance_error, CLOSED * impacts.maximum_kinetic[0]))
+    share = max(2.0 * balance_error(motion), CLOSED)
+    return share * float(motion.impacts.maximum_kinetic[0])
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:

@@ -97,10 +97,11 @@ async function tabled(table, used) {
 
 async function completed(design, before, touched, focus) {
   design.touched = touched;
-  work();
+  const completing = design.complete(before);
+  work(); // it is busy from now on
   let filled = [];
   try {
-    filled = await design.complete(before);
+    filled = await completing;
   } catch {
     // what is missing is told by the question itself
   }
