@@ -136,7 +136,10 @@ def test_progress_of_a_sweep_rises_to_one():
 
 
 def test_ctrl_c_ends_a_sweep_and_what_it_computes(monkeypatch):
-    """What computes goes on until it is asked to stop, as a long task does."""
+    """What computes goes on until it is asked to stop, as a long task does.
+
+    The signal comes in another thread: like one that comes just before the wait, it ends no wait.
+    """
     stopped, begun, pressed = threading.Event(), threading.Event(), []
 
     def long(study, task, stop):
@@ -148,7 +151,7 @@ def test_ctrl_c_ends_a_sweep_and_what_it_computes(monkeypatch):
     def press():
         begun.wait(120.0)  # what comes before may have to compile
         pressed.append(time.monotonic())
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(batch, "compute", long)
     threading.Thread(target=press).start()

@@ -28,6 +28,9 @@ Answer = tuple[int, dict[str, np.ndarray], "Effort"]
 Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""
 
+_LISTEN = 0.2
+"""How often what waits looks for Ctrl-C, which a wait without end may miss as it begins [s]."""
+
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:e[-+]?\d+)?")
 
 _EACH = {
@@ -231,7 +234,7 @@ def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Ite
             for _ in range(2 * cores):
                 submit()
             while ahead:
-                for future in wait(ahead, return_when=FIRST_COMPLETED).done:
+                for future in wait(ahead, _LISTEN, return_when=FIRST_COMPLETED).done:
                     task = ahead.pop(future)
                     submit()
                     try:
