@@ -199,7 +199,8 @@ def test_drawing_leaves_the_users_own_style_alone():
 
 def test_the_first_contact_is_found():
     result = bounce(0.8, 10)
-    start, end = impacts.window(result) or (0.0, 0.0)
+    points = impacts.first_contact(result) or slice(0, 1)
+    start, end = result.time[points][[0, -1]] - result.events["closest_approach_time"][0]
     way_in = np.pi / 2 * np.sqrt(MASS / 2e4)
     assert start < -way_in
     assert way_in < end < 0.2 * result.events["apex_time"][0]

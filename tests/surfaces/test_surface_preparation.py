@@ -102,7 +102,7 @@ def test_a_gap_at_the_edge_of_the_map_is_filled():
 
 def test_missing_pixels_are_refused_with_their_number_and_what_to_do():
     with pytest.raises(InputError, match=r"a\.npy: 204 of 10800 pixels are missing; .*'fill'") as e:
-        filled(holed(roughness())[0], "refuse")
+        prepared(holed(roughness())[0], Preparation(missing="refuse"))
     assert e.value.file == "a.npy"
 
 
@@ -379,7 +379,7 @@ def test_low_and_high_parts_add_up_to_the_surface():
 )
 def test_a_cut_that_the_map_cannot_show_is_refused(cuts, rule):
     with pytest.raises(InputError, match=rule):
-        band_limited(surface(roughness()), **cuts)
+        prepared(surface(roughness()), Preparation(form_removal="none", **cuts))
 
 
 # --- the whole preparation -----------------------------------------------------------------

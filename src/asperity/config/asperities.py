@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from asperity.surfaces.description.summits import Summits
-    from asperity.surfaces.files.read_surface import Reading
+    from asperity.surfaces.files.reading import Reading
     from asperity.surfaces.preparation.prepare import Prepared
     from asperity.surfaces.topography import Topography
 

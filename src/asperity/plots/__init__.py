@@ -44,8 +44,7 @@ def pictures(result: Result | Curve) -> dict[str, bytes]:
         return {}
     found: dict[str, bytes] = {}
     for part in parts:
-        drawn = figure(result, part)
-        found |= {f"{part}.png": style.png(drawn), f"{part}.svg": style.svg(drawn)}
+        found |= style.images(part, figure(result, part))
     return found
 
 

@@ -67,7 +67,8 @@ def summits(found: Realisations) -> Row:
 
 
 def _from_above(axes: Axes, x: np.ndarray, y: np.ndarray, gap: np.ndarray) -> None:
-    metres, unit = style.scale_of(x, y, unit="m")
+    metres = style.scaled_axis(axes.xaxis, "x", x, y, unit="m")
+    style.scaled_axis(axes.yaxis, "y", x, y, unit="m")
     near = gap < 0.0
     for chosen, tint, label in (
         (near, colour("gas"), "summits in contact"),
@@ -81,5 +82,4 @@ def _from_above(axes: Axes, x: np.ndarray, y: np.ndarray, gap: np.ndarray) -> No
     farthest = 1.1 * max(float(np.max(np.hypot(x, y))), 1e-30) / metres
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlim=(-farthest, farthest), ylim=(-farthest, farthest))
-    axes.set(xlabel=style.label("x", unit), ylabel=style.label("y", unit))
     style.legend_above(axes, rows=2)

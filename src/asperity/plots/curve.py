@@ -28,9 +28,9 @@ def panels(curve: Curve) -> Row:
 
 
 def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
-    metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
+    metres = style.scaled_axis(axes.xaxis, "rigid separation", curve.rigid_separation, unit="m")
     size = np.array([curve.pull_off]) if zoomed else curve.force_loading
-    newtons, unit = style.scale_of(size, unit="N")
+    newtons = style.scaled_axis(axes.yaxis, "force", size, unit="N")
     gap = curve.rigid_separation / metres
     inward, outward = curve.force_loading / newtons, curve.force_unloading / newtons
     axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
@@ -38,8 +38,6 @@ def _branches(axes: Axes, curve: Curve, *, zoomed: bool) -> None:
     axes.plot(gap, inward, color=colour("loading"), label="loading")
     axes.plot(gap, outward, color=colour("unloading"), ls=(0, (5, 1.5)), label="unloading")
     _jumps(axes, curve, metres, newtons)
-    axes.set_xlabel(style.label("rigid separation", length_unit))
-    axes.set_ylabel(style.label("force", unit))
     axes.margins(x=0.02)
     if zoomed:
         _frame(axes, curve, metres, newtons)
@@ -71,15 +69,13 @@ def _jumps(axes: Axes, curve: Curve, metres: float, newtons: float) -> None:
 
 
 def _difference(axes: Axes, curve: Curve) -> None:
-    metres, length_unit = style.scale_of(curve.rigid_separation, unit="m")
+    metres = style.scaled_axis(axes.xaxis, "rigid separation", curve.rigid_separation, unit="m")
     difference = curve.force_unloading - curve.force_loading
-    newtons, unit = style.scale_of(difference, unit="N")
+    newtons = style.scaled_axis(axes.yaxis, "unloading less loading", difference, unit="N")
     gap = curve.rigid_separation / metres
     axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
     axes.fill_between(gap, 0.0, difference / newtons, color=colour("lost"), lw=0.0)
     axes.plot(gap, difference / newtons, color=colour("unloading"))
-    axes.set_xlabel(style.label("rigid separation", length_unit))
-    axes.set_ylabel(style.label("unloading less loading", unit))
     axes.margins(x=0.02)
     axes.set_title("energy lost")
 

@@ -10,8 +10,6 @@ from asperity.plots.style import Panel, Row
 from asperity.results.colours import colour
 from asperity.results.result import Result
 
-_MANY = 3
-_MARKED = 40
 _LEAST = 1e-9  # of the largest loss of an impact; less is rounding
 _FLOATING = ("potential", "stored")
 
@@ -23,7 +21,7 @@ def panels(result: Result) -> Row:
     contact = impacts.first_contact(result)
     if contact is not None:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, contact)))
-    many = result.events.get("closest_approach_time", np.empty(0)).size >= _MANY
+    many = impacts.times(result, "closest_approach").size >= impacts.MANY
     losses = [values for name, values in result.energies.items() if name.startswith("lost_")]
     if many and any(np.any(values > 0.0) for values in losses):
         row.append(Panel(1.0, lambda axes: _losses(axes, result)))
@@ -49,7 +47,8 @@ def _stacked(axes: Axes, result: Result, points: slice, start: float) -> str:
     names += [name for name in energies if name not in names]
     time = result.time[points] - start
     seconds, time_unit = style.scale_of(time, unit="s")
-    joules, unit = style.scale_of(np.sum(list(energies.values()), axis=0), unit="J")
+    total = np.sum(list(energies.values()), axis=0)
+    joules = style.scaled_axis(axes.yaxis, "energy above lowest", total, unit="J")
     axes.stackplot(
         time / seconds,
         [energies[name][points] / joules for name in names],
@@ -57,7 +56,6 @@ def _stacked(axes: Axes, result: Result, points: slice, start: float) -> str:
         labels=[name.replace("lost_", "lost to ") for name in names],
         lw=0.0,
     )
-    axes.set_ylabel(style.label("energy above lowest", unit))
     axes.margins(x=0.0, y=0.0)
     return time_unit
 
@@ -69,16 +67,13 @@ def _losses(axes: Axes, result: Result) -> None:
     }
     least = _LEAST * max(float(np.max(energy)) for energy in found.values())
     found = {n: np.where(e > least, e, np.nan) for n, e in found.items() if np.any(e > least)}
-    joules, unit = style.scale_of(*found.values(), unit="J")
+    joules = style.scaled_axis(axes.yaxis, "energy lost", *found.values(), unit="J")
     for name, energy in found.items():
-        size = 2.5 if energy.size <= _MARKED else 1.5
-        number = np.arange(1, energy.size + 1)
-        axes.plot(number, energy / joules, "o", ms=size, mew=0.0, color=colour(name))
+        style.dots(axes, np.arange(1, energy.size + 1), energy / joules, colour(name))
     style.log_axis(axes, *found.values())
     if axes.get_yscale() == "linear":
         axes.set_ylim(bottom=0.0)
     style.count_axis(axes, "impact")
-    axes.set_ylabel(style.label("energy lost", unit))
     axes.set_title("each impact")
 
 

@@ -13,7 +13,6 @@ from asperity.results.result import Result
 _PULLS = ("adhesion", "capillary")
 _SMALL = 0.2
 _VISIBLE = 0.01  # of the force of contact
-_MANY = 3
 
 
 def panels(result: Result) -> Row:
@@ -32,7 +31,7 @@ def panels(result: Result) -> Row:
     pull = max((np.max(np.abs(result.forces[name])) for name in pulls), default=0.0)
     if 0.0 < pull < _SMALL * peak:
         row.append(Panel(1.0, lambda axes: _contact(axes, result, pulls)))
-    many = result.events.get("closest_approach_time", np.empty(0)).size >= _MANY
+    many = impacts.times(result, "closest_approach").size >= impacts.MANY
     if many and (peak > 0.0 or pull > 0.0):
         row.append(Panel(0.9, lambda axes: _peaks(axes, result)))
     return row
@@ -51,8 +50,10 @@ def _contact(axes: Axes, result: Result, names: list[str]) -> None:
     points = points or slice(None)
     time = result.time[points] - start
     forces = {name: result.forces[name][points] for name in names}
-    seconds, time_unit = style.scale_of(time, unit="s")
-    newtons, unit = style.scale_of(*forces.values(), unit="N")
+    since = "time from closest approach" if start else "time since release"
+    seconds = style.scaled_axis(axes.xaxis, since, time, unit="s")
+    named = names[0] if len(names) == 1 else "force"
+    newtons = style.scaled_axis(axes.yaxis, named, *forces.values(), unit="N")
     axes.axhline(0.0, color=colour("quiet"), lw=0.4, zorder=0)
     for name, force in forces.items():
         whole = name == "contact"
@@ -64,13 +65,8 @@ def _contact(axes: Axes, result: Result, names: list[str]) -> None:
             alpha=0.35 if whole else 1.0,
             label="contact, all" if whole else name,
         )
-    since = "time from closest approach" if start else "time since release"
-    axes.set_xlabel(style.label(since, time_unit))
     axes.margins(x=0.0)
-    if len(names) == 1:
-        axes.set_ylabel(style.label(names[0], unit))
-    else:
-        axes.set_ylabel(style.label("force", unit))
+    if len(names) > 1:
         style.legend_above(axes)
 
 
@@ -80,13 +76,10 @@ def _peaks(axes: Axes, result: Result) -> None:
         **{name: impacts.largest(result, name, -1.0) for name in _PULLS},
     }
     found = {name: np.where(f > 0.0, f, np.nan) for name, f in found.items() if np.any(f > 0.0)}
-    newtons, unit = style.scale_of(*found.values(), unit="N")
+    newtons = style.scaled_axis(axes.yaxis, "largest force", *found.values(), unit="N")
     for name, force in found.items():
-        size = 2.5 if force.size <= 40 else 1.5
         tint = colour("contact" if name == "push" else name)
-        number = np.arange(1, force.size + 1)
-        axes.plot(number, force / newtons, "o", ms=size, mew=0.0, color=tint, label=name)
+        style.dots(axes, np.arange(1, force.size + 1), force / newtons, tint, name)
     style.log_axis(axes, *found.values())
     style.count_axis(axes, "impact")
-    axes.set_ylabel(style.label("largest force", unit))
     style.legend_above(axes, 2)

@@ -38,9 +38,15 @@ class Place(NamedTuple):
     width: float
     height: float
 
+    def share(self, page: tuple[float, float]) -> tuple[float, float, float, float]:
+        """The place as matplotlib has it: in parts of a page [mm], from below."""
+        wide, tall = page
+        bottom = tall - self.top - self.height
+        return self.left / wide, bottom / tall, self.width / wide, self.height / tall
+
 
 def draw_map(
-    figure: Figure, topography: Topography, room: tuple[float, ...], page: tuple[float, float]
+    figure: Figure, topography: Topography, room: Place, page: tuple[float, float]
 ) -> Axes:
     """Draw a map with its bars.
 
@@ -51,21 +57,18 @@ def draw_map(
     topography
         The map.
     room
-        Left, top, width and height [mm] of what the map may take; the colour bar stands to the
-        right of it and the scale bar below.
+        What the map may take; the colour bar stands to the right of it and the scale bar below.
     page
         Width and height of the page [mm].
     """
     wide, tall = topography.physical_size
-    place = _fitted(Place(*room), wide / tall)
-    axes = figure.add_axes(_share(place, page))
+    place = _fitted(room, wide / tall)
+    axes = figure.add_axes(place.share(page))
     factor, unit = style.scale_of(topography.heights, unit="m")
     image, clipped = _image(axes, topography, factor)
-    bar_height = max(place.height, min(_LEAST_BAR, room[3]))
+    bar_height = max(place.height, min(_LEAST_BAR, room.height))
     beside = Place(place.left + place.width + 2.0, place.top, _BAR, bar_height)
-    bar = figure.colorbar(image, cax=figure.add_axes(_share(beside, page)), extend=clipped)
-    bar.set_label(style.label("height", unit))
-    bar.outline.set_visible(False)
+    style.colour_bar(figure, image, beside.share(page), style.label("height", unit), clipped)
     _scale_bar(axes, topography, place)
     return axes
 
@@ -134,13 +137,6 @@ def _fitted(room: Place, ratio: float) -> Place:
     ratio = min(max(ratio, 1.0 / _SLIMMEST), _SLIMMEST)
     width = min(room.width, room.height * ratio)
     return Place(room.left, room.top, width, width / ratio)
-
-
-def _share(place: Place, page: tuple[float, float]) -> tuple[float, float, float, float]:
-    """A place as matplotlib has it: in parts of the page, from below."""
-    wide, tall = page
-    bottom = tall - place.top - place.height
-    return place.left / wide, bottom / tall, place.width / wide, place.height / tall
 
 
 def _scale_bar(axes: Axes, topography: Topography, place: Place) -> None:

@@ -11,6 +11,15 @@ _MARGIN = 0.15
 _LEGIBLE = 25
 _MOST = 0.6
 
+MANY = 3
+"""Impacts or rebounds from which a panel shows what each of them has."""
+
+
+def times(result: Result, turn: str) -> np.ndarray:
+    """Times [s] of the tops ("apex") or of the closest approaches; none where none was reached."""
+    found: np.ndarray = result.events.get(f"{turn}_time", np.empty(0))
+    return found
+
 
 def first_contact(result: Result) -> slice | None:
     """The points of the first contact with some free flight at both ends; None without one.
@@ -18,10 +27,10 @@ def first_contact(result: Result) -> slice | None:
     The contact lasts while a force exceeds a small share of its largest value: the contact force
     of the peak, a pull of the largest pull, so that a weak but long pull is seen too.
     """
-    deepest = result.events.get("closest_approach_time", np.empty(0))
+    deepest = times(result, "closest_approach")
     if deepest.size == 0 or "contact" not in result.forces:
         return None
-    tops = result.events.get("apex_time", np.empty(0))
+    tops = times(result, "apex")
     last = tops[0] if tops.size else result.time[-1]
     flight = slice(0, int(np.searchsorted(result.time, last, side="right")))
     seen = np.zeros(result.time[flight].size, dtype=bool)
@@ -47,30 +56,20 @@ def beginning(result: Result) -> tuple[slice, str]:
 
     All of them, unless there are many rebounds that die away slowly; then the first ones.
     """
-    tops = result.events.get("apex_time", np.empty(0))
+    tops = times(result, "apex")
     if tops.size <= _LEGIBLE or tops[_LEGIBLE - 1] > _MOST * tops[-1]:
         return slice(None), ""
     end = int(np.searchsorted(result.time, tops[_LEGIBLE - 1], side="right"))
     return slice(0, end), f", first {_LEGIBLE} of {tops.size} rebounds"
 
 
-def window(result: Result) -> tuple[float, float] | None:
-    """Start and end of the first contact with a margin, from its closest approach [s]."""
-    points = first_contact(result)
-    if points is None:
-        return None
-    middle = float(result.events["closest_approach_time"][0])
-    time = result.time[points]
-    return float(time[0]) - middle, float(time[-1]) - middle
-
-
 def largest(result: Result, name: str, sign: float) -> np.ndarray:
     """Largest push (sign 1) or pull (sign -1) of a force in each impact [N]."""
     force = result.forces.get(name)
-    deepest = result.events.get("closest_approach_time", np.empty(0))
+    deepest = times(result, "closest_approach")
     if force is None or deepest.size == 0:
         return np.empty(0)
-    tops = result.events.get("apex_time", np.empty(0))[: deepest.size - 1]
+    tops = times(result, "apex")[: deepest.size - 1]
     starts = np.concatenate([[0], np.searchsorted(result.time, tops)])
     starts = starts[: deepest.size]
     return np.maximum(np.maximum.reduceat(sign * force, starts), 0.0)
@@ -78,8 +77,8 @@ def largest(result: Result, name: str, sign: float) -> np.ndarray:
 
 def lost(result: Result, name: str) -> np.ndarray:
     """Energy that a channel of losses took from apex to apex, per impact [J]."""
-    deepest = result.events.get("closest_approach_time", np.empty(0))
-    tops = result.events.get("apex_time", np.empty(0))[: max(deepest.size - 1, 0)]
+    deepest = times(result, "closest_approach")
+    tops = times(result, "apex")[: max(deepest.size - 1, 0)]
     ends = np.concatenate([result.time[:1], tops, result.time[-1:]])[: deepest.size + 1]
     taken: np.ndarray = np.diff(np.interp(ends, result.time, result.energies[name]))
     return taken

@@ -10,8 +10,6 @@ from asperity.plots.style import Panel, Row
 from asperity.results.colours import colour
 from asperity.results.result import Result
 
-_MANY = 3
-_MARKED = 40
 _TURNS = (("apex", "^", "top of rebound"), ("closest_approach", "v", "closest approach"))
 
 
@@ -19,7 +17,7 @@ def panels(result: Result) -> Row:
     """The whole motion; beside it the heights of rebound, or the first contact if they are few."""
     row = [Panel(2.0, lambda axes: _whole(axes, result))]
     heights = _heights(result)
-    if np.count_nonzero(heights > 0.0) >= _MANY:
+    if np.count_nonzero(heights > 0.0) >= impacts.MANY:
         row.append(Panel(1.0, lambda axes: _rebounds(axes, result, heights)))
     elif impacts.first_contact(result) is not None:
         row.append(Panel(1.0, lambda axes: _first(axes, result)))
@@ -53,11 +51,11 @@ def _whole(axes: Axes, result: Result) -> None:
     points, shown = impacts.beginning(result)
     time, gap = result.time[points], result.separation[points]
     seconds, time_unit = style.scale_of(time, unit="s")
-    metres, unit = style.scale_of(gap, unit="m")
+    metres = style.scaled_axis(axes.yaxis, "separation", gap, unit="m")
     _central(axes, result, points, time / seconds, metres)
     axes.plot(time / seconds, gap / metres, color=colour("motion"), label="rigid separation")
     for turn, sign, text in _TURNS:
-        found = result.events.get(f"{turn}_time", np.empty(0))
+        found = impacts.times(result, turn)
         seen = found <= time[-1]
         if seen.any():
             place = result.events[f"{turn}_separation"][seen] / metres
@@ -71,7 +69,6 @@ def _whole(axes: Axes, result: Result) -> None:
             label=_reference_name(result),
         )  # fmt: skip
     axes.set_xlabel(style.label("time since release", time_unit) + shown)
-    axes.set_ylabel(style.label("separation", unit))
     axes.set_xlim(0.0, time[-1] / seconds)
     style.legend_above(axes)
 
@@ -91,16 +88,14 @@ def _central(axes: Axes, result: Result, points: slice, time: np.ndarray, metres
 
 
 def _rebounds(axes: Axes, result: Result, heights: np.ndarray) -> None:
-    metres, unit = style.scale_of(heights, unit="m")
+    above = "rest" if result.case.publication is None else "the edge"
+    metres = style.scaled_axis(axes.yaxis, f"height above {above}", heights, unit="m")
     number = np.arange(heights.size)
-    size = 2.5 if heights.size <= _MARKED else 1.5
     axes.plot(number, heights / metres, "-", lw=0.5, color=colour("quiet"))
-    axes.plot(number, heights / metres, "o", ms=size, mew=0.0, color=colour("apex"))
+    style.dots(axes, number, heights / metres, colour("apex"))
     style.log_axis(axes, heights)
     release = "release + v²/2g" if _launched(result) else "release"
     style.count_axis(axes, f"rebound (0: {release})" if np.isfinite(heights[0]) else "rebound")
-    above = "rest" if result.case.publication is None else "the edge"
-    axes.set_ylabel(style.label(f"height above {above}", unit))
 
 
 def _first(axes: Axes, result: Result) -> None:
@@ -108,11 +103,10 @@ def _first(axes: Axes, result: Result) -> None:
     assert points is not None
     time = result.time[points] - result.events["closest_approach_time"][0]
     gap = result.separation[points]
-    seconds, time_unit = style.scale_of(time, unit="s")
-    metres, unit = style.scale_of(gap, result.central_separation[points], unit="m")
+    seconds = style.scaled_axis(axes.xaxis, "time from closest approach", time, unit="s")
+    both = (gap, result.central_separation[points])
+    metres = style.scaled_axis(axes.yaxis, "separation", *both, unit="m")
     _central(axes, result, points, time / seconds, metres)
     axes.plot(time / seconds, gap / metres, color=colour("motion"))
-    axes.set_xlabel(style.label("time from closest approach", time_unit))
-    axes.set_ylabel(style.label("separation", unit))
     axes.margins(x=0.0)
     axes.set_title("first contact")

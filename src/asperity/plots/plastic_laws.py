@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from asperity.plots import style
 from asperity.plots.style import Panel
@@ -52,8 +51,7 @@ def _draw(
 ) -> None:
     """One line a law over the index, beside that of elastic asperities."""
     axes.plot(index, np.full(index.shape, elastic), color=colour("contact"), label="Hertz")
-    style.lines(axes, {name: (index, line) for name, line in lines.items()})
+    laws = {name: (index, line) for name, line in lines.items()}
+    style.lines(axes, laws, "plasticity index [-]")
     if fitted < index[-1]:
         axes.axvspan(fitted, index[-1], color=_BEYOND, lw=0.0, zorder=0, label="beyond the fits")
-    axes.set(xscale="log", xlim=(index[0], index[-1]), xlabel="plasticity index [-]")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

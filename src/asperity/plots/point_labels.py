@@ -25,7 +25,7 @@ def name_points(
     names: Sequence[str],
     colours: Sequence[str],
     taken: Sequence[Text],
-) -> list[Text]:
+) -> None:
     """Write a name beside each point, with a thin line to it where it stands away from it.
 
     Names stay within the axes and off each other, off the points and off other texts, and off
@@ -47,7 +47,6 @@ def name_points(
     boxes = [text.get_window_extent() for text in taken]
     boxes += [Bbox.from_extents(*(spot - millimetre), *(spot + millimetre)) for spot in spots]
     lines = np.concatenate([axes.transData.transform(line.get_xydata()) for line in axes.lines])
-    texts = []
     for spot, name, tint in zip(spots, names, colours, strict=True):
         text = _text(axes, name, tint)
         size = text.get_window_extent()
@@ -62,8 +61,6 @@ def name_points(
         _settle(axes, text, box, spot if led else None)
         if led:
             lines = np.concatenate([lines, _leader(box, spot)])
-        texts.append(text)
-    return texts
 
 
 def _text(axes: Axes, name: str, tint: str) -> Text:

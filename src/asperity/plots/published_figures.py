@@ -34,9 +34,7 @@ def files(drawings: dict[str, Drawing]) -> dict[str, bytes]:
     """Each figure as PNG and as SVG, and its data as CSV, by file name."""
     out: dict[str, bytes] = {}
     for name, figure in figures(drawings).items():
-        out[f"{name}.png"] = style.png(figure)
-        out[f"{name}.svg"] = style.svg(figure)
-        out[f"{name}.csv"] = drawings[name].csv()
+        out |= style.images(name, figure) | {f"{name}.csv": drawings[name].csv()}
     return out
 
 
@@ -64,13 +62,10 @@ def _scaled(
     axes: Axes, labels: Sequence[str], xs: Sequence[np.ndarray], ys: Sequence[np.ndarray]
 ) -> list[float]:
     """Label both axes, ``name [unit]`` with a prefix that suits; the factors."""
-    factors, texts = [], []
-    for label, values in zip(labels, (xs, ys), strict=True):
+    factors = []
+    for axis, label, values in zip((axes.xaxis, axes.yaxis), labels, (xs, ys), strict=True):
         name, unit = label.rstrip("]").rsplit(" [", 1)
-        factor, prefixed = style.scale_of(*values, unit=unit)
-        factors.append(factor)
-        texts.append(style.label(name, prefixed))
-    axes.set(xlabel=texts[0], ylabel=texts[1])
+        factors.append(style.scaled_axis(axis, name, *values, unit=unit))
     return factors
 
 
@@ -115,12 +110,8 @@ def _heights(axes: Axes, drawing: Drawing) -> None:
     assert isinstance(figure, Figure)
     place = axes.get_position()
     axes.set_position((place.x0, place.y0, 0.8 * place.width, place.height))
-    column = figure.add_axes(
-        (place.x0 + 0.83 * place.width, place.y0, 0.03 * place.width, place.height)
-    )
-    bar = figure.colorbar(image, cax=column)
-    bar.set_label(style.label("height", unit))
-    bar.outline.set_visible(False)
+    column = (place.x0 + 0.83 * place.width, place.y0, 0.03 * place.width, place.height)
+    style.colour_bar(figure, image, column, style.label("height", unit))
 
 
 def _distribution(axes: Axes, drawing: Drawing) -> None:

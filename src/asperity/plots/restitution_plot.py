@@ -13,22 +13,26 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from asperity.plots import capture_plot, style
+from asperity.plots import style
 from asperity.plots.study import outcomes
 from asperity.plots.study.drawn_quantities import Quantity
 from asperity.plots.study.panels import Block, Page
 from asperity.results.colours import colour
+from asperity.results.realisations import QUANTILES
 from asperity.sweeps.capture_probability import CaptureProbability
 
 _DOTTED = 40
 _MARGIN = 1.15
 _EDGE: Any = {"color": colour("contact"), "lw": 0.6, "ls": (0, (4, 3))}
 _OWN: Any = {"color": colour("apex"), "lw": 0.8, "marker": "v", "ms": 4.0, "mew": 0.0}
+_BODIES = colour("gas")
+_BAND: Any = {"color": _BODIES, "alpha": 0.35, "lw": 0.0}
+_HALF: Any = {"color": _BODIES, "lw": 1.0, "ls": (0, (1, 1))}
 
 
 def pictures(drawn: Figure) -> dict[str, bytes]:
     """The `figure` as PNG and SVG, by file name."""
-    return {"restitution.png": style.png(drawn), "restitution.svg": style.svg(drawn)}
+    return style.images("restitution", drawn)
 
 
 def figure(
@@ -92,13 +96,13 @@ def figure(
         if own_speed is not None:
             axes.plot([own_speed / factor] * 2, [-0.03, 1.0], markevery=[1], **_OWN)
         if single_bodies is not None:
-            capture_plot.draw_restitution(axes, x.values, single_bodies)
+            _bodies_restitution(axes, x.values, single_bodies)
         _values(axes, x.values, np.where(captured, np.nan, restitution), captured)
 
     def draw_share(axes: Axes) -> None:
         dress(axes)
         assert single_bodies is not None
-        capture_plot.draw_share(axes, x.values, single_bodies, factor)
+        _captured_share(axes, x.values, single_bodies, factor)
 
     blocks = [Block("", draw), *([] if single_bodies is None else [Block("", draw_share)])]
     legend = [
@@ -109,9 +113,32 @@ def figure(
     return Page(name, blocks, 1, legend).figure()
 
 
+def _bodies_restitution(axes: Axes, x: np.ndarray, found: CaptureProbability) -> None:
+    """A band from the lowest to the highest of the quantiles of restitution, over speeds ``x``."""
+    low, _, high = found.restitution.T
+    axes.fill_between(x, low, high, **_BAND)
+
+
+def _captured_share(axes: Axes, x: np.ndarray, found: CaptureProbability, factor: float) -> None:
+    """The captured share with its interval, and the speed at which it falls below a half.
+
+    Speeds ``x`` are in units of ``factor`` [m/s].
+    """
+    axes.set(ylabel="captured share of bodies [-]", ylim=(-0.03, 1.03))
+    axes.fill_between(x, found.low, found.high, **_BAND)
+    axes.plot(x, found.probability, color=_BODIES)
+    if found.half_velocity is not None:
+        axes.axvline(found.half_velocity / factor, **_HALF)
+
+
 def _of_bodies(found: CaptureProbability) -> list[tuple[Artist, str]]:
-    half = found.half_velocity
-    return capture_plot.legend(found, "" if half is None else _told(half))
+    """What the legend says of single bodies."""
+    low, _, high = QUANTILES
+    band = f"{100 * low:g} to {100 * high:g} % of {found.bodies} bodies; share with 95 % interval"
+    rows: list[tuple[Artist, str]] = [(Patch(facecolor=_BODIES, alpha=0.35, lw=0.0), band)]
+    if found.half_velocity is not None:
+        rows.append((Line2D([], [], **_HALF), f"half are captured at {_told(found.half_velocity)}"))
+    return rows
 
 
 def _of_stopped(stopped: np.ndarray) -> list[tuple[Artist, str]]:

@@ -10,9 +10,11 @@ from typing import Any, NamedTuple
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from asperity.results.colours import colour
 from asperity.results.summary import scaled
@@ -23,7 +25,9 @@ COLUMN, PAGE = 85.0, 170.0
 RESOLUTION = 200
 """Dots per inch of a PNG."""
 
-_INCH = 25.4
+INCH = 25.4
+"""Millimetres."""
+
 _MARGINS = {"left": 14.0, "right": 3.0, "top": 9.0, "bottom": 11.0}
 _GAP = 17.0
 _HEIGHT = 42.0
@@ -31,6 +35,7 @@ _ONE_ROW = 3
 _TINTS = ("motion", "unloading", "apex", "gas")
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _MARKER_SCALE = 1.5
+_MARKED = 40
 
 
 _LOOK: Any = {
@@ -86,6 +91,13 @@ def look() -> Any:
     return mpl.rc_context(_LOOK)
 
 
+def sheet(width: float, height: float) -> Picture:
+    """An empty figure of a width and a height [mm]."""
+    figure = Picture(figsize=(width / INCH, height / INCH), dpi=RESOLUTION)
+    FigureCanvasAgg(figure)
+    return figure
+
+
 def figure_of(rows: Sequence[Row]) -> Figure:
     """A figure with rows of panels at fixed distances; single panels are one column wide.
 
@@ -97,8 +109,7 @@ def figure_of(rows: Sequence[Row]) -> Figure:
     width = COLUMN if all(len(row) == 1 for row in rows) else PAGE
     step = _HEIGHT + _MARGINS["top"] + _MARGINS["bottom"]
     tall = step * len(rows)
-    figure = Picture(figsize=(width / _INCH, tall / _INCH), dpi=RESOLUTION)
-    FigureCanvasAgg(figure)
+    figure = sheet(width, tall)
     for number, row in enumerate(rows):
         room = width - _MARGINS["left"] - _MARGINS["right"] - _GAP * (len(row) - 1)
         left, bottom = _MARGINS["left"], tall - step * (number + 1) + _MARGINS["bottom"]
@@ -120,13 +131,25 @@ def scale_of(*arrays: np.ndarray, unit: str) -> tuple[float, str]:
     return factor, prefixed.replace("u", "µ") if prefixed != unit else unit
 
 
+def scaled_axis(axis: Axis, quantity: str, *arrays: np.ndarray, unit: str) -> float:
+    """Label an axis with a unit that suits arrays, as `scale_of`; what to divide them by."""
+    factor, prefixed = scale_of(*arrays, unit=unit)
+    axis.set_label_text(label(quantity, prefixed))
+    return factor
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Numbers such as 0.01 and 20 at the ticks of a logarithmic axis, not powers of ten."""
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
 def log_axis(axes: Axes, *arrays: np.ndarray) -> None:
     """A logarithmic vertical axis with plain numbers, where values span more than a decade."""
     values = np.concatenate(arrays)
     values = values[values > 0.0]
     if values.size and values.max() > 10.0 * values.min():
         axes.set_yscale("log")
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        plain_numbers(axes.yaxis)
         axes.yaxis.set_minor_locator(NullLocator())
         if values.max() < 100.0 * values.min():
             axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
@@ -138,15 +161,34 @@ def count_axis(axes: Axes, name: str) -> None:
     axes.set_xlabel(name)
 
 
+def dots(axes: Axes, number: np.ndarray, values: np.ndarray, tint: str, name: str = "") -> None:
+    """A dot at each number that is counted, a small one where they are many."""
+    size = 2.5 if number.size <= _MARKED else 1.5
+    axes.plot(number, values, "o", ms=size, mew=0.0, color=tint, label=name)
+
+
 def label(quantity: str, unit: str) -> str:
     """An axis label, e.g. ``separation [nm]``."""
     return f"{quantity} [{unit}]"
 
 
-def lines(axes: Axes, curves: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
-    """Several laws over one number: a colour and a dash each, named for the legend."""
+def lines(axes: Axes, curves: Mapping[str, tuple[np.ndarray, np.ndarray]], number: str) -> None:
+    """Several laws over one number: a colour and a dash each, named for the legend.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Its horizontal axis becomes logarithmic, from end to end of the laws.
+    curves : mapping of str to pairs of numpy.ndarray
+        By the name of a law: the number, ascending, and what the law gives.
+    number : str
+        What the number is, with its unit.
+    """
     for (name, (x, y)), tint, dashes in zip(curves.items(), cycle(_TINTS), cycle(_DASHES)):
         axes.plot(x, y, color=colour(tint), ls=dashes, label=name)
+    ends = [float(end) for x, _ in curves.values() for end in (x[0], x[-1])]
+    axes.set(xscale="log", xlim=(min(ends), max(ends)), xlabel=number)
+    plain_numbers(axes.xaxis)
 
 
 def legend_above(axes: Axes, rows: int | None = None) -> None:
@@ -158,6 +200,28 @@ def legend_above(axes: Axes, rows: int | None = None) -> None:
         axes.legend(
             loc="lower left", bbox_to_anchor=(0.0, 1.02), ncols=columns, markerscale=_MARKER_SCALE
         )
+
+
+def colour_bar(
+    figure: Figure,
+    shown: ScalarMappable,
+    place: tuple[float, float, float, float],
+    name: str,
+    extend: str = "neither",
+) -> Axes:
+    """The bar of the colours that are shown, at a place in parts of the figure.
+
+    ``extend`` is the end at which it goes on, as matplotlib has it.
+    """
+    bar = figure.colorbar(shown, cax=figure.add_axes(place), extend=extend)
+    bar.set_label(name)
+    bar.outline.set_visible(False)
+    return bar.ax
+
+
+def images(name: str, figure: Figure) -> dict[str, bytes]:
+    """A figure as PNG and as SVG, by file name."""
+    return {f"{name}.png": png(figure), f"{name}.svg": svg(figure)}
 
 
 def svg(figure: Figure) -> bytes:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import NamedTuple
 
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from asperity.plots import style
-from asperity.plots.height_map import draw_map, legible
+from asperity.plots.height_map import Place, draw_map, legible
 from asperity.plots.surface_panels import (
     draw_heights,
     draw_quantiles,
@@ -27,24 +23,21 @@ from asperity.surfaces.description.composite import Composite
 from asperity.surfaces.description.describe import Description
 from asperity.surfaces.measured_surface import Pair, Surface
 
-_TALL = 230.0
-_INCH = 25.4
+_SHEET = (style.PAGE, 230.0)
+"""Width and height of the page [mm]."""
+
 _SHORTEST = 10
 
+MAP = Place(7.0, 24.0, 58.0, 58.0)
+_PANELS = (
+    Place(101.0, 32.0, 65.0, 50.0),
+    Place(17.0, 110.0, 64.0, 42.0),
+    Place(101.0, 110.0, 65.0, 42.0),
+    Place(17.0, 177.0, 64.0, 42.0),
+    Place(101.0, 177.0, 65.0, 42.0),
+)
+"""Heights, spectrum, quantiles, heights of the summits and their radii."""
 
-class Box(NamedTuple):
-    """Where axes stand on the page: from its left and its top, width and height [mm]."""
-
-    left: float
-    top: float
-    width: float
-    height: float
-
-
-MAP = Box(7.0, 24.0, 58.0, 58.0)
-_HEIGHTS = Box(101.0, 32.0, 65.0, 50.0)
-_SPECTRUM, _QUANTILES = Box(17.0, 110.0, 64.0, 42.0), Box(101.0, 110.0, 65.0, 42.0)
-_SUMMITS, _RADII = Box(17.0, 177.0, 64.0, 42.0), Box(101.0, 177.0, 65.0, 42.0)
 _LINES = ((8.0, 10.0, 75), (12.5, 7.5, 118), (16.5, 7.5, 118))
 """Place from the top [mm], size of the letters [pt] and longest length of the page's head."""
 
@@ -54,8 +47,7 @@ def files(found: Surface | Pair) -> dict[str, bytes]:
     pages = {"surface": of_surface(found)} if isinstance(found, Surface) else _of_pair(found)
     out: dict[str, bytes] = {}
     for name, page in pages.items():
-        out[f"{name}.png"] = style.png(page)
-        out[f"{name}.svg"] = style.svg(page)
+        out |= style.images(name, page)
     return out
 
 
@@ -105,38 +97,28 @@ def page(
         Where the map is a sum of two: their composite, whose distributions are drawn too.
     """
     with style.look():
-        figure = style.Picture(
-            figsize=(style.PAGE / _INCH, _TALL / _INCH), dpi=style.RESOLUTION, facecolor="white"
-        )
-        FigureCanvasAgg(figure)
+        figure = style.sheet(*_SHEET)
         size = f"{size_in_words(topography)}; Sq {amount(description.rms_height, 'm')}"
         for (top, letters, longest), line in zip(_LINES, (title, size, done), strict=True):
             text = figure.text(
-                MAP.left / style.PAGE, 1.0 - top / _TALL, "", fontsize=letters, parse_math=False
+                MAP.left / style.PAGE, 1.0 - top / _SHEET[1], "", fontsize=letters, parse_math=False
             )
             _write(text, _micro(line), longest)
-        draw_map(figure, topography, MAP, (style.PAGE, _TALL))
-        draw_heights(_axes(figure, _HEIGHTS), topography.heights, description, both)
-        for box, draw in _panels(description, both):
-            draw(_axes(figure, box))
+        draw_map(figure, topography, MAP, _SHEET)
+        heights, spectrum, quantiles, summits, radii = (
+            figure.add_axes(place.share(_SHEET)) for place in _PANELS
+        )
+        draw_heights(heights, topography.heights, description, both)
+        draw_spectrum(spectrum, description)
+        draw_quantiles(quantiles, description, both)
+        draw_summit_heights(summits, description, both)
+        draw_radii(radii, description)
     return figure
-
-
-def _panels(
-    description: Description, both: Composite | None
-) -> list[tuple[Box, Callable[[Axes], None]]]:
-    """What draws each panel, and where."""
-    return [
-        (_SPECTRUM, lambda axes: draw_spectrum(axes, description)),
-        (_QUANTILES, lambda axes: draw_quantiles(axes, description, both)),
-        (_SUMMITS, lambda axes: draw_summit_heights(axes, description, both)),
-        (_RADII, lambda axes: draw_radii(axes, description)),
-    ]
 
 
 def _write(text: Text, words: str, longest: int) -> None:
     """Write as much of a line as the page is wide."""
-    room = (style.PAGE - 2.0 * MAP.left) / _INCH * style.RESOLUTION
+    room = (style.PAGE - 2.0 * MAP.left) / style.INCH * style.RESOLUTION
     text.set_text(legible(words, longest))
     while longest > _SHORTEST and text.get_window_extent().width > room:
         longest -= 3
@@ -146,10 +128,3 @@ def _write(text: Text, words: str, longest: int) -> None:
 def _micro(words: str) -> str:
     """Micrometres as print has them."""
     return re.sub(r"(?<= )um\b", "µm", words)
-
-
-def _axes(figure: Figure, box: Box) -> Axes:
-    bottom = _TALL - box.top - box.height
-    return figure.add_axes(
-        (box.left / style.PAGE, bottom / _TALL, box.width / style.PAGE, box.height / _TALL)
-    )

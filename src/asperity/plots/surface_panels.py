@@ -7,7 +7,7 @@ from math import ceil, floor, log10, pi, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from asperity.plots import style
 from asperity.publication.surface_figures import in_bins
@@ -145,8 +145,8 @@ def draw_radii(axes: Axes, description: Description) -> None:
         shown = np.random.default_rng(0).choice(tops.count, _DOTS, replace=False)
     some = f", {shown.size} shown" if shown.size < tops.count else ""
     heading(axes, f"{tops.count} summits{some}: radius")
-    across, unit = style.scale_of(tops.heights, unit="m")
-    up, radius_unit = style.scale_of(np.array([tops.median_radius]), unit="m")
+    across = style.scaled_axis(axes.xaxis, "summit height", tops.heights, unit="m")
+    up = style.scaled_axis(axes.yaxis, "radius", np.array([tops.median_radius]), unit="m")
     axes.plot(tops.heights[shown] / across, tops.radii[shown] / up, "o", ms=1.6, mew=0.0,
               color=colour("apex"), alpha=0.5, rasterized=True, label="summits")  # fmt: skip
     axes.axhline(tops.radius / up, color=colour("contact"), lw=0.8, label="of mean curvature")
@@ -161,11 +161,9 @@ def draw_radii(axes: Axes, description: Description) -> None:
         axes.plot(z / across, 1.0 / (sharp * up), color=colour("capillary"), label="Nayak")
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    style.plain_numbers(axes.yaxis)
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.xaxis.set_major_locator(MaxNLocator(6))
-    axes.set_xlabel(style.label("summit height", unit))
-    axes.set_ylabel(style.label("radius", radius_unit))
     style.legend_above(axes, 1)
 
 

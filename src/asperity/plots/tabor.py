@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from asperity.plots import style
 from asperity.plots.style import Panel
@@ -35,23 +34,17 @@ def figure(curves: Curves) -> Figure:
                 name, (0.98, height), (0.0, 2.0), xycoords=("axes fraction", "data"),
                 textcoords="offset points", ha="right", va="bottom",
             )  # fmt: skip
-        _draw(axes, {name: (tabor, pull) for name, (tabor, pull, _) in curves.items()})
+        laws = {name: (tabor, pull) for name, (tabor, pull, _) in curves.items()}
+        style.lines(axes, laws, "Tabor number [-]")
         axes.set_ylabel("pull-off force / (π w R) [-]")
         axes.set_ylim(1.4, 2.12)
         style.legend_above(axes)
 
     def lost(axes: Axes) -> None:
-        _draw(axes, {name: (tabor, share) for name, (tabor, _, share) in curves.items()})
+        laws = {name: (tabor, share) for name, (tabor, _, share) in curves.items()}
+        style.lines(axes, laws, "Tabor number [-]")
         axes.set_ylabel("energy lost / JKR's [-]")
         axes.set_ylim(-0.03, 1.03)
 
     with style.look():
         return style.figure_of([[Panel(1.0, pull_off)], [Panel(1.0, lost)]])
-
-
-def _draw(axes: Axes, lines: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
-    """One line a law over the Tabor number."""
-    ends = [float(end) for tabor, _ in lines.values() for end in (tabor[0], tabor[-1])]
-    style.lines(axes, lines)
-    axes.set(xscale="log", xlim=(min(ends), max(ends)), xlabel="Tabor number [-]")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from .description.spectrum import Moments, ProfileSpectrum, moments, profile_spectrum
     from .description.sum_of_maps import added
     from .description.summits import Summits, find_summits
-    from .files.read_surface import Reading, read_surface, read_topography
+    from .files.read_surface import read_surface, read_topography
+    from .files.reading import Reading
     from .files.write_surface import write_topography
     from .generation.generate import self_affine
     from .preparation.prepare import Preparation, Prepared, prepared
@@ -37,7 +38,7 @@ _HOMES = {
     "Preparation": "preparation.prepare",
     "Prepared": "preparation.prepare",
     "ProfileSpectrum": "description.spectrum",
-    "Reading": "files.read_surface",
+    "Reading": "files.reading",
     "Summits": "description.summits",
     "added": "description.sum_of_maps",
     "composite": "description.composite",

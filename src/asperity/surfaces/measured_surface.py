@@ -14,7 +14,8 @@ from .description.composite import Composite, composite
 from .description.describe import Description, describe
 from .description.gaussianity import Gaussianity
 from .files.content import digest
-from .files.read_surface import Reading, read_surface
+from .files.read_surface import read_surface
+from .files.reading import Reading
 from .preparation.prepare import Preparation, Prepared, prepared
 
 Report = Callable[[float, str], None]
@@ -71,8 +72,8 @@ class Surface:
 
     @property
     def name(self) -> str:
-        """Name of the file without its folder."""
-        return name_of(self.reading.topography)
+        """Name of the file without its folder, on one line."""
+        return one_line(Path(self.reading.topography.source).name)
 
     @property
     def topography(self) -> Topography:
@@ -162,8 +163,7 @@ def surface(file: str, treatment: Treatment) -> Surface:
         file, size=treatment.size, unit=treatment.unit, channel=treatment.channel
     )
     made = prepared(reading.topography, treatment.preparation)
-    content = digest(file)
-    return Surface(reading, made, describe(made.topography), content)
+    return Surface(reading, made, describe(made.topography), digest(file))
 
 
 def pair(first: Surface, second: Surface) -> Pair:
@@ -212,11 +212,6 @@ def surfaces(
     if progress is not None:
         progress(2.0 / 3.0, "composite")
     return pair(*found)
-
-
-def name_of(topography: Topography) -> str:
-    """Name of a map's file without its folder, on one line."""
-    return one_line(Path(topography.source).name)
 
 
 def _chosen(description: Description) -> dict[str, Any]:

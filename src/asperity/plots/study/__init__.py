@@ -52,14 +52,14 @@ def pictures(
     """
     if pareto is None:
         kind, drawn = figure(dataset, measure=measure, x=x, y=y, held=held)
-        return {f"{kind}.png": style.png(drawn), f"{kind}.svg": style.svg(drawn)}
+        return style.images(kind, drawn)
     for option, given in (("measure", measure), ("x", x), ("y", y)):
         if given is not None:
             raise InputError(f"`{option}` and `pareto` exclude each other; got both", key=option)
     chosen, taken = at(dataset, held or {})
     drawn = pareto_figure(chosen, pareto, taken)
     listed = table(chosen, front_of(chosen, pareto))
-    return {"pareto.png": style.png(drawn), "pareto.svg": style.svg(drawn), "pareto.csv": listed}
+    return style.images("pareto", drawn) | {"pareto.csv": listed}
 
 
 def figure(

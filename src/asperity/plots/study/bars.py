@@ -19,8 +19,7 @@ _LONGEST = 14
 
 def pictures(found: Sensitivity) -> dict[str, bytes]:
     """The bars as PNG and SVG, by file name."""
-    drawn = figure(found)
-    return {"sensitivity.png": style.png(drawn), "sensitivity.svg": style.svg(drawn)}
+    return style.images("sensitivity", figure(found))
 
 
 def figure(found: Sensitivity) -> Figure:

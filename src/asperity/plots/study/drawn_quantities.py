@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import (
-    FuncFormatter,
-    LogLocator,
-    MaxNLocator,
-    NullFormatter,
-    NullLocator,
-)
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from asperity.config.key_labels import PERCENT
 from asperity.plots import style
@@ -93,7 +87,7 @@ class Quantity(NamedTuple):
         elif span < _DECADE**2:
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
         if span < _DECADE**2:
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.6g}"))
+            style.plain_numbers(axis)
         axis.set_minor_formatter(NullFormatter())
 
 

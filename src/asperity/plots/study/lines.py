@@ -43,12 +43,15 @@ def facets(dataset: xarray.Dataset, key: str) -> list[tuple[xarray.Dataset, str]
     """The results at each value of an axis, with the value in words."""
     if not key:
         return [(dataset, "")]
-    axis = dataset[key]
-    unit, label = str(axis.attrs.get("units", "1")), axis.attrs["long_name"]
     return [
-        (dataset.isel({key: number}), f"{label} {words(value, unit)}")
-        for number, value in enumerate(axis.values)
+        (dataset.isel({key: number}), text) for number, text in enumerate(_in_words(dataset[key]))
     ]
+
+
+def _in_words(axis: xarray.DataArray) -> list[str]:
+    """The values of an axis, each after its name."""
+    unit, label = str(axis.attrs.get("units", "1")), axis.attrs["long_name"]
+    return [f"{label} {words(value, unit)}" for value in axis.values]
 
 
 def _drawing(
@@ -129,11 +132,8 @@ def _shade(axes: Axes, x: Quantity, held: np.ndarray) -> None:
 def _legend(dataset: xarray.Dataset, view: View) -> list[tuple[Artist, str]]:
     found: list[tuple[Artist, str]] = []
     if view.series:
-        axis = dataset[view.series]
-        unit, label = str(axis.attrs.get("units", "1")), axis.attrs["long_name"]
-        for number, value in enumerate(axis.values):
-            tint = colour(outcomes.SERIES[number])
-            found.append((Line2D([], [], color=tint), f"{label} {words(value, unit)}"))
+        for number, text in enumerate(_in_words(dataset[view.series])):
+            found.append((Line2D([], [], color=colour(outcomes.SERIES[number])), text))
     else:
         held = outcomes.captured(dataset)
         if held is not None and np.any(held == 1):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from asperity.plots.study import outcomes
@@ -32,33 +33,22 @@ _TINTS = {
     "rest": colour("closest_approach"),
     "oscillating": colour("apex"),
     "escaped": colour("motion"),
-    "time_limit": colour("gas"),
-    "max_impacts": colour("capillary"),
+    "time limit": colour("gas"),
+    "max impacts": colour("capillary"),
     "stopped": colour("kinetic"),
 }
 """Colours of codes by their meaning."""
 
 
-class Colours(NamedTuple):
-    """Which colour a value has, the same in all panels."""
-
-    norm: Normalize
-    map: Colormap
-
-
 def page(dataset: xarray.Dataset, view: View, title: str) -> Page:
     """A map, or one for each value of the facet, with one scale of colours."""
     (name,) = view.measures
-    measure = dataset[name]
-    whole = measure_quantity(numbers(dataset, name), measure)
-    flags = _flags(measure)
-    norm: Normalize = Normalize(-0.5, max(len(flags), 1) - 0.5) if flags else _norm(whole)
-    tints = ListedColormap([_TINTS.get(flag, outcomes.FAILED) for flag in flags])
-    colours = Colours(norm, tints if flags else colormaps["viridis"])
+    whole = measure_quantity(numbers(dataset, name), dataset[name])
+    colours = _colours(whole)
     panels = facets(dataset, view.facet)
     blocks = [Block(text, _drawing(one, view, whole, colours)) for one, text in panels]
-    made = Page(title, blocks, min(len(blocks), _PANELS), _legend(dataset, view, flags))
-    if not flags:
+    made = Page(title, blocks, min(len(blocks), _PANELS), _legend(dataset, view, whole.names))
+    if not whole.names:
         made.bar, made.bar_label = ScalarMappable(*colours), whole.upright
     return made
 
@@ -89,11 +79,12 @@ def boundary(edges: tuple[np.ndarray, np.ndarray], held: np.ndarray) -> np.ndarr
 
 
 def _drawing(
-    dataset: xarray.Dataset, view: View, whole: Quantity, colours: Colours
+    dataset: xarray.Dataset, view: View, whole: Quantity, colours: tuple[Normalize, Colormap]
 ) -> Callable[[Axes], None]:
     # Edges of cells need ascending values, which a list of them need not be.
     ordered = dataset.sortby([view.x, view.y]).transpose(view.y, view.x, ...)
     (name,) = view.measures
+    norm, tints = colours
 
     def draw(axes: Axes) -> None:
         x, y = axis_quantity(ordered[view.x]), axis_quantity(ordered[view.y])
@@ -103,7 +94,7 @@ def _drawing(
         values = numbers(ordered, name).reshape(lost.shape) / whole.factor
         axes.pcolormesh(
             x.edges, y.edges, np.ma.masked_where(lost | ~np.isfinite(values), values),
-            norm=colours.norm, cmap=colours.map, rasterized=True,
+            norm=norm, cmap=tints, rasterized=True,
         )  # fmt: skip
         _hatch(axes, (x.edges, y.edges), lost)
         held = outcomes.captured(ordered)
@@ -128,9 +119,17 @@ def _hatch(axes: Axes, edges: tuple[np.ndarray, np.ndarray], lost: np.ndarray) -
         axes.add_collection(
             PolyCollection(
                 list(np.stack([np.stack(corner, axis=1) for corner in corners], axis=1)),
-                facecolor=outcomes.FAILED, edgecolor="white", hatch=outcomes.HATCH, lw=0.0,
+                **outcomes.FAILED_CELL,
             )
-        )  # fmt: skip
+        )
+
+
+def _colours(whole: Quantity) -> tuple[Normalize, Colormap]:
+    """Which colour a value has, the same in all panels: one a name, or a scale."""
+    if whole.names:
+        tints = [_TINTS.get(name, outcomes.FAILED) for name in whole.names]
+        return Normalize(-0.5, len(tints) - 0.5), ListedColormap(tints)
+    return _norm(whole), colormaps["viridis"]
 
 
 def _norm(whole: Quantity) -> Normalize:
@@ -142,21 +141,19 @@ def _norm(whole: Quantity) -> Normalize:
     return Normalize(low, high) if high > low else Normalize(low - 0.5, high + 0.5)
 
 
-def _flags(measure: xarray.DataArray) -> list[str]:
-    """Meanings of the codes 0, 1, ... of a measure that has such."""
-    return str(measure.attrs.get("flag_meanings", "")).split()[1:]
-
-
-def _legend(dataset: xarray.Dataset, view: View, flags: list[str]) -> list[tuple[Artist, str]]:
+def _legend(
+    dataset: xarray.Dataset, view: View, flags: tuple[str, ...]
+) -> list[tuple[Artist, str]]:
     (name,) = view.measures
     found: list[tuple[Artist, str]] = [
-        (Patch(facecolor=_TINTS[flag], lw=0.0), outcomes.WORDS.get(flag, flag.replace("_", " ")))
+        (Patch(facecolor=_TINTS[flag], lw=0.0), outcomes.WORDS.get(flag, flag))
         for code, flag in enumerate(flags)
         if flag in _TINTS and np.any(dataset[name].values == code)
     ]
     held = outcomes.captured(dataset)
     if held is not None and name != "captured" and np.any(held == 1) and np.any(held == 0):
-        found.append(outcomes.boundary_handle())
+        between = f"{outcomes.WORDS['captured']} | {outcomes.WORDS['rebounds']}"
+        found.append((Line2D([], [], **outcomes.BOUNDARY), between))
     if outcomes.failed(dataset).any():
-        found.append(outcomes.failed_handle())
+        found.append((Patch(**outcomes.FAILED_CELL), "failed"))
     return found

@@ -5,9 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from asperity.errors import ENDS, Outcome
 from asperity.results.colours import colour
@@ -24,7 +21,8 @@ WORDS = {"captured": "captured at the first impact", "rebounds": "rebounds"}
 SHADE = "#F7E3D8"
 """Behind lines where the first impact captures."""
 
-HATCH = "//////"
+FAILED_CELL: Any = {"facecolor": FAILED, "edgecolor": "white", "hatch": "//////", "lw": 0.0}
+"""Of the cells of failed cases on a map."""
 
 SERIES = ("motion", "apex", "capillary", "closest_approach", "gas", "central")
 """Names of the colours of series, in order."""
@@ -45,21 +43,6 @@ def captured(dataset: xarray.Dataset) -> np.ndarray | None:
         return None
     values: np.ndarray = dataset["captured"].values
     return values
-
-
-def failed_handle() -> tuple[Artist, str]:
-    """What failed cases are in a legend."""
-    return Patch(facecolor=FAILED, edgecolor="white", hatch=HATCH, lw=0.0), "failed"
-
-
-def boundary_handle() -> tuple[Artist, str]:
-    """What the line between capture and rebound is in a legend."""
-    return Line2D([], [], **BOUNDARY), f"{WORDS['captured']} | {WORDS['rebounds']}"
-
-
-def dot(tint: str) -> Line2D:
-    """A point in a legend."""
-    return Line2D([], [], ls="", marker="o", ms=3.0, mew=0.0, color=tint)
 
 
 def incomplete(dataset: xarray.Dataset) -> str:

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.transforms import BboxBase
@@ -17,7 +16,6 @@ from matplotlib.transforms import BboxBase
 from asperity.plots import style
 from asperity.plots.height_map import legible
 
-_INCH = 25.4
 _LEFT, _RIGHT, _BOTTOM, _BETWEEN = 16.0, 3.0, 11.0, 2.0
 _BAR_ROOM, _BAR, _BAR_GAP = 17.0, 2.5, 2.5
 _HEIGHT, _EDGE, _LINE, _HEAD = 42.0, 2.0, 4.0, 5.0
@@ -73,15 +71,15 @@ class Page:
         over = _HEAD if any(block.title for block in self.blocks) else _EDGE
         step = over + _HEIGHT + _BOTTOM
         tall = head + rows * step
-        figure = style.Picture(figsize=(wide / _INCH, tall / _INCH), dpi=style.RESOLUTION)
-        canvas = FigureCanvasAgg(figure)
+        figure = style.sheet(wide, tall)
         size = (0.0, 0.0, 1.0, _HEIGHT / tall)
         panels = [figure.add_axes(size) for _ in self.blocks]
         for axes, block in zip(panels, self.blocks, strict=True):
             block.draw(axes)
-        bar = self._bar(figure, (0.0, 0.0, _BAR / wide, _HEIGHT / tall))
-        right = _RIGHT + (_room_after(canvas, bar) if bar is not None else 0.0)
-        room = _room_beside(canvas, panels)
+        place = (0.0, 0.0, _BAR / wide, _HEIGHT / tall)
+        bar = style.colour_bar(figure, self.bar, place, self.bar_label) if self.bar else None
+        right = _RIGHT + (_room_after(bar) if bar is not None else 0.0)
+        room = _room_beside(panels)
         width = (wide - right - room * self.across - _BETWEEN * (self.across - 1)) / self.across
         for number, (axes, block) in enumerate(zip(panels, self.blocks, strict=True)):
             row, column = divmod(number, self.across)
@@ -97,15 +95,6 @@ class Page:
             left = (wide - right + _BAR_GAP) / wide
             bar.set_position((left, foot, _BAR / wide, _HEIGHT / tall))
         return figure
-
-    def _bar(self, figure: Figure, place: tuple[float, float, float, float]) -> Axes | None:
-        """The colour bar, if there is one."""
-        if self.bar is None:
-            return None
-        bar = figure.colorbar(self.bar, cax=figure.add_axes(place))
-        bar.set_label(self.bar_label)
-        bar.outline.set_visible(False)
-        return bar.ax
 
     def _head(self, figure: Figure, size: tuple[float, float], columns: int) -> None:
         """The title and the legend."""
@@ -132,19 +121,18 @@ class Page:
         return max(1, min(fit, len(self.legend)))
 
 
-def _room_beside(canvas: FigureCanvasAgg, panels: Sequence[Axes]) -> float:
+def _room_beside(panels: Sequence[Axes]) -> float:
     """Width that the widest labels left of a panel need [mm], the usual one at least."""
-    wide = max(panel.bbox.x0 - _labels(canvas, panel).x0 for panel in panels)
-    return max(_LEFT, wide / canvas.figure.dpi * _INCH + 1.0)
+    wide = max(panel.bbox.x0 - _labels(panel).x0 for panel in panels)
+    return max(_LEFT, wide / style.RESOLUTION * style.INCH + 1.0)
 
 
-def _room_after(canvas: FigureCanvasAgg, bar: Axes) -> float:
+def _room_after(bar: Axes) -> float:
     """Width of a colour bar with its labels [mm], the usual one at least."""
-    wide = (_labels(canvas, bar).x1 - bar.bbox.x0) / canvas.figure.dpi * _INCH
+    wide = (_labels(bar).x1 - bar.bbox.x0) / style.RESOLUTION * style.INCH
     return max(_BAR_ROOM, _BAR_GAP + wide + 1.0 - _RIGHT)
 
 
-def _labels(canvas: FigureCanvasAgg, axes: Axes) -> BboxBase:
+def _labels(axes: Axes) -> BboxBase:
     """Place of the axis upwards with all its text [pixel]."""
-    renderer = canvas.get_renderer()  # type: ignore[no-untyped-call]
-    return axes.yaxis.get_tightbbox(renderer) or axes.bbox
+    return axes.yaxis.get_tightbbox() or axes.bbox

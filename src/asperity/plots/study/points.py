@@ -88,7 +88,11 @@ def _kinds(dataset: xarray.Dataset, cases_drawn: np.ndarray) -> list[Kind]:
 
 
 def _legend(kinds: list[Kind]) -> list[tuple[Artist, str]]:
-    return [(outcomes.dot(tint), name) for _, tint, name in kinds if name]
+    return [
+        (Line2D([], [], ls="", marker="o", ms=3.0, mew=0.0, color=tint), name)
+        for _, tint, name in kinds
+        if name
+    ]
 
 
 def _some(found: np.ndarray) -> tuple[np.ndarray, str]:

@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
-_KEPT = ("units", "unit", "missing_value", "scale_factor", "add_offset")
-_PIXEL_SIZE = ("pixel_size", "pixel_size_units")
+_KEPT = (
+    "units", "unit", "missing_value", "scale_factor", "add_offset",
+    "pixel_size", "pixel_size_units",
+)  # fmt: skip
 _CLASSIC = ("i1", "i2", "i4", "f4", "f8")
 
 
@@ -63,7 +65,7 @@ def _copy(variable: Any, made: Any, name: str) -> None:
         name, stored, variable.dimensions, fill_value=False if fill is None else fill
     )
     copied.set_auto_maskandscale(False)
-    for key in (*_KEPT, *_PIXEL_SIZE):
+    for key in _KEPT:
         if key in variable.ncattrs():
             value = variable.getncattr(key)
             copied.setncattr(key, value if isinstance(value, str) else np.asarray(value, "f8"))

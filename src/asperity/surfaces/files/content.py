@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import hashlib
 import io
-import os
 import zlib
 from pathlib import Path
 
@@ -18,11 +17,6 @@ MOST_PIXELS = 2**28
 """Largest map read, 16384 x 16384 pixels: 2 GB of heights."""
 
 _PACKED = ".gz"
-
-
-def name_of(path: str | os.PathLike[str]) -> str:
-    """A path as messages show it."""
-    return os.fspath(path)
 
 
 def suffix_of(file: str) -> str:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import io
 import logging
 import warnings
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ...errors import InputError, one_line
 from ...units import shown
+from ..topography import Topography
 from .content import MOST_PIXELS, cut_short, refusal, suffix_of
 from .header import agreed_size, agreed_unit, in_metres
+from .reading import Reading
 
 _OURS = ".npy .csv .txt .dat .xyz .nc"
 """Endings that the program reads itself, each also packed as .gz."""
@@ -23,40 +26,13 @@ _BY_ENDING = ("nms", "hgt")
 """Formats without a mark of their own, which fit many a file: taken by their ending alone."""
 
 
-class Scan(NamedTuple):
-    """One channel of an instrument's file.
-
-    Parameters
-    ----------
-    heights
-        Heights [m], shape (rows, columns), NaN where undefined.
-    pixel_size
-        Spacing (along x, along y) [m].
-    format
-        The format, in the words of the library.
-    channel
-        Number and name of the channel, e.g. ``"0 ZSensor"``.
-    channels
-        All channels of heights in the file, likewise.
-    notes
-        What the library warns of, a line each.
-    """
-
-    heights: np.ndarray
-    pixel_size: tuple[float, float]
-    format: str
-    channel: str
-    channels: tuple[str, ...]
-    notes: tuple[str, ...]
-
-
-def scan_of(
+def instrument_reading(
     content: bytes,
     file: str,
     size: tuple[float, float] | None,
     unit: str | None,
     channel: str | int | None,
-) -> Scan:
+) -> Reading:
     """One channel of heights from a file of any format that SurfaceTopography reads.
 
     Parameters
@@ -80,11 +56,12 @@ def scan_of(
         import SurfaceTopography.IO as library
 
         try:
-            return _read(library, content, file, size, unit, channel)._replace(notes=_notes(told))
-        except (InputError, KeyboardInterrupt):
+            reading = _read(library, content, file, size, unit, channel)
+        except InputError:
             raise
         except Exception as error:  # damaged files make its readers raise errors of every kind
             raise _unreadable(file, error) from error
+    return dataclasses.replace(reading, notes=_notes(told))
 
 
 @contextlib.contextmanager
@@ -107,7 +84,7 @@ def _read(
     size: tuple[float, float] | None,
     unit: str | None,
     channel: str | int | None,
-) -> Scan:
+) -> Reading:
     with library.open_topography(io.BytesIO(content)) as reader:
         kind = reader.format()
         if kind in _BY_ENDING and suffix_of(file) != f".{kind}":
@@ -123,13 +100,12 @@ def _read(
         values = np.ma.filled(
             np.ma.asarray(surface.to_unit("m").heights(), dtype=np.float64), np.nan
         ).T
-        return Scan(
-            values if chosen.unit else in_metres(values, heights_unit),
-            (width / columns, length / rows),
+        made = values if chosen.unit else in_metres(values, heights_unit)
+        return Reading(
+            Topography(made, (width / columns, length / rows), file),
             str(reader.name()),
             _label(chosen),
             tuple(_label(one) for one in heights),
-            (),
         )
 
 

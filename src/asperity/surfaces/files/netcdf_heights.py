@@ -165,12 +165,12 @@ def _decoded(variable: Any) -> np.ndarray:
     """Values as float64, unpacked (CF conventions, 8.1), NaN where they are missing."""
     stored = np.asarray(variable[...])
     missing = np.zeros(stored.shape, dtype=bool)
-    for mark in (_attribute(variable, "_FillValue"), _attribute(variable, "missing_value")):
+    for mark in (getattr(variable, "_FillValue", None), getattr(variable, "missing_value", None)):
         if mark is not None:
             missing |= np.isin(stored, np.atleast_1d(mark))
-    if _attribute(variable, "_FillValue") is None:
+    if getattr(variable, "_FillValue", None) is None:
         missing |= stored == _unwritten(stored.dtype)
-    factor, offset = (_attribute(variable, name) for name in ("scale_factor", "add_offset"))
+    factor, offset = (getattr(variable, name, None) for name in ("scale_factor", "add_offset"))
     values = stored.astype(np.float64)
     if factor is not None:
         values = values * float(factor)
@@ -206,8 +206,8 @@ def _spacing(held: Any, dimension: str, file: str) -> tuple[float | None, bool]:
 
 def _stated_pixel_size(variable: Any, file: str) -> tuple[float, float] | None:
     """The attribute `pixel_size` [m], which the coordinates would give but for rounding."""
-    pair = _attribute(variable, "pixel_size")
-    unit = _attribute(variable, "pixel_size_units")
+    pair = getattr(variable, "pixel_size", None)
+    unit = getattr(variable, "pixel_size_units", None)
     if pair is None or unit is None:
         return None
     x, y = in_metres(np.asarray(pair, dtype=np.float64), checked_unit(_text(unit)))
@@ -218,13 +218,9 @@ def _stated_pixel_size(variable: Any, file: str) -> tuple[float, float] | None:
 
 def _unit(variable: Any) -> str | None:
     """Unit of a variable, by CF's `units` or by the `unit` of SurfaceTopography's files."""
-    found = _attribute(variable, "units")
-    found = _attribute(variable, "unit") if found is None else found
+    found = getattr(variable, "units", None)
+    found = getattr(variable, "unit", None) if found is None else found
     return None if found is None else _text(found)
-
-
-def _attribute(variable: Any, name: str) -> Any:
-    return getattr(variable, name, None)
 
 
 def _text(value: Any) -> str:

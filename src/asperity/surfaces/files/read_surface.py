@@ -39,19 +39,18 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import InputError
 from ..topography import Topography
 from . import content as packed
 from . import text_heights as texts
 from .arrays import matrix_of_array
 from .content import refusal
-from .header import agreed_size, agreed_unit, check_pixels, checked_unit, in_metres
-from .instruments import scan_of
+from .header import agreed_size, agreed_unit, check_pixels, in_metres
+from .instruments import instrument_reading
 from .netcdf_heights import map_of_netcdf
+from .reading import Reading
 from .scattered_points import gridded
 
 _TEXTS = (".csv", ".txt", ".dat", ".xyz")
@@ -61,31 +60,6 @@ _ADVICE_UNIT = ", or by a line `# unit nm` in the file"
 
 Map = tuple[np.ndarray, tuple[float, float]]
 """Heights [m], shape (rows, columns), and pixel size (dx, dy) [m]."""
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A surface read, and what was chosen on the way.
-
-    Parameters
-    ----------
-    topography
-        The surface.
-    format
-        The format it was read as, in words.
-    channel
-        Number and name of the channel read, e.g. ``"0 ZSensor"``; empty where there is one alone.
-    channels
-        All channels of heights in the file.
-    notes
-        What the reader warns of, a line each.
-    """
-
-    topography: Topography
-    format: str
-    channel: str = ""
-    channels: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
 
 
 def read_topography(
@@ -123,7 +97,7 @@ def read_topography(
     """
     reading = read_surface(path, size=size, unit=unit, channel=channel)
     for note in reading.notes:
-        warnings.warn(f"{packed.name_of(path)}: {note}", UserWarning, stacklevel=2)
+        warnings.warn(f"{os.fspath(path)}: {note}", UserWarning, stacklevel=2)
     return reading.topography
 
 
@@ -146,11 +120,9 @@ def read_surface(
     InputError
         As `read_topography`.
     """
-    file = packed.name_of(path)
+    file = os.fspath(path)
     suffix = packed.suffix_of(file)
     content = packed.content_of(file)
-    if unit is not None:
-        _check_unit(unit, file)
     if suffix == ".nc":
         heights, pixel_size = map_of_netcdf(content, file, size, unit, channel)
         return Reading(Topography(heights, pixel_size, file), "netCDF")
@@ -158,23 +130,12 @@ def read_surface(
         if channel is not None:
             raise refusal(file, f"holds one map and no channels; got {channel!r}; leave it out")
         if suffix == ".npy":
-            found, words = _from_array(content, file, size, unit), "NumPy array"
-            notes: tuple[str, ...] = ()
-        else:
-            text = texts.split(content, file)
-            found, words = _from_text(text, suffix, size, unit)
-            notes = _doubts(text)
-        return Reading(Topography(*found, file), words, notes=notes)
-    scan = scan_of(content, file, size, unit, channel)
-    surface = Topography(scan.heights, scan.pixel_size, file)
-    return Reading(surface, scan.format, scan.channel, scan.channels, scan.notes)
-
-
-def _check_unit(unit: str, file: str) -> None:
-    try:
-        checked_unit(unit)
-    except InputError as error:
-        raise refusal(file, str(error)) from None
+            found = _from_array(content, file, size, unit)
+            return Reading(Topography(*found, file), "NumPy array")
+        text = texts.split(content, file)
+        found, words = _from_text(text, suffix, size, unit)
+        return Reading(Topography(*found, file), words, notes=_doubts(text))
+    return instrument_reading(content, file, size, unit, channel)
 
 
 def _is_binary(suffix: str, content: bytes) -> bool:

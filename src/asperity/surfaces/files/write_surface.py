@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import OutputError
 from ..topography import Topography
-from .content import name_of, refusal, suffix_of
+from .content import refusal, suffix_of
 
 
 def write_topography(
@@ -41,7 +41,7 @@ def write_topography(
         Where it cannot be written.
     """
     target = check_target(path, force=force)
-    file = name_of(path)
+    file = os.fspath(path)
     content = _ENCODERS[suffix_of(file)](topography)
     if file.lower().endswith(".gz"):
         content = gzip.compress(content, compresslevel=6, mtime=0)
@@ -66,7 +66,7 @@ def check_target(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     InputError, OutputError
         As `write_topography`, but for what only writing can find out.
     """
-    file = name_of(path)
+    file = os.fspath(path)
     if suffix_of(file) not in _ENCODERS:
         raise refusal(file, f"must end in one of {' '.join(_ENCODERS)} to be written; rename it")
     target = Path(file)

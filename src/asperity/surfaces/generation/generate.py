@@ -10,7 +10,7 @@ from scipy import fft
 from ...errors import InputError
 from ..topography import Topography
 from .height_shape import standard_heights
-from .self_affine import spectrum_on, times_counted, wave_vectors, waves_of
+from .self_affine import spectrum_on, times_counted, wave_vectors
 
 _ROUNDS = 100
 """Exchanges of heights and amplitudes, at most."""
@@ -81,7 +81,7 @@ def self_affine(
     spectrum = spectrum_on(points, pixel_size, hurst, rolloff, cutoff)
     _require_one_rms(rms_height, rms_slope)
     noise = np.random.default_rng(seed).standard_normal(points[::-1])
-    surface = waves_of(noise) * np.sqrt(spectrum.power(wave_vectors(points, pixel_size)))
+    surface = fft.rfft2(noise) * np.sqrt(spectrum.power(wave_vectors(points, pixel_size)))
     made = fft.irfft2(surface, s=noise.shape)
     made /= made.std()
     if heights is not None:
@@ -123,18 +123,18 @@ def _require_one_rms(rms_height: float | None, rms_slope: float | None) -> None:
 def _rms_slope(heights: np.ndarray, pixel_size: tuple[float, float]) -> float:
     """Rms of the gradient's size [m of height per m] of a periodic surface, by Parseval."""
     points = heights.shape[::-1]
-    steepness = abs(waves_of(heights) * wave_vectors(points, pixel_size)) ** 2
+    steepness = abs(fft.rfft2(heights) * wave_vectors(points, pixel_size)) ** 2
     return float(np.sqrt(np.sum(steepness * times_counted(points)))) / heights.size
 
 
 def _with_heights(surface: np.ndarray, heights: np.ndarray) -> np.ndarray:
     """A surface with given sorted heights whose amplitudes come close to those of another."""
-    amplitudes = abs(waves_of(surface))
+    amplitudes = abs(fft.rfft2(surface))
     enough = _CLOSE * float(np.linalg.norm(amplitudes))
     made, error = np.empty(surface.size), inf
     for _ in range(_ROUNDS):
         made[np.argsort(surface, axis=None)] = heights
-        waves = waves_of(made.reshape(surface.shape))
+        waves = fft.rfft2(made.reshape(surface.shape))
         size = abs(waves)
         before, error = error, float(np.linalg.norm(size - amplitudes))
         if error < enough or error > before * (1.0 - _GAIN):

@@ -137,7 +137,7 @@ def spectrum_error(
     spectrum = spectrum_on(points, topography.pixel_size, hurst, rolloff, cutoff)
     wave = wave_vectors(points, topography.pixel_size)
     asked, count = spectrum.power(wave), times_counted(points)
-    found = abs(waves_of(topography.heights - topography.heights.mean())) ** 2
+    found = abs(fft.rfft2(topography.heights - topography.heights.mean())) ** 2
     ring = np.rint(wave / (2.0 * pi / min(topography.physical_size))).astype(int)
     waves, wanted, got = (
         np.bincount(ring[asked > 0.0], (count * part)[asked > 0.0])
@@ -151,12 +151,6 @@ def spectrum_error(
         for part in (found, found * wave**4)
     ]
     return SpectrumError(float(np.sqrt(np.average(error**2, weights=waves[there]))), *beyond)
-
-
-def waves_of(heights: np.ndarray) -> np.ndarray:
-    """Fourier coefficients of heights, shape (rows, columns // 2 + 1)."""
-    waves: np.ndarray = fft.rfft2(heights)
-    return waves
 
 
 def wave_vectors(points: tuple[int, ...], pixel_size: tuple[float, float]) -> np.ndarray:

@@ -8,7 +8,6 @@ from math import atan, degrees, inf, isfinite
 import numpy as np
 from numpy.polynomial import legendre
 
-from ...errors import InputError
 from ..topography import Topography
 from .sphere_fit import fitted_sphere
 from .step import Step, length
@@ -47,7 +46,7 @@ class Form:
     radius: float | None = None
 
 
-def levelled(topography: Topography, form_removal: str = "tilt") -> tuple[Topography, Step]:
+def levelled(topography: Topography, form_removal: str) -> tuple[Topography, Step]:
     """A surface measured from its mean, its plane, its paraboloid or its sphere.
 
     The form has the least squares of vertical distance over all pixels that are not missing.
@@ -57,7 +56,7 @@ def levelled(topography: Topography, form_removal: str = "tilt") -> tuple[Topogr
     topography
         The surface.
     form_removal
-        ``none``; ``mean``; ``tilt``, a plane; ``curvature``, the full polynomial of second
+        ``mean``; ``tilt``, a plane; ``curvature``, the full polynomial of second
         order; ``sphere``, a true sphere, bulging up or hollow, seen from above.
 
     Returns
@@ -68,23 +67,16 @@ def levelled(topography: Topography, form_removal: str = "tilt") -> tuple[Topogr
     Raises
     ------
     InputError
-        If ``form_removal`` is unknown, if too few pixels, or only pixels on a line, are left to
-        fit, or if no sphere passes over all of them.
+        If too few pixels, or only pixels on a line, are left to fit, or if no sphere passes over
+        all of them.
     """
-    if form_removal not in FORMS:
-        raise InputError(
-            f"`form_removal` must be one of {', '.join(FORMS)}; got {form_removal!r}",
-            key="form_removal",
-        )
-    before = topography.rms_height
-    if form_removal == "none":
-        return topography, Step("form", "no form removed", before, before, {})
     form = (
         _sphere(topography) if form_removal == "sphere" else _polynomial(topography, form_removal)
     )
     made = topography.with_heights(topography.heights - form.heights)
     words, values = _in_words(form, form_removal)
-    return made, Step("form", words, before, made.rms_height, {"removed": form_removal, **values})
+    values = {"removed": form_removal, **values}
+    return made, Step("form", words, topography.rms_height, made.rms_height, values)
 
 
 def _polynomial(topography: Topography, form_removal: str) -> Form:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import isfinite, log, pi, sqrt
+from math import log, pi, sqrt
 
 import numpy as np
 from scipy import fft
 
-from ...errors import InputError
 from ..topography import Topography
 from .step import Step, length
 
@@ -55,10 +54,8 @@ def band_limited(
     Raises
     ------
     InputError
-        If a cut is no positive length, shorter than two pixels or longer than the map's shorter
-        side, or if the short cut is not below the long one.
+        If a cut is shorter than two pixels or longer than the map's shorter side.
     """
-    checked(s_filter, l_filter)
     steps = []
     for name, cut in (("s_filter", s_filter), ("l_filter", l_filter)):
         if cut is None:
@@ -73,24 +70,6 @@ def band_limited(
         steps.append(Step(name, words, topography.rms_height, made.rms_height, {"cut": cut}))
         topography = made
     return topography, tuple(steps)
-
-
-def checked(s_filter: float | None, l_filter: float | None) -> None:
-    """Refuse cuts that are no lengths or leave nothing between them.
-
-    Raises
-    ------
-    InputError
-        With the key at fault.
-    """
-    for key, value in (("s_filter", s_filter), ("l_filter", l_filter)):
-        if value is not None and not (isfinite(value) and value > 0.0):
-            raise InputError(f"`{key}` must be a positive length; got {value} m", key=key)
-    if s_filter is not None and l_filter is not None and s_filter >= l_filter:
-        raise InputError(
-            f"`s_filter` must lie below `l_filter`, {length(l_filter)}; got {length(s_filter)}",
-            key="s_filter",
-        )
 
 
 def _require_resolved(topography: Topography, name: str, cut: float) -> None:

@@ -7,12 +7,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 
-from ...errors import InputError
 from ..topography import Topography
 from .step import Step
 
-ALIGNMENTS = ("median", "median-difference", "polynomial")
-"""How the offset of a line is found."""
+ALIGNMENTS = ("none", "median", "median-difference", "polynomial")
+"""How the offset of a line is found, if at all."""
 
 DIRECTIONS = ("rows", "columns")
 """What a scan line is: a row (fast axis x) or a column (fast axis y)."""
@@ -55,10 +54,8 @@ def lines_aligned(
     Raises
     ------
     InputError
-        If ``how``, ``direction`` or ``degree`` is none of these, if a line has too few pixels
-        for its polynomial, or if neighbouring lines share no pixel.
+        If a line has too few pixels for its polynomial, or if neighbouring lines share no pixel.
     """
-    checked(how, direction, degree)
     lines = topography.heights if direction == "rows" else topography.heights.T
     if how == "polynomial":
         removed = _polynomials(topography, lines, degree)
@@ -79,26 +76,6 @@ def lines_aligned(
         made.rms_height,
         {"rms_offset": moved},
     )
-
-
-def checked(how: str, direction: str, degree: int) -> None:
-    """Refuse an unknown method, direction or degree.
-
-    Raises
-    ------
-    InputError
-        With the key at fault.
-    """
-    for key, value, known in (
-        ("line_levelling", how, ALIGNMENTS),
-        ("direction", direction, DIRECTIONS),
-    ):
-        if value not in known:
-            raise InputError(f"`{key}` must be one of {', '.join(known)}; got {value!r}", key=key)
-    if isinstance(degree, bool) or degree not in range(6):
-        raise InputError(
-            f"`degree` must be a whole number from 0 to 5; got {degree!r}", key="degree"
-        )
 
 
 def _medians(lines: np.ndarray) -> np.ndarray:

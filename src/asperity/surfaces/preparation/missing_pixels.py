@@ -1,4 +1,4 @@
-"""Missing pixels of a surface: refused, kept or filled."""
+"""Missing pixels of a surface: kept or filled."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import linalg
 
-from ...errors import InputError
 from ..topography import Topography
 from .step import Step
 
@@ -14,8 +13,8 @@ MISSING = ("refuse", "keep", "fill")
 """What can be done about missing pixels."""
 
 
-def filled(topography: Topography, how: str = "refuse") -> tuple[Topography, Step]:
-    """A surface whose missing pixels are refused, kept or filled.
+def filled(topography: Topography, how: str) -> tuple[Topography, Step]:
+    """A surface whose missing pixels are kept or filled.
 
     Filling solves Laplace's equation in the missing pixels, with the heights around them as the
     boundary and no slope across the edge of the map. A plane is restored exactly away from the
@@ -28,33 +27,17 @@ def filled(topography: Topography, how: str = "refuse") -> tuple[Topography, Ste
     Parameters
     ----------
     topography
-        The surface.
+        The surface, of which pixels are missing.
     how
-        ``refuse``: an error where a pixel is missing; ``keep``: missing pixels stay NaN;
-        ``fill``: they take the harmonic interpolation of their surroundings.
+        ``keep``: missing pixels stay NaN; ``fill``: they take the harmonic interpolation of their
+        surroundings.
 
     Returns
     -------
     The surface, and the step with the number of missing pixels.
-
-    Raises
-    ------
-    InputError
-        If ``how`` is unknown, or if pixels are missing and are to be refused.
     """
-    if how not in MISSING:
-        raise InputError(
-            f"`missing` must be one of {', '.join(MISSING)}; got {how!r}", key="missing"
-        )
     count, total = topography.missing_pixels, topography.heights.size
     before = topography.rms_height
-    if count == 0:
-        return topography, Step("missing", "no pixel is missing", before, before, {"pixels": 0})
-    if how == "refuse":
-        raise topography._error(
-            f"{count} of {total} pixels are missing; fill them with --missing fill (in a case: "
-            "missing = 'fill'), or leave them out with --missing keep"
-        )
     shares = f"{count} of {total} missing pixels ({100.0 * count / total:.2g} %)"
     if how == "keep":
         return topography, Step("missing", f"{shares} kept", before, before, {"pixels": count})

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 from ...errors import InputError
 from ..topography import Topography
-from . import gaussian_filter, line_levelling
 from .form_removal import FORMS, levelled
 from .gaussian_filter import band_limited
-from .line_levelling import lines_aligned
+from .line_levelling import ALIGNMENTS, DIRECTIONS, lines_aligned
 from .missing_pixels import MISSING, filled
-from .step import Step
+from .step import Step, length
 
 
 @dataclass(frozen=True)
@@ -51,17 +51,17 @@ class Preparation:
         for key, value, known in (
             ("missing", self.missing, MISSING),
             ("form_removal", self.form_removal, FORMS),
-            ("line_levelling", self.line_levelling, ("none", *line_levelling.ALIGNMENTS)),
+            ("line_levelling", self.line_levelling, ALIGNMENTS),
+            ("direction", self.direction, DIRECTIONS),
         ):
             if value not in known:
                 raise InputError(
                     f"`{key}` must be one of {', '.join(known)}; got {value!r}", key=key
                 )
-        line_levelling.checked(
-            self.line_levelling if self.line_levelling != "none" else "median",
-            self.direction,
-            self.degree,
-        )
+        if isinstance(self.degree, bool) or self.degree not in range(6):
+            raise InputError(
+                f"`degree` must be a whole number from 0 to 5; got {self.degree!r}", key="degree"
+            )
         if self.line_levelling == "none" and self.direction != "rows":
             raise InputError(
                 f"`direction` must be absent without `line_levelling`; got {self.direction!r}",
@@ -72,7 +72,19 @@ class Preparation:
                 f"`degree` must be absent without `line_levelling` 'polynomial'; got {self.degree}",
                 key="degree",
             )
-        gaussian_filter.checked(self.s_filter, self.l_filter)
+        self._refuse_cuts()
+
+    def _refuse_cuts(self) -> None:
+        """Refuse cuts that are no lengths or leave nothing between them."""
+        short, long = self.s_filter, self.l_filter
+        for key, value in (("s_filter", short), ("l_filter", long)):
+            if value is not None and not (isfinite(value) and value > 0.0):
+                raise InputError(f"`{key}` must be a positive length; got {value} m", key=key)
+        if short is not None and long is not None and short >= long:
+            raise InputError(
+                f"`s_filter` must lie below `l_filter`, {length(long)}; got {length(short)}",
+                key="s_filter",
+            )
 
 
 @dataclass(frozen=True)
@@ -132,8 +144,11 @@ def prepared(topography: Topography, preparation: Preparation) -> Prepared:
     """
     count = topography.missing_pixels
     steps = []
-    if preparation.missing == "refuse" or count == 0:
-        filled(topography, preparation.missing)
+    if count and preparation.missing == "refuse":
+        raise topography._error(
+            f"{count} of {topography.heights.size} pixels are missing; fill them with --missing "
+            "fill (in a case: missing = 'fill'), or leave them out with --missing keep"
+        )
     if preparation.line_levelling != "none":
         topography, step = lines_aligned(
             topography, preparation.line_levelling, preparation.direction, preparation.degree

@@ -18,7 +18,7 @@ class Step:
     Parameters
     ----------
     name
-        What was done: ``missing``, ``lines``, ``form``, ``short`` or ``long``.
+        What was done: ``missing``, ``lines``, ``form``, ``s_filter`` or ``l_filter``.
     words
         The same in a sentence, with its numbers, but without the rms heights.
     rms_before, rms_after
