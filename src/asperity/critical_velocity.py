@@ -91,8 +91,8 @@ class Launcher:
         finer: tuple[int, ...] = (),
         stop: threading.Event | None = None,
     ) -> None:
-        contact, body = solution.contact, solution.body or problem.body
-        outset = np.asarray(measured(solution, body).outset)
+        contact, body = solution.contact, solution.body
+        outset = np.asarray(measured(solution).outset)
         launched = launch_separation(
             np.asarray(interaction_range_of(contact)), outset, np.asarray(body.release),
             yields=isinstance(contact, YieldingContact),
@@ -108,9 +108,6 @@ class Launcher:
         """The first impact of a body launched with a speed [m/s]."""
         if self._stop is not None and self._stop.is_set():
             return _UNKNOWN
-        return self._launched(float(speed))
-
-    def _launched(self, speed: float) -> Rebound:
         body = dataclasses.replace(self._problem.body, speed=speed)
         problem = self._problem._replace(body=body)
         serve = [most for most in self._curves if SLOWER * most <= speed <= most]
@@ -123,7 +120,7 @@ class Launcher:
             return _UNKNOWN
         if not serve and not isinstance(problem.contact, YieldingContact):
             self._curves[speed] = begun
-        measures = measured(solution, body)
+        measures = measured(solution)
         if not np.isfinite(measures.contact_end):  # contact reaches beyond where it was launched
             return _UNKNOWN
         leaving = float(np.asarray(solution.motion.impacts.leaving)[0])

@@ -86,8 +86,8 @@ def _tabulated(problem: Problem) -> Table:
 
 def _place(table: Table, load: float) -> float | None:
     """Where an approach first carries a load [m]; None where nothing in the table does."""
-    found = _reference(table, Load(as_float64(load / (1.0 + 1e-9))), 0)
-    return float(found.equilibrium) if bool(found.rests) else None
+    place = float(_reference(table, Load(as_float64(load / (1.0 + 1e-9))), 0).equilibrium)
+    return place if np.isfinite(place) else None
 
 
 def _turning(body: Body, table: Table, place: float) -> Body:

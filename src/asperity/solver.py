@@ -171,7 +171,7 @@ def _result(
 ) -> Result:
     """The result of a motion, and of single bodies beside it."""
     # Of a contact that folds both differ from what was built.
-    problem = problem._replace(contact=solution.contact, body=solution.body or problem.body)
+    problem = problem._replace(contact=solution.contact, body=solution.body)
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
@@ -266,7 +266,6 @@ def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
 def assess(
     case: Case,
     *,
-    name: str = "case",
     progress: Report | None = None,
     stop: threading.Event | None = None,
 ) -> Assessment:
@@ -274,7 +273,7 @@ def assess(
 
     Parameters
     ----------
-    case, name, progress, stop
+    case, progress, stop
         As for :func:`solve`; one impact is too short to be stopped half-way.
 
     Raises
@@ -286,7 +285,7 @@ def assess(
     problem = build(resolve(case))
     contact, motion = first_impact(problem, report)
     report(1.0, "done")
-    return assessment_of(name, problem._replace(contact=contact), motion)
+    return assessment_of(case.name, problem._replace(contact=contact), motion)
 
 
 def _kept_elastic(inputs: Inputs, report: Report) -> float | None:
@@ -301,4 +300,4 @@ def _kept_elastic(inputs: Inputs, report: Report) -> float | None:
         contact, motion = first_impact(problem, report)
     except (InputError, SimulationError):
         return math.nan  # it may be released within contact, or pull too hard to be solved
-    return first_restitution(Solution(motion, contact, Outcome.MAX_IMPACTS), problem.body)
+    return first_restitution(Solution(motion, contact, problem.body, Outcome.MAX_IMPACTS))

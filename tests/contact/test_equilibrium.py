@@ -37,7 +37,7 @@ paces = eqx.filter_jit(rates)
 def residual(here, place, thresholds, size, displacement):
     """What is left of h = d + rise + u(p(h)), by dense products of NumPy; u is 0 at the end."""
     mesh = ring_mesh(here.rings)
-    h = place + profile_of(here, size, here.rings) + displacement
+    h = place + profile_of(here, size) + displacement
     pressure = np.asarray(here.interface.pressure(h, thresholds))[:-1]
     displaced = size / here.modulus * (mesh.compliance @ pressure)
     return np.asarray(displacement) - np.append(displaced, 0.0)
@@ -49,12 +49,12 @@ def residual(here, place, thresholds, size, displacement):
 def test_rings_settle_from_nothing_and_from_a_guess_nearby(modulus, depth, bonded):
     here, place, size = contact(modulus), jnp.asarray(depth * SIGMA), jnp.asarray(9e-7)
     thresholds, flat = here.branches()[int(bonded)].thresholds, jnp.zeros(RINGS + 1)
-    rest = found(here, place, thresholds, size, flat, RINGS)
+    rest = found(here, place, thresholds, size, flat)
     assert float(rest.error) < 1e-10
     left = residual(here, place, thresholds, 9e-7, rest.displacement)
     np.testing.assert_allclose(left, 0.0, atol=3e-12 * (SIGMA + float(jnp.max(rest.displacement))))
-    near = found(here, place + 0.1 * SIGMA, thresholds, size, flat, RINGS)
-    again = found(here, place, thresholds, size, near.displacement, RINGS)
+    near = found(here, place + 0.1 * SIGMA, thresholds, size, flat)
+    again = found(here, place, thresholds, size, near.displacement)
     np.testing.assert_allclose(
         again.displacement, rest.displacement, atol=1e-11 * SIGMA, rtol=1e-11
     )
@@ -64,12 +64,9 @@ def test_rates_are_those_of_rings_at_two_places():
     here, place, size = contact(57e9), jnp.asarray(-2.0 * SIGMA), jnp.asarray(9e-7)
     thresholds, flat = here.initial_memory().thresholds, jnp.zeros(RINGS + 1)
     step = 1e-4 * SIGMA
-    lifts = [
-        found(here, place + k * step, thresholds, size, flat, RINGS).displacement
-        for k in (-1, 0, 1)
-    ]
+    lifts = [found(here, place + k * step, thresholds, size, flat).displacement for k in (-1, 0, 1)]
     measured = 1.0 + (lifts[2] - lifts[0]) / (2.0 * step)
-    rate = paces(here, place, thresholds, size, lifts[1], RINGS)
+    rate = paces(here, place, thresholds, size, lifts[1])
     np.testing.assert_allclose(rate, measured, rtol=1e-4)
     assert 0.05 < float(jnp.min(rate)) < 0.6  # the bulk gives way there
     assert float(rate[-1]) == 1.0  # but not where the mesh ends
@@ -138,11 +135,11 @@ def test_a_batch_settles_as_each_alone():
     places = SIGMA * jnp.asarray([5.0, 1.0, -20.0])
 
     def one(place):
-        return solve_equilibrium(here, place, thresholds, size, flat, RINGS).displacement
+        return solve_equilibrium(here, place, thresholds, size, flat).displacement
 
     together = jax.jit(jax.vmap(one))(places)
     for row, place in zip(together, places, strict=True):
-        alone = found(here, place, thresholds, size, flat, RINGS).displacement
+        alone = found(here, place, thresholds, size, flat).displacement
         np.testing.assert_allclose(row, alone, atol=1e-11 * SIGMA, rtol=1e-11)
 
 

@@ -79,7 +79,7 @@ def curve():
 def followed(one, size, begin, end, count):
     """Central separations of plain Newton steps from one separation to the next, until they end."""
     flat, steps = np.zeros(one.rings + 1), np.linspace(begin, end, count)
-    profile = np.asarray(profile_of(one, jnp.asarray(size), one.rings))
+    profile = np.asarray(profile_of(one, jnp.asarray(size)))
     matrix = size / float(one.modulus) * compliance(one.rings)
     law = jax.jit(lambda h: pressed(one, (), h))
     displacement, path = flat, []

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from asperity._jax import jnp
-from asperity.contact.scanning_curve import STEPS, panels_around, piece_points
+from asperity.contact.scanning_curve import STEPS, panels_around
+from asperity.numerics.polynomials import points_between
 
 ROUNDED = 1e-14
 """Of a separation: as far as two compilations of one residual overlap differ, with a margin."""
@@ -16,7 +17,7 @@ def test_no_panel_lies_across_a_kink_that_is_rounded(kink):
     ends = np.asarray(panels_around(jnp.asarray([0.0, kink]), -2e-7, 3e-7, STEPS))
     low, width = ends[:-1], np.diff(ends)
     assert kink in ends
-    points = (low + piece_points(16)[:, None] * width)[:, width > 0.0]
+    points = (low + points_between(16)[:, None] * width)[:, width > 0.0]
     for rounded in kink * (1.0 + ROUNDED * np.array([-1.0, 1.0])):
         beyond = points > rounded
         assert np.all(np.all(beyond, axis=0) == np.any(beyond, axis=0))

@@ -22,8 +22,7 @@ def test_measures_are_those_of_the_whole_motion(name: str):
     problem = build(resolve(asperity.load(name)))
     problem = problem._replace(inputs=problem.inputs.one_impact())
     solution = integrate(problem)
-    body = solution.body or problem.body
-    found, whole = measured(solution, body), WHOLE(solution.motion, body, None, None)
+    found, whole = measured(solution), WHOLE(solution.motion, solution.body, None, None)
     made = int(np.sum(solution.motion.impacts.made))
     for quantity, value, expected in zip(found._fields, found, whole, strict=True):
         value = np.asarray(value)[:made] if np.ndim(value) else value

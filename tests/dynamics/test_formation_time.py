@@ -188,12 +188,11 @@ def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
     _, trajectory, _ = delayed(
         contact, Body(MASS, 0.0, start, speed), time, Tolerance(max_impacts=1)
     )
-    series = trajectory.series
-    wet = np.flatnonzero(series.rows[:, 6] > 0.5)
+    wet = np.flatnonzero(trajectory.rows[:, 6] > 0.5)
     appears = brentq(
         lambda t: start - speed * t + speed * time * (1.0 - np.exp(-t / time)), 1e-6, 1e-4
     )
-    assert series.time[wet[0] - 1] == pytest.approx(appears, rel=1e-6)
+    assert trajectory.time[wet[0] - 1] == pytest.approx(appears, rel=1e-6)
     gap = start - speed * appears
     loss = float(SPHERE.pull) * (0.5 * float(SPHERE.interaction_range) - gap)
     assert trajectory.lost[wet[0], 0] == pytest.approx(loss, rel=1e-6)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-import numpy as np
 import pytest
+from numpy.polynomial import Chebyshev
 from scipy.optimize import brentq
 
 import asperity
@@ -91,7 +91,8 @@ def test_a_curve_without_a_spring_has_no_jumps():
 def line(low, high, near, far):
     """A segment with a force that is linear, and no stored energy."""
     middle, half = 0.5 * (near + far), 0.5 * (far - near)
-    return Segment(low, high, (low, high), np.array([middle, half]), np.zeros(2))
+    force = Chebyshev([middle, half], (low, high))
+    return Segment(low, high, force, Chebyshev([0.0], (low, high)))
 
 
 def test_a_contact_that_pulls_more_and_more_lets_go_at_its_edge():

@@ -37,9 +37,9 @@ prepared = eqx.filter_jit(lambda contact, body: prepare(contact, body, many=True
 
 @eqx.filter_jit
 def integrated(contact, body, table, reference):
-    progress, origin = start(contact, body, table)
+    begun = start(contact, body, table, reference)
     limits = Limits.of(Tolerance(max_impacts=IMPACTS))
-    return integrate_impacts(contact, body, table, reference, origin, progress, limits, IMPACTS)
+    return integrate_impacts(contact, body, begun, limits, IMPACTS)
 
 
 @pytest.fixture(scope="module")
@@ -158,12 +158,9 @@ def test_derivatives_pass_through_tabulated_ways():
     def lost(sigma):
         here = contact()
         here = eqx.tree_at(lambda c: c.interface.heights.rms_height, here, sigma)
-        table, reference = prepare(here, BODY, many=True)
-        progress, origin = start(here, BODY, table)
+        begun = start(here, BODY, *prepare(here, BODY, many=True))
         limits = Limits.of(Tolerance(max_impacts=3))
-        return jnp.sum(
-            integrate_impacts(here, BODY, table, reference, origin, progress, limits, 3)[0].lost
-        )
+        return jnp.sum(integrate_impacts(here, BODY, begun, limits, 3)[0].lost)
 
     sigma, step = jnp.asarray(SIGMA), 2e-3 * SIGMA
     slope = jax.jit(lambda s: jax.jvp(lost, (s,), (jnp.ones(()),))[1])(sigma)

@@ -5,7 +5,6 @@ import pytest
 
 from asperity.dynamics.curve_table import FORCE
 from asperity.dynamics.stepped_series import Trajectory
-from asperity.dynamics.time_series import Series
 
 
 def trajectory(time, force, phase):
@@ -13,8 +12,7 @@ def trajectory(time, force, phase):
     rows = np.zeros((time.size, 7))
     rows[:, FORCE] = force
     none = np.zeros((time.size, 0))
-    series = Series(time, time, np.ones(time.size), rows, none, none, phase)
-    return Trajectory(series, none)
+    return Trajectory(time, time, np.ones(time.size), rows, none, none, phase)
 
 
 def test_the_largest_force_lies_between_samples():

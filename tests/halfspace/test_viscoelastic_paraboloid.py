@@ -15,7 +15,8 @@ from asperity.dynamics import Body, Limits
 from asperity.dynamics.curve_table import FORCE, STORED
 from asperity.dynamics.motion import prepare
 from asperity.dynamics.stepped_motion import integrate_stepped
-from asperity.dynamics.viscoelastic.sphere_motion import LEFT, TURNED, Bounce
+from asperity.dynamics.stepped_phase import LEFT, TURNED
+from asperity.dynamics.viscoelastic.sphere_motion import Bounce
 from asperity.errors import Outcome, Tolerance
 from asperity.halfspace.viscoelastic_paraboloid import Solid
 from asperity.laws import Hertz

@@ -20,7 +20,7 @@ from asperity.publication.comparison import problems_of
 from asperity.publication.parameter_estimation import Refit, Unknowns
 from asperity.publication.published_tables import Entry, read_tables
 from asperity.publication.reproduce import Reproduction, reproduce
-from asperity.results.records import REPRODUCTION_FILES
+from asperity.results.results_folder import REPRODUCTION_FILES
 
 HEADER = "table,asperity_radius_nm,rms_height_nm,time_to_rest_us,power_loss_1e-4_nW,log_decrement\n"
 TABLES = "".join(

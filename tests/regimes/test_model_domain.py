@@ -12,7 +12,7 @@ from scipy.integrate import quad
 import asperity
 from asperity import solver
 from asperity.config import load
-from asperity.config.case_solids import solids_of
+from asperity.config.bodies import solids_of
 from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.inputs import Asperities

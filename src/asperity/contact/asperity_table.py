@@ -11,10 +11,11 @@ import numpy as np
 from .._jax import jax, jnp
 from ..laws.law import Law, Real, as_float64, terms
 from ..numerics.compilation import AT_ONCE, Program, kept
+from ..numerics.polynomials import points_between
 from .smooth import kinks_of
 
 _CELLS = 512  # between two gaps at which a law is not smooth
-_POINTS = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(4))
+_POINTS = points_between(4)
 _TO_POWERS = np.linalg.inv(np.vander(_POINTS, increasing=True)).T
 _OTHERS = 4096  # asperities that may attract one, with all that each has to give
 _BEYOND = 1.01  # times where forces end: there, the table ends with none
@@ -27,8 +28,8 @@ APPROACH = -1
 
 
 @kept
-class AsperityTable(NamedTuple):
-    """Energies of one asperity as cubics on cells of its gap, for classes of tip radius.
+class Asperities(NamedTuple):
+    """Asperities of some classes of tip radius, and their energies as cubics on cells of the gap.
 
     Cells are even in y, |gap|/scale = exp |y| - 1 with the sign of the gap; their ends are gaps at
     which a law is not smooth. An energy holds what was lost on the way: at any gap it is the work
@@ -36,69 +37,45 @@ class AsperityTable(NamedTuple):
 
     Attributes
     ----------
+    size_class
+        Class of each, shape (n,).
     scale
-        Length [m] below which cells are even in the gap itself, shape (classes,).
+        Length [m] below which cells are even in the gap itself, shape (n,).
     borders
-        y at both ends and where a law is not smooth, ascending, shape (classes, borders).
+        y at both ends and where a law is not smooth, ascending, shape (borders, n).
     rates
-        Cells over y from each of these to the next, shape (classes, borders - 1).
+        Cells over y from each of these to the next, shape (borders - 1, n).
     energy, slope
         Energy [J] and its slope with the gap [N], shape (classes, branches, cells, 4): coefficients
         of powers of the share of a cell. There is a branch for each set of laws whose bond is
         formed, and the last is approach, on which each forms in its turn.
     forming, breaking
-        Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (classes, laws).
+        Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (laws, n).
     lost
-        Energy [J] that each loses once made and broken, shape (classes, laws).
+        Energy [J] that each loses once made and broken, shape (laws, n).
     pull_off_gap
-        Gap [m] of the largest tension of an asperity with all bonds, shape (classes,).
+        Gap [m] of the largest tension of an asperity with all bonds, shape (n,).
     approach_range
-        Gap [m] beyond which an asperity that never touched feels nothing, shape (classes,).
-    """
-
-    scale: jax.Array
-    borders: jax.Array
-    rates: jax.Array
-    energy: jax.Array
-    slope: jax.Array
-    forming: jax.Array
-    breaking: jax.Array
-    lost: jax.Array
-    pull_off_gap: jax.Array
-    approach_range: jax.Array
-
-    @property
-    def interaction_range(self) -> jax.Array:
-        """Gap [m] beyond which an asperity feels nothing, shape (classes,)."""
-        return self.scale * _stretched(self.borders[:, -1])
-
-    def of(self, size_class: jax.Array) -> Asperities:
-        """Asperities of some classes, shape (n,)."""
-        shared = ("energy", "slope")
-        rest = [leaf[size_class].T for name, leaf in self._asdict().items() if name not in shared]
-        return Asperities(size_class, self.energy, self.slope, *rest)
-
-
-class Asperities(NamedTuple):
-    """What an :class:`AsperityTable` holds of some asperities: with them as the last axis.
-
-    Attributes
-    ----------
-    size_class
-        Class of each, shape (n,).
+        Gap [m] beyond which an asperity that never touched feels nothing, shape (n,).
     """
 
     size_class: jax.Array
-    energy: jax.Array
-    slope: jax.Array
     scale: jax.Array
     borders: jax.Array
     rates: jax.Array
+    energy: jax.Array
+    slope: jax.Array
     forming: jax.Array
     breaking: jax.Array
     lost: jax.Array
     pull_off_gap: jax.Array
     approach_range: jax.Array
+
+    def of(self, size_class: jax.Array) -> Asperities:
+        """From one of each class, in their order: asperities of some classes, shape (n,)."""
+        shared = {"energy": self.energy, "slope": self.slope}
+        rest = self._asdict().keys() - shared.keys()
+        return Asperities(**{name: getattr(self, name)[..., size_class] for name in rest}, **shared)
 
     @property
     def interaction_range(self) -> jax.Array:
@@ -213,7 +190,7 @@ def _segments(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
     return scale, _even(gaps / scale)
 
 
-def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
+def _table_of(size_class: jax.Array, law: Law, energy: jax.Array) -> Asperities:
     """The table of a law, down to a gap that needs more energy [J] than a body and others give."""
     every = terms(law)
     hysteretic = [one for one in every if one.hysteretic]
@@ -255,7 +232,8 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
 
     tension = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
     energy, slope = jnp.stack([fitted(formed) for formed in (*sets, None)], axis=1)
-    return AsperityTable(
+    return Asperities(
+        size_class,
         scale,
         borders,
         _CELLS / jnp.maximum(widths, _EMPTY),
@@ -269,11 +247,14 @@ def _table_of(law: Law, energy: jax.Array) -> AsperityTable:
     )
 
 
-_tables = Program(jax.vmap(_table_of, in_axes=(0, None)), AT_ONCE)
+_class_axes: Any = Asperities(*[-1] * len(Asperities._fields))  # type: ignore[arg-type]
+_tables = Program(
+    jax.vmap(_table_of, (0, 0, None), _class_axes._replace(energy=0, slope=0)), AT_ONCE
+)
 
 
-def asperity_table(laws: Sequence[Law], energy: float) -> AsperityTable:
-    """The energies of one asperity of each class, by its laws.
+def asperity_table(laws: Sequence[Law], energy: float) -> Asperities:
+    """One asperity of each class, by its laws.
 
     Parameters
     ----------
@@ -283,4 +264,4 @@ def asperity_table(laws: Sequence[Law], energy: float) -> AsperityTable:
         Energy [J] that no body comes with.
     """
     together = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *laws)
-    return _tables(together, as_float64(energy))
+    return _tables(jnp.arange(len(laws)), together, as_float64(energy))

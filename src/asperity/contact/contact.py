@@ -57,6 +57,30 @@ class State(NamedTuple):
     elastic: jax.Array
     field: jax.Array
 
+    @classmethod
+    def undeformed(
+        cls,
+        separation: jax.Array,
+        forces: tuple[tuple[str, ...], jax.Array],
+        stored: jax.Array,
+        bonds: jax.Array,
+        contacting: jax.Array,
+    ) -> State:
+        """Of bodies that do not deform in bulk, from the names of the forces and their parts."""
+        components, parts = forces
+        return cls(
+            force=jnp.sum(parts),
+            stored=stored,
+            central=separation,
+            bonds=bonds,
+            parts=parts,
+            contacting=contacting,
+            error=jnp.full_like(separation, 1e-16),
+            size=jnp.zeros_like(separation),
+            elastic=elastic_part(components, parts),
+            field=jnp.zeros(0),
+        )
+
 
 class ScanningCurve(NamedTuple):
     """The way from a reversal to the major branch, solved at some places.
@@ -123,12 +147,6 @@ class ReversalSampling(NamedTuple):
 def elastic_part(components: tuple[str, ...], parts: jax.Array) -> jax.Array:
     """The elastic force among the parts of a force [N]; 0 where none is."""
     return parts[components.index("elastic")] if "elastic" in components else jnp.zeros(())
-
-
-def two_branches(laws: int, extreme: Callable[[float], Memory]) -> tuple[Memory, ...]:
-    """Major branches of hysteretic laws with no bond, by a threshold of inf, and with all."""
-    ends = (jnp.inf, -jnp.inf) if laws else (jnp.inf,)
-    return tuple(extreme(threshold) for threshold in ends)
 
 
 class Contact(eqx.Module):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -11,10 +11,10 @@ from .._jax import jax, jnp
 from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.compilation import kept
+from ..numerics.polynomials import points_between
 from ..numerics.roots import fixed_point
 from .equilibrium import (
     RingEquilibrium,
-    Rough,
     asked_size,
     beyond,
     equilibrium_displacement,
@@ -22,8 +22,9 @@ from .equilibrium import (
     rates,
     solve_equilibrium,
 )
-from .resolution import LATER, LINEAR, Resolution, fills_by_contact
-from .scanning_curve import piece_points, pieces_to
+from .resolution import LATER, LINEAR, fills_by_contact
+from .rough import DeformingContact
+from .scanning_curve import pieces_to
 
 _BELOW = 5.0  # rms below the deepest separation, where the tables of means begin
 _TO = 8.0  # times the outermost separation, where they end: rings lie as far apart
@@ -37,19 +38,7 @@ _BENDS = 2.0  # rms heights: later pieces are even in asinh(separation / this)
 _MORE = 1.02  # than the way at the first rate
 _MUCH_MORE = 1.2  # where liquid fills the surface: the rate falls as the bulk springs back
 
-
-class Deforming(Rough, Protocol):
-    """A contact whose rings are followed."""
-
-    rings: int
-    resolved: Resolution
-
-    @property
-    def passed(self) -> tuple[int, int]:
-        """Pieces of a scanning curve, and separations on each."""
-
-
-Tabulated = TypeVar("Tabulated", bound=Deforming)
+Tabulated = TypeVar("Tabulated", bound=DeformingContact)
 
 
 @kept
@@ -105,7 +94,7 @@ class ContinuationPath(NamedTuple):
         )
 
 
-def first_size(contact: Deforming, separation: jax.Array) -> jax.Array:
+def first_size(contact: DeformingContact, separation: jax.Array) -> jax.Array:
     """Size of the mesh before anything is solved: light contact, and Hertz's radius."""
     sigma, radius = contact.interface.scale.rms, contact.shape.radius
     light = 3.0 * radius * sigma / (1.0 + jnp.maximum(separation / sigma, 0.0))
@@ -113,7 +102,7 @@ def first_size(contact: Deforming, separation: jax.Array) -> jax.Array:
 
 
 def _marks(
-    contact: Deforming,
+    contact: DeformingContact,
     memory: RingMemory,
     start: jax.Array,
     unloading: jax.Array,
@@ -154,7 +143,7 @@ def _marks(
 
 
 def fitted(
-    contact: Deforming,
+    contact: DeformingContact,
     place: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
@@ -162,15 +151,15 @@ def fitted(
     free: jax.Array,
 ) -> tuple[jax.Array, RingEquilibrium]:
     """The rings at one place, on a mesh whose size fits the pressure where it is ``free``."""
-    rings, fills = contact.rings, fills_by_contact(contact.interface.hysteretic)
+    fills = fills_by_contact(contact.interface.hysteretic)
 
     def again(now: tuple[Any, ...]) -> tuple[Any, jax.Array]:
         size, ratio, rest = now
         size = size * ratio
-        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement, rings)
-        end = place + profile_of(contact, size, rings)[-1]
+        rest = solve_equilibrium(contact, place, thresholds, size, rest.displacement)
+        end = place + profile_of(contact, size)[-1]
         more = beyond(contact, size, end) if fills else 0.0
-        asked = asked_size(rest, rings, more)
+        asked = asked_size(rest, more)
         ratio = jnp.where(free, asked, 1.0)
         return (size, ratio, rest), jnp.abs(ratio - 1.0)
 
@@ -180,14 +169,13 @@ def fitted(
 
 
 def continue_branch(
-    contact: Deforming, corners: jax.Array, places: jax.Array, thresholds: Thresholds
+    contact: DeformingContact, corners: jax.Array, places: jax.Array, thresholds: Thresholds
 ) -> tuple[jax.Array, RingEquilibrium]:
     """Sizes and rings at descending ``places`` within panels that end at ``corners``.
 
     The size of the mesh is found at the corners.
     """
-    rings, sigma = contact.rings, contact.interface.scale.rms
-    flat = jnp.zeros(rings + 1)
+    sigma, flat = contact.interface.scale.rms, jnp.zeros(contact.rings + 1)
 
     def fit(carry: tuple[jax.Array, jax.Array], place: jax.Array) -> Any:
         displacement, factor = carry
@@ -198,7 +186,7 @@ def continue_branch(
 
     def step(path: ContinuationPath, place: jax.Array) -> Any:
         size = jnp.interp(place, corners[::-1], sizes[::-1])
-        rest = solve_equilibrium(contact, place, thresholds, size, path.guess(place), rings)
+        rest = solve_equilibrium(contact, place, thresholds, size, path.guess(place))
         return path.append(place, rest.displacement), (size, rest)
 
     _, sizes = jax.lax.scan(fit, (flat, jnp.ones(())), corners)
@@ -217,7 +205,7 @@ def with_table(
     return tabulated
 
 
-def table_ends(contact: Deforming, low: jax.Array, high: jax.Array) -> jax.Array:
+def table_ends(contact: DeformingContact, low: jax.Array, high: jax.Array) -> jax.Array:
     """Ends of panels [m] on which means of the planes are smooth, for a body between separations.
 
     Polynomials on them are off by some 1e-13 of the largest value, over measured heights by 1e-8.
@@ -237,7 +225,7 @@ def table_ends(contact: Deforming, low: jax.Array, high: jax.Array) -> jax.Array
 
 
 def continue_scanning_curve(
-    contact: Deforming,
+    contact: DeformingContact,
     memory: RingMemory,
     start: jax.Array,
     size: jax.Array,
@@ -248,28 +236,27 @@ def continue_scanning_curve(
 
     Pieces are cut where rings reach the branch.
     """
-    pieces, nodes = contact.passed
-    steps = piece_points(nodes)
+    steps = points_between(contact.resolved.nodes)
     sigma = contact.interface.scale.rms
     held = memory.thresholds, size
-    pace = rates(contact, start, *held, memory.displacement, contact.rings)
+    pace = rates(contact, start, *held, memory.displacement)
     marks = _marks(contact, memory, start, unloading, pace, within)
     enter, leave = pieces_to(marks, start, unloading, within)
     back = jnp.where(unloading, sigma, -sigma) * 1e-2
     path = ContinuationPath.straight(start, memory.displacement, pace - 1.0, back)
 
     def step(path: ContinuationPath, place: jax.Array) -> Any:
-        rest = solve_equilibrium(contact, place, *held, path.guess(place), contact.rings)
+        rest = solve_equilibrium(contact, place, *held, path.guess(place))
         return path.append(place, rest.displacement), rest
 
     places = enter[:, None] + (leave - enter)[:, None] * jnp.asarray(steps)
     _, found = jax.lax.scan(step, path, places.ravel())
-    rests = jax.tree_util.tree_map(lambda leaf: leaf.reshape(pieces, nodes, *leaf.shape[1:]), found)
+    rests = jax.tree_util.tree_map(lambda leaf: leaf.reshape(*places.shape, *leaf.shape[1:]), found)
     return enter, leave, places, rests
 
 
 def with_derivatives(
-    contact: Deforming,
+    contact: DeformingContact,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
@@ -277,7 +264,5 @@ def with_derivatives(
 ) -> RingEquilibrium:
     """Rings in equilibrium, with the derivatives of where they lie."""
     held = jax.lax.stop_gradient((size, rest.displacement))
-    displacement = equilibrium_displacement(
-        contact, separation, thresholds, *held, rings=contact.rings
-    )
+    displacement = equilibrium_displacement(contact, separation, thresholds, *held)
     return rest._replace(displacement=displacement)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from math import comb
-from typing import Any
 
 import equinox as eqx
 
@@ -144,13 +142,14 @@ class DelayedContact(eqx.Module):
     time: Real = quantity()
 
     def __init__(self, contact: RoughContact | SmoothContact, time: Real) -> None:
-        smooth = isinstance(contact, SmoothContact)
-        self.laws = (
-            tuple(law for law in terms(contact.law) if law.hysteretic)
-            if isinstance(contact, SmoothContact)
-            else contact.interface.hysteretic
-        )
-        self.base = _base_of_smooth(contact) if smooth else _base_of_rough(contact)
+        if isinstance(contact, SmoothContact):
+            self.laws = tuple(law for law in terms(contact.law) if law.hysteretic)
+            law = _prescribed(contact.law, smooth=True)
+            self.base = dataclasses.replace(contact, law=law)
+        else:
+            self.laws = contact.interface.hysteretic
+            planes = _base_of(contact.interface)
+            self.base = dataclasses.replace(contact, interface=planes, resolved=_UNUSED)
         self.meniscus_index = contact.mechanisms.index(LATE)
         self.time = jnp.asarray(time, dtype=jnp.float64)
 
@@ -197,49 +196,33 @@ _UNUSED = Resolution(panels=1, nodes=8, pieces=1)
 """No curves are made of a contact with prescribed bonds: one program serves for all of them."""
 
 
-def _base_of_smooth(contact: Any) -> SmoothContact:
-    law = _replaced(contact.law, lambda law: law.hysteretic, holds=True)
-    return dataclasses.replace(contact, law=law)
-
-
-def _base_of_rough(contact: Any) -> RoughContact:
-    base = _base_of_surfaces(contact.interface)
-    answer: RoughContact = dataclasses.replace(contact, interface=base, resolved=_UNUSED)
-    return answer
-
-
-def _base_of_surfaces(surfaces: RoughPlanes) -> RoughPlanes:
-    if isinstance(surfaces, Layers):
-        return Layers([_base_of_part(part) for part in surfaces.parts])
-    return _base_of_part(surfaces)
-
-
-def _base_of_part(part: RoughPlanes) -> RoughPlanes:
-    if isinstance(part, Interface):
-        return _base_of_interface(part)
-    if part.yields:
+def _base_of(planes: RoughPlanes) -> RoughPlanes:
+    """The planes, whose menisci form when asked."""
+    if isinstance(planes, Layers):
+        return Layers([_base_of(part) for part in planes.parts])
+    if isinstance(planes, Interface):
+        return dataclasses.replace(planes, law=_prescribed(planes.law, smooth=False))
+    if planes.yields:
         raise InputError(
             "`formation_time` must be absent where asperities yield: which of them have a meniscus "
             "would need a history in time; take plasticity.model = 'none'",
             key="capillary.formation_time",
         )
-    if LATE in part.mechanisms:
+    if LATE in planes.mechanisms:
         raise InputError(
             "`formation_time` must be absent where the bridges of each class of tip radius would "
             "need a history of their own; take model = 'equilibrium' or source = 'gaussian'",
             key="capillary.formation_time",
         )
-    return part
+    return planes
 
 
-def _base_of_interface(interface: Interface) -> Interface:
-    def is_delayed(law: Law) -> bool:
-        return law.hysteretic and law.mechanism == LATE
-
-    return dataclasses.replace(interface, law=_replaced(interface.law, is_delayed, holds=False))
-
-
-def _replaced(law: Law, chosen: Callable[[Law], bool], *, holds: bool) -> Law:
-    """The law, with the bonds of its ``chosen`` parts prescribed."""
-    parts = [PrescribedBonds(part, holds) if chosen(part) else part for part in terms(law)]
+def _prescribed(law: Law, *, smooth: bool) -> Law:
+    """The law with prescribed bonds: those of menisci, and of a smooth body all, which it holds."""
+    parts = [
+        PrescribedBonds(part, holds=smooth)
+        if part.hysteretic and (smooth or part.mechanism == LATE)
+        else part
+        for part in terms(law)
+    ]
     return parts[0] if len(parts) == 1 else Sum(parts)

@@ -12,16 +12,8 @@ from ..halfspace import ring_mesh, rings_of_mesh
 from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
-from ..laws.law import Real, quantity
-from .contact import (
-    Held,
-    Potential,
-    ReversalSampling,
-    ScanningCurve,
-    State,
-    elastic_part,
-    two_branches,
-)
+from ..laws.law import Real
+from .contact import Held, Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
     RingMemory,
     continue_branch,
@@ -36,13 +28,13 @@ from .equilibrium import RingEquilibrium, profile_of
 from .profile import Sphere
 from .resolution import Resolution, resolution
 from .rigid import RigidContact, rough_panels
-from .ring_reversals import branch_thresholds, ring_reversals
-from .rough import RoughContact
+from .ring_reversals import ring_reversals
+from .rough import DeformingContact
 
 _MOST_BESIDE = 9  # of the sixteen or so pieces of a whole quadrature
 
 
-class ElasticContact(RoughContact):
+class ElasticContact(DeformingContact):
     """A rough sphere on a plane, both elastic half-spaces in bulk.
 
     Parameters
@@ -65,9 +57,6 @@ class ElasticContact(RoughContact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
-    rings: int = eqx.field(static=True)
-    modulus: Real = quantity()
-
     def __init__(
         self,
         interface: RoughPlanes,
@@ -88,13 +77,11 @@ class ElasticContact(RoughContact):
         return RigidContact(self.interface, self.shape, self.resolved)
 
     def branches(self) -> tuple[RingMemory, ...]:
-        laws = len(self.mechanisms)
-
-        def extreme(threshold: float) -> RingMemory:
-            rows = (jnp.full(self.rings + 1, threshold),) * laws
-            return RingMemory(rows, jnp.zeros(()), jnp.zeros(self.rings + 1), jnp.asarray(False))
-
-        return two_branches(laws, extreme)
+        flat = jnp.zeros(self.rings + 1)
+        return tuple(
+            RingMemory(thresholds, jnp.zeros(()), flat, jnp.asarray(False))
+            for thresholds in self.interface.branches(flat)
+        )
 
     def state(self, separation: jax.Array, memory: RingMemory) -> State:
         size, rest = self._alone(separation, memory)
@@ -104,7 +91,7 @@ class ElasticContact(RoughContact):
         self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: RingEquilibrium
     ) -> State:
         mesh = ring_mesh(self.rings)
-        h = separation + profile_of(self, size, self.rings) + rest.displacement
+        h = separation + profile_of(self, size) + rest.displacement
         inside = self.interface.measure(h, thresholds)
         outside = self.interface.measure(h[-1:], _last(thresholds), integrated=1)
         area = mesh.area * size**2
@@ -113,21 +100,12 @@ class ElasticContact(RoughContact):
         def whole(inner: jax.Array, outer: jax.Array) -> jax.Array:
             return inner[..., :-1] @ area + around * outer[..., 0]
 
-        parts = whole(inside.parts, outside.parts)
+        parts, surface, *counts = jax.tree_util.tree_map(whole, inside, outside)
         pressure = jnp.sum(inside.parts, axis=0)[:-1]
         bulk = 0.5 * area @ (pressure * rest.displacement[:-1])
-        return State(
-            force=jnp.sum(parts),
-            stored=whole(inside.energy, outside.energy) + bulk,
-            central=jnp.asarray(mesh.axis) @ h[:-1],
-            bonds=whole(inside.bonds, outside.bonds),
-            parts=parts,
-            contacting=whole(inside.contacting, outside.contacting),
-            error=rest.error,
-            size=size,
-            elastic=elastic_part(self.components, parts),
-            field=rest.displacement,
-        )
+        state = State.undeformed(separation, (self.components, parts), surface + bulk, *counts)
+        central = jnp.asarray(mesh.axis) @ h[:-1]
+        return state._replace(central=central, error=rest.error, size=size, field=rest.displacement)
 
     def _branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
         """From outside in, each solution the first guess of the next.
@@ -231,11 +209,6 @@ class ElasticContact(RoughContact):
     def reversals(self) -> ReversalSampling | None:
         return ring_reversals(self) if self.mechanisms else None
 
-    @property
-    def passed(self) -> tuple[int, int]:
-        """Pieces of a :class:`ScanningCurve`, and places on each."""
-        return len(self.mechanisms) * self.resolved.pieces, self.resolved.nodes
-
     def _alone(
         self, separation: jax.Array, memory: RingMemory
     ) -> tuple[jax.Array, RingEquilibrium]:
@@ -258,9 +231,10 @@ class ElasticContact(RoughContact):
         else:
             size, displacement = jax.lax.stop_gradient(held.size), held.field
             # On a major branch no ring holds to what it remembered on its former mesh.
-            pairs = zip(branch_thresholds(self, held), memory.thresholds, strict=True)
+            branch = self.interface.branch_memory(memory.thresholds, held.unloading)
+            pairs = zip(branch, memory.thresholds, strict=True)
             old, outer = tuple(jnp.where(held.outer, new, b) for new, b in pairs), held.outer
-        h = separation + profile_of(self, size, self.rings) + displacement
+        h = separation + profile_of(self, size) + displacement
         return RingMemory(self.interface.remember(old, h), size, displacement, outer)
 
     def lower_bound(

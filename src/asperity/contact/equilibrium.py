@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import pi
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -16,11 +16,10 @@ import numpy as np
 from .._jax import jax, jnp
 from ..halfspace import ring_mesh
 from ..interface.rough_planes import Memory as Thresholds
-from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real
 from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
 from ..numerics.roots import fixed_point
-from .profile import Sphere
+from .rough import DeformingContact
 
 _ENOUGH = 1e-13  # relative change left in the separation
 _INEXACT = 10.0 * CLOSE  # rate at which a step converges whose system is solved to that
@@ -29,15 +28,6 @@ _WIDEN = 0.02  # power of that load by which the mesh grows: it may fall off as 
 _WIDEST = 4.0  # times the size that the pressure on the rings asks for
 _RESTART = 20  # steps after which a bad first guess is given up
 _STEPS = 120
-
-
-class Rough(Protocol):
-    """What rings are pressed by."""
-
-    rings: int
-    interface: RoughPlanes
-    shape: Sphere
-    modulus: Any
 
 
 class RingEquilibrium(NamedTuple):
@@ -72,9 +62,9 @@ class _Step(NamedTuple):
         return self.change * jnp.minimum(self.rate, 1.0) < _ENOUGH
 
 
-def profile_of(contact: Rough, size: Real, rings: int) -> jax.Array:
+def profile_of(contact: DeformingContact, size: Real) -> jax.Array:
     """Profile of the body at the rings and at the mesh's end [m]."""
-    mesh = ring_mesh(rings)
+    mesh = ring_mesh(contact.rings)
     return contact.shape.profile(size * np.append(mesh.radius, mesh.end))
 
 
@@ -88,12 +78,14 @@ def compliance(rings: int) -> np.ndarray:
     return np.pad(ring_mesh(rings).compliance, (0, 1))
 
 
-def _displacement(contact: Rough, size: jax.Array, pressure: jax.Array, rings: int) -> jax.Array:
+def _displacement(contact: DeformingContact, size: jax.Array, pressure: jax.Array) -> jax.Array:
     """Displacement [m] of the rings and of the end under a pressure [Pa] on them."""
-    return size / contact.modulus * (compliance(rings) @ pressure)
+    return size / contact.modulus * (compliance(contact.rings) @ pressure)
 
 
-def pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.Array, jax.Array]:
+def pressed(
+    contact: DeformingContact, thresholds: Thresholds, h: jax.Array
+) -> tuple[jax.Array, jax.Array]:
     """Pressure and its slope at separations h [m]."""
 
     def pressure(h: jax.Array) -> jax.Array:
@@ -103,12 +95,11 @@ def pressed(contact: Rough, thresholds: Thresholds, h: jax.Array) -> tuple[jax.A
 
 
 def solve_equilibrium(
-    contact: Rough,
+    contact: DeformingContact,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
     displacement: jax.Array,
-    rings: int,
 ) -> RingEquilibrium:
     """Rings in equilibrium at a rigid separation, from a first guess of their ``displacement``.
 
@@ -116,8 +107,8 @@ def solve_equilibrium(
     the safe side to start from: pressure falls and is convex in h, so that a step never leaves
     that side far behind. A guess that does not converge is given up for that side.
     """
-    safe = separation + profile_of(contact, size, rings)
-    area = np.append(ring_mesh(rings).area, 0.0)
+    safe = separation + profile_of(contact, size)
+    area = np.append(ring_mesh(contact.rings).area, 0.0)
     rms = contact.interface.scale.rms
     one = jnp.ones(())
     guess = _Step(
@@ -126,8 +117,8 @@ def solve_equilibrium(
 
     def step(now: _Step) -> tuple[_Step, jax.Array]:
         pressure, slope = pressed(contact, thresholds, now.h)
-        right = now.h - safe - _displacement(contact, size, pressure, rings)
-        move = nearly_solved(compliance(rings), size / contact.modulus * slope, right)
+        right = now.h - safe - _displacement(contact, size, pressure)
+        move = nearly_solved(compliance(contact.rings), size / contact.modulus * slope, right)
         change = jnp.max(jnp.abs(move) / (rms + jnp.abs(now.h)))
         rate = jnp.maximum(change / now.change, _INEXACT)
         load = jnp.sum(area * jnp.abs(pressure))
@@ -144,33 +135,30 @@ def solve_equilibrium(
 
 
 def rates(
-    contact: Rough,
+    contact: DeformingContact,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
     displacement: jax.Array,
-    rings: int,
 ) -> jax.Array:
     """Rate of the separation of rings that have settled per rigid separation, approximately."""
-    h = separation + profile_of(contact, size, rings) + displacement
+    h = separation + profile_of(contact, size) + displacement
     slope = pressed(contact, thresholds, h)[1]
-    return dense_solve(_matrix(contact, size, slope, rings), jnp.ones_like(h))
+    return dense_solve(_matrix(contact, size, slope), jnp.ones_like(h))
 
 
-def _matrix(contact: Rough, size: jax.Array, slope: jax.Array, rings: int) -> jax.Array:
+def _matrix(contact: DeformingContact, size: jax.Array, slope: jax.Array) -> jax.Array:
     """Change of what a separation leaves over, per change of the separation."""
-    return jnp.eye(len(slope)) - compliance(rings) * (size / contact.modulus * slope)
+    return jnp.eye(len(slope)) - compliance(contact.rings) * (size / contact.modulus * slope)
 
 
 @eqx.filter_custom_jvp
 def equilibrium_displacement(
-    contact: Rough,
+    contact: DeformingContact,
     separation: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
     displacement: jax.Array,
-    *,
-    rings: int,
 ) -> jax.Array:
     """The ``displacement`` [m] of rings in equilibrium, with its derivatives.
 
@@ -180,16 +168,18 @@ def equilibrium_displacement(
 
 
 @equilibrium_displacement.def_jvp
-def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array, jax.Array]:
+def _resting_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
     contact, separation, thresholds, size, displacement = primals
-    h = separation + profile_of(contact, size, rings) + displacement
+    h = separation + profile_of(contact, size) + displacement
     _, slope = pressed(contact, thresholds, h)
-    matrix = _matrix(contact, size, slope, rings)
+    matrix = _matrix(contact, size, slope)
 
-    def pushed(contact: Rough, separation: jax.Array, thresholds: Thresholds) -> jax.Array:
-        held = separation + profile_of(contact, size, rings) + displacement
+    def pushed(
+        contact: DeformingContact, separation: jax.Array, thresholds: Thresholds
+    ) -> jax.Array:
+        held = separation + profile_of(contact, size) + displacement
         pressure = contact.interface.pressure(held, thresholds)
-        return _displacement(contact, size, pressure, rings)
+        return _displacement(contact, size, pressure)
 
     _, push = eqx.filter_jvp(pushed, primals[:3], tangents[:3])
     change = jax.lax.custom_linear_solve(
@@ -202,7 +192,7 @@ def _resting_jvp(primals: Any, tangents: Any, *, rings: int) -> tuple[jax.Array,
 
 
 def balance(
-    contact: Rough,
+    contact: DeformingContact,
     h: jax.Array,
     safe: jax.Array,
     thresholds: Thresholds,
@@ -214,12 +204,12 @@ def balance(
     And its derivative by h; with slopes of the pressure up to ``most`` alone.
     """
     pressure, slope = pressed(contact, thresholds, h)
-    left = h - safe - _displacement(contact, size, pressure, contact.rings)
+    left = h - safe - _displacement(contact, size, pressure)
     slope = slope if most is None else jnp.minimum(slope, most)
-    return left, _matrix(contact, size, slope, contact.rings)
+    return left, _matrix(contact, size, slope)
 
 
-def asked_size(rest: RingEquilibrium, rings: int, beyond: jax.Array | float = 0.0) -> jax.Array:
+def asked_size(rest: RingEquilibrium, beyond: jax.Array | float = 0.0) -> jax.Array:
     """Size of the mesh that a pressure asks for, sqrt(2.5 <r^2>), over the present one.
 
     The mean is weighted with the pressure's magnitude: the radius of a Hertz contact, and
@@ -227,7 +217,7 @@ def asked_size(rest: RingEquilibrium, rings: int, beyond: jax.Array | float = 0.
     millionth lies ``beyond`` the mesh (over the size squared [Pa]), as of liquid about a small
     contact, but never more than four times as much.
     """
-    mesh = ring_mesh(rings)
+    mesh = ring_mesh(len(rest.pressure))
     weight = mesh.area * jnp.abs(rest.pressure)
     load = jnp.sum(weight)
     some = load > 0.0
@@ -238,7 +228,7 @@ def asked_size(rest: RingEquilibrium, rings: int, beyond: jax.Array | float = 0.
     return jnp.where(some, jnp.clip(ratio, 0.2, 3.0), 1.0)
 
 
-def beyond(contact: Rough, size: jax.Array, end: jax.Array) -> jax.Array:
+def beyond(contact: DeformingContact, size: jax.Array, end: jax.Array) -> jax.Array:
     """Load of bonds beyond the mesh where its end is at separation ``end``, over size^2 [Pa].
 
     Of all that can hold there: a mesh is kept while a body parts.

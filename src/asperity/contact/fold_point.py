@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 from .._jax import jax, jnp
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.krylov import dense_solve
-from .continuation import Deforming
+from .elastic import ElasticContact
 from .equilibrium import balance, profile_of
 
 _ON_ARC = 5  # steps of Newton's method from a point close by
@@ -48,7 +48,7 @@ class _Bracket(NamedTuple):
 
 
 def fold_point(
-    contact: Deforming,
+    contact: ElasticContact,
     thresholds: Thresholds,
     before: tuple[jax.Array, jax.Array, jax.Array, jax.Array],
     beyond: jax.Array,
@@ -61,7 +61,7 @@ def fold_point(
     negative beyond.
     """
     place, size, displacement, rate = before
-    ahead, profile = jnp.sign(beyond - place), profile_of(contact, size, contact.rings)
+    ahead, profile = jnp.sign(beyond - place), profile_of(contact, size)
     along = rate / (rate @ rate)
     start = place + profile + displacement
 

@@ -22,6 +22,7 @@ from .continuation import (
 )
 from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, solve_equilibrium
+from .fold_point import choose
 from .folds import folds_of
 from .landing import fit, settle
 from .profile import Sphere
@@ -198,11 +199,11 @@ def _follow(
             lambda: settle(contact, there, thresholds, size, path.displacements[0]),
             lambda: path.guess(x),
         )
-        rest = solve_equilibrium(contact, there, thresholds, size, guess, contact.rings)
+        rest = solve_equilibrium(contact, there, thresholds, size, guess)
         flat = jnp.zeros_like(rest.displacement)
         anew = ContinuationPath.straight(x, rest.displacement, flat, ahead * rms)
         after = path.append(x, rest.displacement)
-        after = jax.tree_util.tree_map(lambda a, b: jnp.where(jumps, a, b), anew, after)
+        after = choose(jumps, anew, after)
         return (after, gone | beyond), rest
 
     _, rests = jax.lax.scan(step, (path, jnp.asarray(False)), (places, sizes))
@@ -210,7 +211,7 @@ def _follow(
 
 
 def _followed(
-    contact: FoldingContact,
+    contact: ElasticContact,
     corners: jax.Array,
     along: jax.Array,
     thresholds: Thresholds,

@@ -9,7 +9,7 @@ jump at fixed separation (Greenwood, Proc. R. Soc. A 453 (1997) 1277; Feng, Coll
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.krylov import dense_solve
 from ..numerics.roots import fixed_point
-from .continuation import ContinuationPath, Deforming, RingMemory, first_size, with_table
+from .continuation import ContinuationPath, first_size, with_table
+from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, balance, pressed, profile_of
 from .fold_point import choose, fold_point
 from .landing import bounded_size, fit, on_other_mesh, settle
@@ -30,17 +31,6 @@ _ENOUGH = 1e-11  # of the separation: a move that counts as none
 _FAR = 0.5  # rms heights between a guess and what it leads to: more is another branch
 _SAME = 0.1  # rms heights between the axes of rings that are the same on two meshes
 _REFIT = 0.1  # of its size: a mesh that fits so closely is kept
-
-
-class Branching(Deforming, Protocol):
-    """A contact that has major branches."""
-
-    @property
-    def interaction_range(self) -> jax.Array:
-        """Separation beyond which nothing is felt [m]."""
-
-    def branches(self) -> tuple[RingMemory, ...]:
-        """Memories of the major branches."""
 
 
 class _Rest(NamedTuple):
@@ -73,27 +63,6 @@ class Fold(NamedTuple):
     number: jax.Array
 
 
-def _at_rest(
-    contact: Deforming, place: jax.Array, thresholds: Thresholds, size: jax.Array, guess: jax.Array
-) -> _Rest:
-    """The equilibrium to which Newton's method leads from a guess, if it is near and stable."""
-    safe, rms = place + profile_of(contact, size, contact.rings), contact.interface.scale.rms
-
-    def step(h: jax.Array) -> tuple[jax.Array, jax.Array]:
-        left, matrix = balance(contact, h, safe, thresholds, size)
-        move = dense_solve(matrix, left)
-        return h - move, jnp.max(jnp.abs(move) / (rms + jnp.abs(h)))
-
-    h, change = fixed_point(step, safe + guess, _ENOUGH, _STEPS)
-    _, matrix = balance(contact, h, safe, thresholds, size)
-    near = jnp.max(jnp.abs(h - safe - guess)) < _FAR * rms
-    # One eigenvalue at a time passes through 0, so that the determinant's sign tells.
-    stable = (change <= _ENOUGH) & near & (jnp.linalg.slogdet(matrix)[0] > 0.0)
-    rate = dense_solve(matrix, jnp.ones_like(h))
-    pressure = pressed(contact, thresholds, h)[0][:-1]
-    return _Rest(place, size, h - safe, pressure, rate, stable)
-
-
 class _Search(NamedTuple):
     """Rings that are followed, and the folds that they came by."""
 
@@ -105,12 +74,28 @@ class _Search(NamedTuple):
 class _Follower(NamedTuple):
     """How rings of a contact with given bonds are followed, in one direction."""
 
-    contact: Deforming
+    contact: ElasticContact
     thresholds: Thresholds
     ahead: jax.Array
 
     def rest(self, place: jax.Array, size: jax.Array, guess: jax.Array) -> _Rest:
-        return _at_rest(self.contact, place, self.thresholds, size, guess)
+        """The equilibrium to which Newton's method leads from a guess, if it is near and stable."""
+        contact, thresholds, _ = self
+        safe, rms = place + profile_of(contact, size), contact.interface.scale.rms
+
+        def step(h: jax.Array) -> tuple[jax.Array, jax.Array]:
+            left, matrix = balance(contact, h, safe, thresholds, size)
+            move = dense_solve(matrix, left)
+            return h - move, jnp.max(jnp.abs(move) / (rms + jnp.abs(h)))
+
+        h, change = fixed_point(step, safe + guess, _ENOUGH, _STEPS)
+        _, matrix = balance(contact, h, safe, thresholds, size)
+        near = jnp.max(jnp.abs(h - safe - guess)) < _FAR * rms
+        # One eigenvalue at a time passes through 0, so that the determinant's sign tells.
+        stable = (change <= _ENOUGH) & near & (jnp.linalg.slogdet(matrix)[0] > 0.0)
+        rate = dense_solve(matrix, jnp.ones_like(h))
+        pressure = pressed(contact, thresholds, h)[0][:-1]
+        return _Rest(place, size, h - safe, pressure, rate, stable)
 
     def straight(self, here: _Rest) -> ContinuationPath:
         """A path along the rate of the rings."""
@@ -132,8 +117,8 @@ class _Follower(NamedTuple):
     def refitted(self, here: _Rest) -> _Rest:
         """The same rings on the mesh that they ask for."""
         rest = RingEquilibrium(here.displacement, here.pressure, jnp.zeros(()))
-        ratio = bounded_size(rest, self.contact.rings)
-        moved = on_other_mesh(here.displacement, ratio, self.contact.rings)
+        ratio = bounded_size(rest)
+        moved = on_other_mesh(here.displacement, ratio)
         return self.rest(here.place, here.size * ratio, moved)
 
     def jump(self, now: _Search, place: jax.Array) -> tuple[_Rest, Fold]:
@@ -160,7 +145,7 @@ class _Follower(NamedTuple):
 
 
 def first_fold(
-    contact: Deforming, places: jax.Array, thresholds: Thresholds, size: jax.Array
+    contact: ElasticContact, places: jax.Array, thresholds: Thresholds, size: jax.Array
 ) -> Fold:
     """Follow rings along monotone ``places`` [m], and find where their branch folds first.
 
@@ -183,7 +168,7 @@ def first_fold(
     return end.fold
 
 
-def _sought(contact: Branching, places: jax.Array) -> Fold:
+def _sought(contact: ElasticContact, places: jax.Array) -> Fold:
     """The first fold of each branch along places from outside in, and then from inside out."""
 
     def one(job: tuple[Thresholds, jax.Array]) -> Fold:
@@ -203,7 +188,7 @@ def _sought(contact: Branching, places: jax.Array) -> Fold:
 _seek = Program(_sought, AT_ONCE)
 
 
-def folds_of(contact: Branching, low: float) -> Fold:
+def folds_of(contact: ElasticContact, low: float) -> Fold:
     """The first fold of each branch: from outside in for all, then from inside out.
 
     Parameters

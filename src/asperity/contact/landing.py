@@ -11,7 +11,7 @@ from ..halfspace import ring_mesh
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.krylov import dense_solve
 from ..numerics.roots import fixed_point
-from .continuation import Deforming
+from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, asked_size, balance, profile_of, solve_equilibrium
 
 _SETTLING = 4000  # steps of direct iteration
@@ -22,7 +22,7 @@ _FIT, _PASSES = 0.05, 12  # how closely the mesh fits, and how often it is chang
 
 
 def settle(
-    contact: Deforming,
+    contact: ElasticContact,
     place: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
@@ -34,7 +34,7 @@ def settle(
     lowers the energy, as rings do that approach equilibrium slowly, and the last is at the next
     minimum: the energy is a convex function less another one. Without derivatives.
     """
-    safe, rms = place + profile_of(contact, size, contact.rings), contact.interface.scale.rms
+    safe, rms = place + profile_of(contact, size), contact.interface.scale.rms
 
     def step(h: jax.Array) -> tuple[jax.Array, jax.Array]:
         left, matrix = balance(contact, h, safe, thresholds, size, most=0.0)
@@ -47,7 +47,7 @@ def settle(
 
 
 def fit(
-    contact: Deforming,
+    contact: ElasticContact,
     place: jax.Array,
     thresholds: Thresholds,
     size: jax.Array,
@@ -62,11 +62,11 @@ def fit(
 
     def again(now: tuple[jax.Array, ...]) -> tuple[tuple[jax.Array, ...], jax.Array]:
         size, ratio, displacement = now
-        size, guess = size * ratio, on_other_mesh(displacement, ratio, contact.rings)
+        size, guess = size * ratio, on_other_mesh(displacement, ratio)
         if landing:
             guess = settle(contact, place, thresholds, size, guess)
-        rest = solve_equilibrium(contact, place, thresholds, size, guess, contact.rings)
-        ratio = bounded_size(rest, contact.rings)
+        rest = solve_equilibrium(contact, place, thresholds, size, guess)
+        ratio = bounded_size(rest)
         return (size, ratio, rest.displacement), jnp.abs(ratio - 1.0)
 
     begin: Any = size, jnp.ones(()), displacement
@@ -74,27 +74,27 @@ def fit(
     return size, displacement
 
 
-def bounded_size(rest: RingEquilibrium, rings: int) -> jax.Array:
+def bounded_size(rest: RingEquilibrium) -> jax.Array:
     """Size of the mesh that rings ask for, over the present one; it changes by a little at a time.
 
     As :func:`asperity.contact.equilibrium.asked_size`. Where attraction lies in a ring, as about a
     contact, the ring's radius: there the mesh is finest.
     """
-    mesh = ring_mesh(rings)
+    mesh = ring_mesh(len(rest.pressure))
     weight = mesh.area * jnp.minimum(rest.pressure, 0.0) ** 4
     whole = jnp.sum(weight)
     weight = weight / jnp.where(whole > 0.0, whole, 1.0)
     radius, square = weight @ mesh.radius, weight @ mesh.radius**2
     ringed = radius**2 / jnp.where(square > 0.0, square, 1.0)
     share = jnp.clip((ringed - _PEAKED) / (_RINGED - _PEAKED), 0.0, 1.0)
-    asked = asked_size(rest, rings)
+    asked = asked_size(rest)
     asked = asked ** (1.0 - share) * jnp.where(share > 0.0, radius, 1.0) ** share
     return jnp.clip(asked, 1.0 / _CHANGE, _CHANGE)
 
 
-def on_other_mesh(displacement: jax.Array, ratio: jax.Array, rings: int) -> jax.Array:
+def on_other_mesh(displacement: jax.Array, ratio: jax.Array) -> jax.Array:
     """Displacement [m] at the rings of a mesh that is ``ratio`` times as large, about."""
-    mesh = ring_mesh(rings)
+    mesh = ring_mesh(len(displacement) - 1)
     radii = np.append(mesh.radius, mesh.end)
     there = ratio * radii
     inside = jnp.interp(there, radii, displacement)

@@ -51,11 +51,7 @@ def _adhesion(planes: RoughPlanes) -> PlaneAdhesion:
     return PlaneAdhesion(work, jnp.max(tension, axis=1))
 
 
-def _adhesion_of_each(planes: RoughPlanes) -> PlaneAdhesion:
-    return jax.vmap(_adhesion)(planes)
-
-
-_of, _of_each = Program(_adhesion, AT_ONCE), Program(_adhesion_of_each, AT_ONCE)
+_of, _of_each = Program(_adhesion, AT_ONCE), Program(jax.vmap(_adhesion), AT_ONCE)
 
 
 def tabor_number_of_planes(contact: ElasticContact) -> float:

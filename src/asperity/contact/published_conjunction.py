@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from .._jax import jax, jnp
 from ..laws.law import Real, quantity
 from ..laws.published_pressures import PublishedPressure
-from ..numerics.polynomials import from_points
+from ..numerics.polynomials import from_points, points_between
 from .contact import Contact, Held, Potential, State
 from .profile import Sphere
 from .scanning_curve import first_out_of_reach
@@ -86,18 +86,9 @@ class PublishedContact(Contact):
         lost = self.retraction_only
         pull = force[1:3]
         parts = jnp.concatenate([force[:1], -(1.0 - lost * (1.0 - memory)) * pull])
-        return State(
-            force=jnp.sum(parts),
-            stored=energy[0] - (1.0 - lost) * jnp.sum(energy[1:3]),
-            central=separation,
-            bonds=lost * energy[1:3],
-            parts=parts,
-            contacting=force[3],
-            error=jnp.full_like(separation, 1e-16),
-            size=jnp.zeros_like(separation),
-            elastic=force[0],
-            field=jnp.zeros(0),
-        )
+        stored = energy[0] - (1.0 - lost) * jnp.sum(energy[1:3])
+        forces, bonds = (self.components, parts), lost * energy[1:3]
+        return State.undeformed(separation, forces, stored, bonds, contacting=force[3])
 
     def curves(self, ends: jax.Array, places: jax.Array) -> State:
         """Both branches from the same integrals: those of a panel, and of all beyond it."""
@@ -105,7 +96,7 @@ class PublishedContact(Contact):
         # One panel more, from where these end to where the conjunction does.
         marks = jnp.append(ends, jnp.maximum(self.pressure.end, ends[-1]))
         width = jnp.diff(marks)
-        points = 0.5 * (chebyshev.chebpts1(places.shape[1]) + 1.0)
+        points = points_between(places.shape[1])
         nodes = jnp.concatenate([places, (marks[-2] + width[-1] * points)[None]])
         values = 2.0 * pi * self.shape.radius * self._pressures(nodes)
         half = (0.5 * width)[None, :, None]

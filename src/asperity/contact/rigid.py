@@ -12,18 +12,17 @@ from .._jax import jax, jnp
 from ..interface.height_quadrature import Near
 from ..interface.rough_planes import Means, RoughPlanes
 from ..interface.rough_planes import Memory as Thresholds
+from ..numerics.polynomials import points_between
 from .contact import (
     Held,
     Potential,
     ScanningCurve,
     State,
-    elastic_part,
-    two_branches,
 )
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .rough import RoughContact
-from .scanning_curve import first_out_of_reach, piece_points, pieces_to
+from .scanning_curve import first_out_of_reach, pieces_to
 
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
@@ -60,9 +59,11 @@ class RigidContact(RoughContact):
         """Panels beyond the interaction range. Without values."""
         return _FAR if self.interface.only_bonded else _FAR_TAIL
 
+    def initial_memory(self) -> Thresholds:
+        return self.interface.initial_memory()
+
     def branches(self) -> tuple[Thresholds, ...]:
-        laws = len(self.mechanisms)
-        return two_branches(laws, lambda threshold: (jnp.asarray(threshold),) * laws)
+        return self.interface.branches()
 
     def state(self, separation: jax.Array, memory: Thresholds) -> State:
         return self._state(separation, self.interface.measure(separation, memory, integrated=1))
@@ -103,19 +104,8 @@ class RigidContact(RoughContact):
         return self.interface.measure(places, memory, 1, near)
 
     def _state(self, separation: jax.Array, means: Means) -> State:
-        parts = self._measure * means.parts
-        return State(
-            force=jnp.sum(parts),
-            stored=self._measure * means.energy,
-            central=separation,
-            bonds=self._measure * means.bonds,
-            parts=parts,
-            contacting=self._measure * means.contacting,
-            error=jnp.full_like(separation, 1e-16),
-            size=jnp.zeros_like(separation),
-            elastic=elastic_part(self.components, parts),
-            field=jnp.zeros(0),
-        )
+        parts, *rest = (self._measure * mean for mean in means)
+        return State.undeformed(separation, (self.components, parts), *rest)
 
     def update_memory(
         self, memory: Thresholds, separation: jax.Array, held: Held | None = None
@@ -131,7 +121,7 @@ class RigidContact(RoughContact):
         ends = self.interface.rejoining(memory, unloading)
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
-        places = enter[:, None] + (leave - enter)[:, None] * piece_points(self.resolved.nodes)
+        places = enter[:, None] + (leave - enter)[:, None] * points_between(self.resolved.nodes)
         near = Near(level=False, nodes=self.resolved.nodes * self.resolved.pieces)
         return ScanningCurve(enter, leave, self._states(near, places, memory))
 

@@ -41,9 +41,6 @@ class RigidPlasticContact(RigidContact, YieldingContact):
         super().__init__(interface, shape, resolved)
         self.left = left
 
-    def initial_memory(self) -> Thresholds:
-        return self.interface.initial_memory()
-
     def left_by(self, memory: Thresholds, separation: jax.Array) -> Left:
         return memory, separation, self.interface.flattened(memory, 1)
 

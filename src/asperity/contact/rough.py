@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import equinox as eqx
+
 from .._jax import jax
 from ..errors import InputError
 from ..interface.rough_planes import RoughPlanes
+from ..laws.law import Real, quantity
 from .contact import Contact, YieldingContact
 from .profile import Sphere
 
@@ -41,3 +44,18 @@ class RoughContact(Contact):
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         return self.interface.losses()
+
+
+class DeformingContact(RoughContact):
+    """A rough body on a plane, whose bulk deforms in rings about its axis.
+
+    Parameters
+    ----------
+    rings
+        Number of rings (static).
+    modulus
+        Contact modulus E* [Pa] of the bulk.
+    """
+
+    rings: int = eqx.field(static=True)
+    modulus: Real = quantity()

@@ -16,12 +16,6 @@ _NARROWEST = 1e-10
 """Of the separation: the first point of a panel is 2e-13 beyond its end, a thousand roundings."""
 
 
-def piece_points(nodes: int) -> np.ndarray:
-    """Chebyshev points on a piece, as fractions of the way along it."""
-    points: np.ndarray = 0.5 * (1.0 + np.polynomial.chebyshev.chebpts1(nodes))
-    return points
-
-
 def pieces_to(
     marks: jax.Array, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
 ) -> tuple[jax.Array, jax.Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import reduce
 from itertools import product
 
@@ -9,12 +10,16 @@ import equinox as eqx
 import numpy as np
 
 from .._jax import jax, jnp
+from ..interface.rough_planes import losses_of
 from ..laws.law import Law, terms
-from .contact import Contact, Held, Potential, State, elastic_part
+from .contact import Contact, Held, Potential, State
 from .resolution import Resolution
 from .scanning_curve import STEPS, first_out_of_reach, panels_around
 
 Flags = jax.Array
+
+LADDER = -1e-16 * 2.0 ** np.arange(0.0, 80.0)
+"""Separations [m] down from far below any deformation that a continuum has."""
 
 
 class SmoothContact(Contact):
@@ -68,18 +73,8 @@ class SmoothContact(Contact):
                 each[name] = each[name] + share
         stored = each.pop("energy")
         parts = jnp.stack(list(each.values()))
-        return State(
-            force=jnp.sum(parts),
-            stored=stored,
-            central=separation,
-            bonds=flags,
-            parts=parts,
-            contacting=jnp.where(separation < 0.0, 1.0, 0.0),
-            error=jnp.full_like(separation, 1e-16),
-            size=jnp.zeros_like(separation),
-            elastic=elastic_part(self.components, parts),
-            field=jnp.zeros(0),
-        )
+        touching = jnp.where(separation < 0.0, 1.0, 0.0)
+        return State.undeformed(separation, (self.components, parts), stored, flags, touching)
 
     def update_memory(
         self, memory: Flags, separation: jax.Array, held: Held | None = None
@@ -92,16 +87,12 @@ class SmoothContact(Contact):
         return jnp.stack(rows) if rows else jnp.zeros((0,))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        rows = [law.losses for law in self._hysteretic]
-        if not rows:
-            return jnp.zeros((0,)), jnp.zeros((0,))
-        formed, broken = zip(*rows, strict=True)
-        return jnp.stack(formed), jnp.stack(broken)
+        return losses_of(self._hysteretic)
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
+        ladder = jnp.append(release, LADDER)
         stored = jax.vmap(lambda d: self.state(d, self.initial_memory()).stored)(ladder)
         energy = stored + potential(ladder)
         level = energy[0] + kinetic
@@ -118,11 +109,13 @@ class SmoothContact(Contact):
 
 def kinks_of(law: Law) -> jax.Array:
     """Gaps [m] at which a law or its parts are not smooth, 0 first, shape (kinks,)."""
+    return jnp.stack([jnp.zeros(()), *(jnp.asarray(gap, float) for gap in gaps_of(terms(law)))])
+
+
+def gaps_of(laws: Sequence[Law]) -> list[jax.Array | float]:
+    """Gaps [m] at which laws have kinks, bonds form or break, each once."""
     found: dict[int, jax.Array | float] = {}
-    for one in terms(law):
-        ends = (one.forming_gap, one.breaking_gap) if one.hysteretic else ()
-        found |= {id(gap): gap for gap in (*one.kinks, *ends)}
-    return jnp.stack([jnp.zeros(()), *(jnp.asarray(gap, float) for gap in found.values())])
-
-
-_SMALLEST = 1e-16  # m; far below any deformation that a continuum has
+    for law in laws:
+        ends = (law.forming_gap, law.breaking_gap) if law.hysteretic else ()
+        found |= {id(gap): gap for gap in (*law.kinks, *ends)}
+    return list(found.values())

@@ -10,12 +10,14 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import InputError
-from ..laws.jkr import Jkr
+from ..interface.residual_profile import flatness
+from ..interface.rough_planes import losses_of
 from ..laws.law import Law, Sum, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
-from .contact import Held, Potential, State, YieldingContact, elastic_part
+from .contact import Held, Potential, State, YieldingContact
 from .resolution import Resolution
 from .scanning_curve import STEPS, first_out_of_reach, panels_around
+from .smooth import LADDER, gaps_of
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""
@@ -126,9 +128,9 @@ class SmoothPlasticContact(YieldingContact):
         held = list(flags > 0.5)
         each = {name: jnp.zeros_like(separation) for name in (*self.components, "energy")}
         if isinstance(self.contact, AdhesiveThorntonNing):
-            tip, on = self._tip(deepest), held.pop(0)
+            tip, on = self.contact.tip(deepest), held.pop(0)
             each.update(tip.response(gap, on))
-            grown = tip.formation_loss / self._tip(jnp.zeros(())).formation_loss
+            grown = tip.formation_loss / self.contact.tip(jnp.zeros(())).formation_loss
             counts = [jnp.where(on, 1.0, 1.0 - grown)]
         else:
             overlap = jnp.maximum(-separation, 0.0)
@@ -148,18 +150,8 @@ class SmoothPlasticContact(YieldingContact):
                 counts.append(jnp.where(on, grown, 0.0))
         stored = each.pop("energy")
         parts = jnp.stack(list(each.values()))
-        return State(
-            force=jnp.sum(parts),
-            stored=stored,
-            central=separation,
-            bonds=jnp.stack([kept, *counts]),
-            parts=parts,
-            contacting=jnp.where(gap < 0.0, 1.0, 0.0),
-            error=jnp.full_like(separation, 1e-16),
-            size=jnp.zeros_like(separation),
-            elastic=elastic_part(self.components, parts),
-            field=jnp.zeros(0),
-        )
+        bonds, touching = jnp.stack([kept, *counts]), jnp.where(gap < 0.0, 1.0, 0.0)
+        return State.undeformed(separation, (self.components, parts), stored, bonds, touching)
 
     def update_memory(
         self, memory: Pressed, separation: jax.Array, held: Held | None = None
@@ -175,14 +167,13 @@ class SmoothPlasticContact(YieldingContact):
         return lowest, jnp.stack(rows) if rows else jnp.zeros((0,))
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
-        rows = [law.losses for law in self._bonds(jnp.zeros(()))]
-        formed, broken = zip((jnp.ones(()), -jnp.ones(())), *rows, strict=True)
-        return jnp.stack(formed), jnp.stack(broken)
+        formed, broken = losses_of(self._bonds(jnp.zeros(())))
+        return jnp.append(1.0, formed), jnp.append(-1.0, broken)
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, -_SMALLEST * 2.0 ** np.arange(0.0, 80.0))
+        ladder = jnp.append(release, LADDER)
         states = jax.vmap(lambda d: self.state(d, self.initial_memory()))(ladder)
         energy = states.stored + states.bonds @ self.losses()[0] + potential(ladder)
         level = energy[0] + kinetic
@@ -198,23 +189,17 @@ class SmoothPlasticContact(YieldingContact):
         laws = (*self._bonds(jnp.zeros(())), *terms(self.law))
         return jnp.max(jnp.stack([jnp.zeros(()), *(law.interaction_range for law in laws)]))
 
-    def _tip(self, deepest: jax.Array) -> Jkr:
-        """The elastic contact of an adhesive tip that was pressed flat."""
-        contact = self.contact
-        assert isinstance(contact, AdhesiveThorntonNing)
-        return Jkr(contact.tip_radius(deepest), contact.modulus, contact.work)
-
     def _bonds(self, deepest: jax.Array) -> tuple[Law, ...]:
         """The laws that bond, at the gap of the tip as it was left."""
-        return (*((self._tip(deepest),) if self._adhesion else ()), *self._hysteretic)
+        if isinstance(self.contact, AdhesiveThorntonNing):
+            return self.contact.tip(deepest), *self._hysteretic
+        return self._hysteretic
 
     def _flatness(self, deepest: jax.Array) -> jax.Array:
         """How much more a tip pulls, to the power of its radius in a law, that was pressed."""
         if isinstance(self.contact, AdhesiveThorntonNing):
             return self.contact.tip_radius(deepest) / self.contact.radius
-        pressed = deepest > 0.0
-        back = jnp.where(pressed, deepest - self.contact.residual(deepest), 1.0)
-        return jnp.where(pressed, deepest / back, 1.0)
+        return flatness(deepest, deepest - self.contact.residual(deepest))
 
     def _flattening(self, law: Law, deepest: jax.Array, grown: jax.Array) -> jax.Array:
         """Energy [J] of a law beside contact that a tip loses by becoming flatter.
@@ -241,16 +226,10 @@ class SmoothPlasticContact(YieldingContact):
 
 
 def _gaps(laws: tuple[Law, ...]) -> list[jax.Array | float]:
-    """Gaps [m] other than 0 at which laws have kinks, bonds form or break, each once."""
-    found = {
-        id(gap): gap
-        for law in laws
-        for gap in (*law.kinks, *((law.forming_gap, law.breaking_gap) if law.hysteretic else ()))
-    }
-    return [gap for gap in found.values() if isinstance(gap, jax.Array) or gap != 0.0]
+    """Those of :func:`gaps_of` but for 0."""
+    return [gap for gap in gaps_of(laws) if isinstance(gap, jax.Array) or gap != 0.0]
 
 
-_SMALLEST = 1e-16  # m; far below any deformation that a continuum has
 # Of the turn: a panel ends so far below it, where the curve that it leaves on begins. An end in
 # the very place would have the body turn in the rounding of its energy.
 _BELOW = 1e-9

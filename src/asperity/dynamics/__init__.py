@@ -18,9 +18,10 @@ questions to the curves.
 
 from .curve_table import Table, tabulate
 from .motion import integrate_impacts, prepare, simulate, start
-from .record import Body, Impacts, Limits, Motion, Progress
+from .record import Begun, Body, Impacts, Limits, Motion, Progress
 
 __all__ = [
+    "Begun",
     "Body",
     "Impacts",
     "Limits",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .._jax import jax, jnp
-from ..contact.asperity_table import AsperityTable
+from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, influence_between
 from ..laws.law import Real
 from ..numerics.compilation import OPTIMISED, Program
@@ -32,7 +32,7 @@ class Bulk(NamedTuple):
 
 
 def _coupled_impact(
-    table: AsperityTable,
+    table: Asperities,
     launch: Launch,
     offsets: jax.Array,
     classes: jax.Array,
@@ -73,7 +73,7 @@ def _coupled_impact(
 
 
 def _impacts(
-    table: AsperityTable,
+    table: Asperities,
     launches: Launch,
     offsets: jax.Array,
     classes: jax.Array,

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
 
 _STEP = 1e-5  # of the force near by: more is a jump of the force
 _CUT = 2e-6  # of the largest pull: less is where forces are cut off, at the end of their range
@@ -28,58 +28,36 @@ class Segment(NamedTuple):
     ----------
     low, high
         Ends of what is used of it.
-    ends
-        Separations between which its polynomials are defined.
     force, stored
-        Chebyshev coefficients of force [N] and stored energy [J].
+        Force [N] and stored energy [J].
     """
 
     low: float
     high: float
-    ends: tuple[float, float]
-    force: np.ndarray
-    stored: np.ndarray
-
-    def value(self, coefficients: np.ndarray, place: np.ndarray | float) -> np.ndarray:
-        """A polynomial at places [m]."""
-        low, high = self.ends
-        found: np.ndarray = chebyshev.chebval(
-            (2.0 * np.asarray(place) - low - high) / (high - low), coefficients
-        )
-        return found
+    force: Chebyshev
+    stored: Chebyshev
 
     @property
     def size(self) -> float:
         """Size of its force [N]."""
-        return float(np.max(np.abs(self.force)))
+        return float(np.max(np.abs(self.force.coef)))
 
     @property
     def noise(self) -> float:
         """What rounding may make of its slope [N/m]: all, on pieces that are too narrow."""
-        return _ROUNDING * self.size / (self.ends[1] - self.ends[0])
+        return _ROUNDING * self.size / float(np.ptp(self.force.domain))
 
     @property
     def pull(self) -> float:
         """Its largest attraction [N], about."""
-        seen = self.value(self.force, np.linspace(self.low, self.high, _SEEN))
+        seen = self.force(np.linspace(self.low, self.high, _SEEN))
         return max(-float(np.min(seen)), 0.0)
 
-    @property
-    def slope(self) -> np.ndarray:
-        """Coefficients of the derivative of the force [N/m]."""
-        low, high = self.ends
-        slope: np.ndarray = chebyshev.chebder(self.force) * 2.0 / (high - low)
-        return slope
-
-    def roots(self, coefficients: np.ndarray) -> np.ndarray:
+    def roots(self, series: Chebyshev) -> np.ndarray:
         """Zeros of a polynomial on what is used, ascending [m]."""
-        low, high = self.ends
-        kept = np.trim_zeros(coefficients, "b")
-        if kept.size < 2:
-            return np.zeros(0)
-        found = chebyshev.chebroots(kept)
-        real = found.real[np.abs(found.imag) < _REAL]
-        places = 0.5 * (low + high) + 0.5 * (high - low) * real
+        found = series.trim().roots()
+        real = np.abs(found.imag) < _REAL * 0.5 * np.ptp(series.domain)
+        places = found.real[real]
         return np.sort(places[(places >= self.low) & (places <= self.high)])
 
 
@@ -150,8 +128,8 @@ def largest_slope(branches: list[list[Segment]]) -> float:
     found = [0.0]
     for segment in (segment for branch in branches for segment in branch):
         ends = np.array([segment.low, segment.high])
-        turns = segment.roots(chebyshev.chebder(segment.slope))
-        slopes = segment.value(segment.slope, np.concatenate([ends, turns]))
+        slope = segment.force.deriv()
+        slopes = slope(np.concatenate([ends, segment.roots(slope.deriv())]))
         found.append(float(np.max(slopes)) - segment.noise)
     return max(found)
 
@@ -173,29 +151,27 @@ def first_jump(branch: list[Segment], stiffness: float, unloading: bool) -> Jump
     before: float | None = None
     for number, segment in enumerate(ordered):
         near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
-        force = float(segment.value(segment.force, near))
+        force = float(segment.force(near))
         step = 0.0 if before is None else (force - before) * (1.0 if unloading else -1.0)
         if before is not None and step > max(_STEP * abs(before), _STEP * segment.size, off):
             start = near, before
             return _landing(ordered[number:], stiffness, start, ordered[number - 1], unloading)
         place = _unstable(segment, stiffness, near, unloading)
         if place is not None:
-            at = float(segment.value(segment.force, place))
+            at = float(segment.force(place))
             return _landing(ordered[number:], stiffness, (place, at), segment, unloading)
-        before = float(segment.value(segment.force, far))
+        before = float(segment.force(far))
     return None
 
 
 def _unstable(segment: Segment, stiffness: float, near: float, unloading: bool) -> float | None:
     """The first place on a segment at which dF/dd rises to the stiffness [m]."""
-    slope = segment.slope
+    slope = segment.force.deriv()
     if segment.noise > stiffness:
         return None
-    if float(segment.value(slope, near)) > stiffness:
+    if float(slope(near)) > stiffness:
         return near
-    above = slope.copy()
-    above[0] -= stiffness
-    found = segment.roots(above)
+    found = segment.roots(slope - stiffness)
     return None if not found.size else float(found[0] if unloading else found[-1])
 
 
@@ -208,17 +184,14 @@ def _landing(
 ) -> Jump | None:
     """The jump from a place [m] and its force [N] on to where contact and spring balance again."""
     place, force = start
-    stored = float(before.value(before.stored, place))
+    stored = float(before.stored(place))
     for segment in ordered:
-        net = segment.force.copy()
-        low, high = segment.ends
-        # Less the spring's line, which falls by its stiffness over a distance outwards.
-        net[0] -= force + stiffness * (0.5 * (low + high) - place)
-        net[1] -= stiffness * 0.5 * (high - low)
-        near, far = (segment.low, segment.high) if unloading else (segment.high, segment.low)
-        near = np.clip(place, min(near, far), max(near, far))
-        looks = near + (far - near) * _LOOKS
-        held = segment.value(net, looks) * (1.0 if unloading else -1.0) < 0.0
+        # Less the spring's line.
+        distance = Chebyshev.identity(segment.force.domain) - place
+        net = segment.force - (force + stiffness * distance)
+        near = np.clip(place, segment.low, segment.high)
+        looks = near + ((segment.high if unloading else segment.low) - near) * _LOOKS
+        held = net(looks) * (1.0 if unloading else -1.0) < 0.0
         if not np.any(held):
             continue
         first = int(np.argmax(held))
@@ -226,9 +199,9 @@ def _landing(
         roots = segment.roots(net)
         between = (roots - inside) * (roots - looks[first]) <= 0.0
         landing = float(roots[between][-1 if unloading else 0] if np.any(between) else inside)
-        after = float(segment.value(segment.stored, landing))
+        after = float(segment.stored(landing))
         moved = place - landing
         energy = stored - after + force * moved - 0.5 * stiffness * moved**2
-        there = float(segment.value(segment.force, landing))
+        there = float(segment.force(landing))
         return Jump(place, force, landing, there, energy)
     return None

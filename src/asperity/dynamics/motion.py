@@ -29,7 +29,7 @@ from .motion_end import EndRules
 from .overdamped import Rest, come_to_rest
 from .phase import TurningPoint, in_order, look_ahead, mechanical_at_end, pull_work, row_at
 from .phase_time import travel_time
-from .record import IN_MOTION, Body, Impacts, Limits, Motion, Phase, Progress
+from .record import IN_MOTION, Begun, Body, Impacts, Limits, Motion, Phase, Progress
 from .scanning_table import inner_pieces, solve_reversals
 from .static_equilibrium import Reference, find_reference
 from .turning_point import find_turning_point
@@ -65,7 +65,7 @@ def prepare(
     if body.rebounds_from is None:
         reference = find_reference(table, body.load, int(yields))
     else:
-        reference = Reference(body.rebounds_from, jnp.zeros(()), jnp.asarray(True))
+        reference = Reference(body.rebounds_from, jnp.zeros(()))
     if many and not yields:
         table = solve_reversals(contact.reading(table.means), body, table, reference)
     return table, reference
@@ -79,14 +79,14 @@ def _yielded_table(
     Nothing that follows goes deeper than the first impact: it has lost energy since.
     """
     before = tabulate(contact, low, high, cuts)
-    progress, _origin = start(contact, body, before)
-    rest = Rest(find_reference(before, body.load, 0).equilibrium, jnp.zeros(()))
-    after, _fall = _phase_of_impact(contact, body, before, rest, progress, jnp.asarray(False))
+    begun = start(contact, body, before, find_reference(before, body.load, 0))
+    rest = Rest(begun.reference.equilibrium, jnp.zeros(()))
+    after, _fall = _phase_of_impact(contact, body, before, rest, begun.progress, jnp.asarray(False))
     return tabulate_again(contact, before, after.memory, after.place, cuts)
 
 
-def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Array]:
-    """The state at the release, outside contact, and its mechanical energy [J]."""
+def start(contact: Contact, body: Body, table: Table, reference: Reference) -> Begun:
+    """The state at the release, outside contact, with the curves that a motion goes on from."""
     zero = jnp.zeros(())
     row = outer_row(table, 0, body.release)
     progress = Progress(
@@ -102,26 +102,20 @@ def start(contact: Contact, body: Body, table: Table) -> tuple[Progress, jax.Arr
         outcome=jnp.asarray(IN_MOTION),
         made=jnp.asarray(0),
     )
-    return progress, row[STORED] + body.kinetic + body.load.potential(body.release)
+    origin = row[STORED] + body.kinetic + body.load.potential(body.release)
+    return Begun(table, reference, origin, progress)
 
 
 def integrate_impacts(
-    contact: Contact,
-    body: Body,
-    table: Table,
-    reference: Reference,
-    origin: jax.Array,
-    progress: Progress,
-    limits: Limits,
-    impacts: int,
+    contact: Contact, body: Body, begun: Begun, limits: Limits, impacts: int
 ) -> tuple[Progress, Impacts]:
     """Go on for at most ``impacts`` impacts (static), inert once the motion has ended."""
 
     @jax.jit  # traced once, for its shapes and for itself
     def one(progress: Progress, _: None) -> tuple[Progress, Impacts]:
-        return _impact(contact, body, table, reference, origin, progress, limits)
+        return _impact(contact, body, begun._replace(progress=progress), limits)
 
-    shapes = jax.eval_shape(one, progress, None)[1]
+    shapes = jax.eval_shape(one, begun.progress, None)[1]
 
     def none(progress: Progress, _: None) -> tuple[Progress, Impacts]:
         empty = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
@@ -136,7 +130,7 @@ def integrate_impacts(
             row._replace(made=jnp.logical_and(active, row.made)),
         )
 
-    return jax.lax.scan(step, progress, None, length=impacts)
+    return jax.lax.scan(step, begun.progress, None, length=impacts)
 
 
 def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None) -> Motion:
@@ -156,22 +150,16 @@ def simulate(contact: Contact, body: Body, *, tolerance: Tolerance | None = None
     Works under ``jit``, ``vmap`` and ``grad``; nothing is raised, the outcome is data.
     """
     tolerance = tolerance or Tolerance()
-    table, reference = prepare(contact, body, tolerance.max_impacts > FEW)
-    progress, origin = start(contact, body, table)
-    limits, most = Limits.of(tolerance), tolerance.max_impacts
-    end, impacts = integrate_impacts(
-        contact, body, table, reference, origin, progress, limits, most
-    )
-    return Motion(impacts, end, table, reference, origin)
+    most = tolerance.max_impacts
+    begun = start(contact, body, *prepare(contact, body, most > FEW))
+    end, impacts = integrate_impacts(contact, body, begun, Limits.of(tolerance), most)
+    return Motion(impacts, end, begun.table, begun.reference, begun.origin)
 
 
 class _PhaseEnd(NamedTuple):
     turn: TurningPoint
     phase: Phase
     row: jax.Array
-    lost: jax.Array
-    time: jax.Array
-    bonds: jax.Array
     pull_work: jax.Array
     at_rest: jax.Array
     followed: jax.Array
@@ -226,7 +214,7 @@ def _phase_of_impact(
         kinetic=turn.kinetic, time=time, lost=lost, bonds=bonds, central=row[CENTRAL],
     )  # fmt: skip
     end = _PhaseEnd(
-        turn, phase, row[: layout.components.stop], lost, time, bonds, -pull_work(ahead, turn),
+        turn, phase, row[: layout.components.stop], -pull_work(ahead, turn),
         *fate, mechanical_at_end(ahead) - jnp.sum(dissipated),
     )  # fmt: skip
     return after, end
@@ -243,16 +231,9 @@ def _no_rise(fall: _Ended, rise: _Ended) -> _Ended:
     return cast("_Ended", kept)
 
 
-def _impact(
-    contact: Contact,
-    body: Body,
-    table: Table,
-    reference: Reference,
-    origin: jax.Array,
-    progress: Progress,
-    limits: Limits,
-) -> tuple[Progress, Impacts]:
+def _impact(contact: Contact, body: Body, begun: Begun, limits: Limits) -> tuple[Progress, Impacts]:
     """Down to closest approach and up to the next apex."""
+    table, reference, origin, progress = begun
     rest = Rest(reference.equilibrium, limits.rest)
 
     def one_phase(progress: Progress, unloading: jax.Array) -> tuple[Progress, _Ended]:
@@ -263,19 +244,19 @@ def _impact(
     _, both = jax.lax.scan(one_phase, progress, jnp.asarray([False, True]))
     down, up = (jax.tree_util.tree_map(lambda leaf, k=k: leaf[k], both) for k in (0, 1))
     up = _no_rise(down, up) if body.damped_apart else up
-    fall, (end, rise) = down[1], up
-    phases = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), fall, rise)
-    potential = body.load.potential(phases.turn.place)
-    mechanical = phases.turn.kinetic + potential + phases.row[:, STORED]
-    energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(phases.lost, axis=1) - origin))
+    (deepest, fall), (end, rise) = down, up
+    ends, phases = jax.tree_util.tree_map(lambda a, b: jnp.stack([a, b]), down, up)
+    potential = body.load.potential(ends.place)
+    mechanical = ends.kinetic + potential + phases.row[:, STORED]
+    energy_balance_error = jnp.max(jnp.abs(mechanical + jnp.sum(ends.lost, axis=1) - origin))
     # On a spring a body may be held anywhere: how far it swings tells whether it rests.
-    height = end.place - (fall.turn.place if body.forces else reference.equilibrium)
+    height = end.place - (deepest.place if body.forces else reference.equilibrium)
     first = jnp.where(progress.made == 0, height, progress.first)
     energies = phases.turn.maximum_kinetic
     largest = jnp.max(energies) if body.forces else energies[0]
     energy = jnp.where(progress.made == 0, largest, progress.impact_energy)
-    cycle = jnp.sum(rise.lost - progress.lost)
-    risen, fallen = end.place - fall.turn.place, body.release - fall.turn.place
+    cycle = jnp.sum(end.lost - progress.lost)
+    risen, fallen = end.place - deepest.place, body.release - deepest.place
     sound = fall.turn.found & jnp.all(phases.followed) & jnp.isfinite(mechanical[1])
     rules = EndRules.of(
         limits,
@@ -285,7 +266,7 @@ def _impact(
         # Flattened tips may pull at once by more than what they press.
         stuck=jnp.logical_and(isinstance(contact, YieldingContact), risen <= LEAST_RISE * fallen),
         escaped=jnp.logical_not(rise.turn.found),
-        time=rise.time,
+        time=end.time,
         height=height,
         first=first,
         cycle=cycle,
@@ -296,8 +277,8 @@ def _impact(
         first=first, impact_energy=energy, outcome=rules.code(), made=progress.made + 1
     )
     row = Impacts(
-        jnp.asarray(True), fall.turn.place, end.place, fall.time, rise.time, mechanical[1],
-        rise.leaving, fall.row[FORCE], fall.row[CONTACTING], fall.bonds, rise.lost,
+        jnp.asarray(True), deepest.place, end.place, deepest.time, end.time, mechanical[1],
+        rise.leaving, fall.row[FORCE], fall.row[CONTACTING], deepest.bonds, end.lost,
         energy_balance_error, rise.pull_work, energy, fall.phase, rise.phase,
     )  # fmt: skip
     return after, row

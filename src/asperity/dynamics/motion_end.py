@@ -13,29 +13,16 @@ LEAST_LOSS = 1e-9
 
 
 class EndRules(NamedTuple):
-    """What holds after an impact, each a truth value of any shape; the first that holds ends it.
+    """What may end a motion after an impact.
 
     Attributes
     ----------
-    failed
-        The motion could not be followed.
-    at_rest, stuck
-        It came to rest without a turn; flattened tips hold it.
-    stopped, escaped
-        Drag alone stopped it; it left for good.
-    late, low, repeats, enough
-        Past the time limit; too low a rebound; no loss in a cycle; as many impacts as asked for.
+    rules
+        Whether each holds, a truth value of any shape, and the outcome that it leads to. The first
+        that holds ends the motion.
     """
 
-    failed: Any
-    at_rest: Any
-    stopped: Any
-    stuck: Any
-    escaped: Any
-    late: Any
-    low: Any
-    repeats: Any
-    enough: Any
+    rules: tuple[tuple[Any, Outcome], ...]
 
     @classmethod
     def of(
@@ -61,10 +48,14 @@ class EndRules(NamedTuple):
         ----------
         limits
             Ends of the motion.
-        failed, at_rest, stuck, escaped
-            See the attributes.
+        failed
+            Whether the motion could not be followed.
+        at_rest, stuck
+            Whether it came to rest without a turn; whether flattened tips hold it.
         stopped
-            By drag alone; it counts before the time limit.
+            Whether drag alone stopped it; that counts before the time limit.
+        escaped
+            Whether it left for good.
         time
             Of the apex [s].
         height, first
@@ -78,34 +69,26 @@ class EndRules(NamedTuple):
             Whether the next cycles are like this one: not where menisci are still forming.
         """
         return cls(
-            failed, at_rest, stopped & (time < limits.time), stuck, escaped,
-            late=time >= limits.time,
-            low=height < limits.rest * first,
-            repeats=settled & (cycle < LEAST_LOSS * energy),
-            enough=made >= limits.impacts,
-        )  # fmt: skip
+            (
+                (failed, Outcome.FAILED),
+                (at_rest, Outcome.REST),
+                (stopped & (time < limits.time), Outcome.STOPPED),
+                (stuck, Outcome.REST),
+                (escaped, Outcome.ESCAPED),
+                (time >= limits.time, Outcome.TIME_LIMIT),
+                (height < limits.rest * first, Outcome.REST),
+                (settled & (cycle < LEAST_LOSS * energy), Outcome.OSCILLATING),
+                (made >= limits.impacts, Outcome.MAX_IMPACTS),
+            )
+        )
 
     def code(self) -> jax.Array:
         """Index of the outcome in ``ENDS``, or IN_MOTION."""
         code = jnp.asarray(IN_MOTION)
-        for holds, outcome in reversed(list(zip(self, _OUTCOMES, strict=True))):
+        for holds, outcome in reversed(self.rules):
             code = jnp.where(holds, ENDS.index(outcome), code)
         return code
 
     def outcome(self) -> Outcome | None:
         """The outcome of rules that are known; None where the motion goes on."""
-        known = zip(self, _OUTCOMES, strict=True)
-        return next((outcome for holds, outcome in known if holds), None)
-
-
-_OUTCOMES = (
-    Outcome.FAILED,
-    Outcome.REST,
-    Outcome.STOPPED,
-    Outcome.REST,
-    Outcome.ESCAPED,
-    Outcome.TIME_LIMIT,
-    Outcome.REST,
-    Outcome.OSCILLATING,
-    Outcome.MAX_IMPACTS,
-)
+        return next((outcome for holds, outcome in self.rules if holds), None)

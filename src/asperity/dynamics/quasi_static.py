@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev, chebyshev
 
 from .._jax import jax
 from ..contact.contact import Contact, interaction_range_of
@@ -84,11 +84,15 @@ def _segments(pieces: list[_Piece], begin: float) -> list[Segment]:
     found, low = [], begin
     for piece in pieces:
         if piece.high > low:
-            ends, (force, stored) = (piece.low, piece.high), piece.values[:, [FORCE, STORED]].T
-            found.append(Segment(low, piece.high, ends, force, stored))
+            force, stored = (
+                Chebyshev(piece.values[:, column], (piece.low, piece.high))
+                for column in (FORCE, STORED)
+            )
+            found.append(Segment(low, piece.high, force, stored))
             low = piece.high
-    far, none = low + _FAR * max(abs(low), abs(begin)), np.zeros(2)
-    return [*found, Segment(low, far, (low, far), none, none)]
+    far = low + _FAR * max(abs(low), abs(begin))
+    none = Chebyshev([0.0], (low, far))
+    return [*found, Segment(low, far, none, none)]
 
 
 def _branch(table: Table, branch: int) -> list[_Piece]:

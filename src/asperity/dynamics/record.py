@@ -157,6 +157,24 @@ class Progress(NamedTuple):
 
 
 @kept
+class Begun(NamedTuple):
+    """What a motion goes on from.
+
+    Attributes
+    ----------
+    table, reference, origin
+        Curves, static equilibrium, and mechanical energy at the release [J].
+    progress
+        The motion at its last apex.
+    """
+
+    table: Table
+    reference: Reference
+    origin: jax.Array
+    progress: Progress
+
+
+@kept
 class Impacts(NamedTuple):
     """One row an impact; rows after the last have ``made`` False.
 

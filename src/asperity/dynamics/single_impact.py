@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jax import jax, jnp
-from ..contact.asperity_table import Asperities, AsperityTable
+from ..contact.asperity_table import Asperities
 from ..laws.law import Real
 from ..numerics.compilation import OPTIMISED, Program, kept
 from ..numerics.roots import root_between
@@ -94,7 +94,7 @@ class SingleImpact(NamedTuple):
 
 
 def _impact(
-    table: AsperityTable, wanted: bool, launch: Launch, offsets: jax.Array, classes: jax.Array
+    table: Asperities, wanted: bool, launch: Launch, offsets: jax.Array, classes: jax.Array
 ) -> SingleImpact:
     """One body, on summits with descending ``offsets`` [m]; its pull-off force where ``wanted``.
 
@@ -226,7 +226,7 @@ def _least(
 
 
 def _impacts(
-    table: AsperityTable,
+    table: Asperities,
     launches: Launch,
     offsets: jax.Array,
     classes: jax.Array,

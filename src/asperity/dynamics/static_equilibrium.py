@@ -30,14 +30,11 @@ class Reference(NamedTuple):
         carries the load, or a spring alone holds the body. NaN where there is none (no
         gravity and no adhesion).
     stored
-        Stored energy there [J].
-    rests
-        Whether there is an equilibrium.
+        Stored energy there [J]; NaN where there is none.
     """
 
     equilibrium: jax.Array
     stored: jax.Array
-    rests: jax.Array
 
 
 def find_reference(table: Table, load: Load, branch: int) -> Reference:
@@ -55,7 +52,7 @@ def find_reference(table: Table, load: Load, branch: int) -> Reference:
     place = _carrying(place, excess, slope)
     x = local(table.ends[panel], table.ends[panel + 1], place)
     stored = chebyshev_sum(values[panel, :, STORED], x)
-    return Reference(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan), found)
+    return Reference(jnp.where(found, place, jnp.nan), jnp.where(found, stored, jnp.nan))
 
 
 def end_of_contact(table: Table, peak: jax.Array) -> jax.Array:

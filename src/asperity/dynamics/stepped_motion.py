@@ -1,13 +1,14 @@
 """The motion of a body that is stepped in time: impacts from the release to the end.
 
 For menisci that take time to form, and for a bulk that relaxes: there the force depends on time.
+A body is followed by one of three classes: each gives the sample of its ``start``, the ``phase``
+from one turning point to the next, and the ``threshold`` of menisci that are still forming.
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import Protocol
 
 from ..contact.contact import Contact
 from ..contact.delayed_formation import DelayedContact
@@ -22,21 +23,8 @@ from .stepped_phase import TURNED, Ended, Samples
 from .stepped_record import Ledger, SteppedImpact, SteppedPhase
 from .stepped_series import Trajectory
 from .viscoelastic.fitted_mesh import fitted_bounce
+from .viscoelastic.rough_phase import RoughBounce
 from .viscoelastic.smooth_sphere import SmoothBounce
-
-
-class Bouncing(Protocol):
-    """A body that is followed from one turning point to the next."""
-
-    def start(self) -> Samples:
-        """The sample of the release."""
-
-    @property
-    def threshold(self) -> float:
-        """Threshold of menisci that are still forming [m], 0 where none are."""
-
-    def phase(self, inwards: bool) -> SteppedPhase:
-        """The phase until the body turns."""
 
 
 def integrate_stepped(
@@ -105,7 +93,7 @@ def integrate_stepped(
 
 def _bouncing(
     mechanism: Relaxation | DelayedContact, ledger: Ledger, asked: Callable[[], None]
-) -> Bouncing:
+) -> DelayedBounce | RoughBounce | SmoothBounce:
     """The body at its release."""
     if isinstance(mechanism, DelayedContact):
         return DelayedBounce(mechanism, ledger, asked)

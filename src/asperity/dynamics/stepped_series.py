@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.polynomial.legendre import legval
 
@@ -21,54 +19,26 @@ from .unloading import Unloading
 _LONE = 0.03  # of both steps beside it: a step as short counts for nothing
 
 
-class Trajectory(NamedTuple):
-    """A motion in time.
-
-    Attributes
-    ----------
-    series
-        Its samples.
-    lost
-        Energy lost since the release [J], by law, then by drag, shape (samples, names).
-    """
-
-    series: Series
-    lost: np.ndarray
+class Trajectory(Series):
+    """The samples of a motion that was stepped in time, and what is read between them."""
 
     @classmethod
     def of(cls, body: Body, release: Samples, each: list[Samples]) -> Trajectory:
         """The trajectory from the release; two phases an impact, each without its start."""
-        drags = len(body.mechanisms)
-        parts, heats, phases = [release], [np.zeros((1, drags))], [np.zeros(1, int)]
-        laws = release.lost.shape[1] - drags
-        begun = release.lost[-1, laws:]
-        for number, samples in enumerate(each):
-            parts.append(samples)
-            heats.append(samples.lost[:, laws:] - begun)
-            phases.append(np.full(samples.time.size, number))
-            begun = samples.lost[-1, laws:] if samples.time.size else begun
-        whole = Samples.joined(parts)
+        whole = Samples.joined([release, *each])
+        counts = [samples.time.size for samples in each]
+        phase = np.append(0, np.repeat(np.arange(len(each)), counts))
         # Where phases meet, rounding may set the clock back.
         whole = whole._replace(time=np.maximum.accumulate(whole.time))
-        drag = np.zeros((whole.time.size, drags))
+        drag = np.zeros((whole.time.size, len(body.mechanisms)))
         if body.damped:
             central = filled_up(whole.rows[:, CENTRAL])
             drag[:] = np.asarray(resistances_apart(body, central)).T[: whole.time.size]
-        series = Series(
-            whole.time, whole.separation, whole.speed, whole.rows, np.concatenate(heats), drag,
-            np.concatenate(phases),
-        )  # fmt: skip
-        return cls(series, whole.lost)
-
-    def until(self, limit: float) -> Trajectory:
-        """The samples up to a time limit [s]."""
-        kept = self.series.time <= limit
-        series = Series(*(column[kept] for column in self.series))
-        return Trajectory(series, self.lost[kept])
+        return cls(*whole, drag, phase)
 
     def passing(self, place: float, mass: float) -> tuple[np.ndarray, np.ndarray]:
         """Kinetic energies [J] at a separation [m] on each way in and out; NaN where not passed."""
-        x, phase = self.series.separation, self.series.phase
+        x, phase = self.separation, self.phase
         count = 2 * (1 + int(phase[-1]) // 2)
         found = np.full(count, np.nan)
         passed = np.flatnonzero((x[:-1] - place) * (x[1:] - place) <= 0.0)
@@ -83,17 +53,17 @@ class Trajectory(NamedTuple):
         """
         from scipy.interpolate import CubicHermiteSpline
 
-        along, found = self.series, []
+        found = []
         for phase in (0, 1):
-            x = along.separation - place
-            passed = np.flatnonzero((x[:-1] * x[1:] <= 0.0) & (along.phase[1:] == phase))
+            x = self.separation - place
+            passed = np.flatnonzero((x[:-1] * x[1:] <= 0.0) & (self.phase[1:] == phase))
             if not passed.size:
                 return np.nan
             k = passed[-1 if phase else 0]
             here = slice(k, k + 2)
-            cubic = CubicHermiteSpline(along.time[here], x[here], along.speed[here])
+            cubic = CubicHermiteSpline(self.time[here], x[here], self.speed[here])
             roots = cubic.roots(extrapolate=False)
-            found.append(roots[0] if roots.size else along.time[k + 1])
+            found.append(roots[0] if roots.size else self.time[k + 1])
         return float(found[1] - found[0])
 
     def unloading(self, bonds: slice, *, discrete: bool) -> Unloading:
@@ -105,37 +75,37 @@ class Trajectory(NamedTuple):
         """
         from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-        there = np.flatnonzero(self.series.phase == 1)
+        there = np.flatnonzero(self.phase == 1)
         points = np.concatenate([there[:1] - 1, there])
-        acting = np.flatnonzero(self.series.rows[points, FORCE])  # in flight nothing acts
+        acting = np.flatnonzero(self.rows[points, FORCE])  # in flight nothing acts
         points = points[: acting[-1] + 1] if acting.size else points[:0]
-        points = points[_apart(self.series.time[points])]
-        time, force = self.series.time[points], self.series.rows[points, FORCE]
+        points = points[_apart(self.time[points])]
+        time, force = self.time[points], self.rows[points, FORCE]
         if time.size < 2 or not np.min(force) < 0.0:
             return _unloading(0.0, np.nan, 0.0, 0.0, False)
         between = Akima1DInterpolator if discrete else CubicSpline
         along = between(time, force)
-        power = between(time, force * self.series.speed[points]).antiderivative()
+        power = between(time, force * self.speed[points]).antiderivative()
         rates = along.derivative().roots(extrapolate=False)
         turns = np.concatenate([time, rates[np.isfinite(rates)]])
         lowest = turns[np.argmin(along(turns))]
         zeros = along.roots(extrapolate=False)
         begins = np.concatenate([time[:1], zeros[np.isfinite(zeros)]])
-        place = between(time, self.series.separation[points])(lowest)
+        place = between(time, self.separation[points])(lowest)
         work = float(np.max(power(begins)) - power(time[-1]))
-        rows = self.series.rows[points[np.argmin(np.abs(time - lowest))]]
+        rows = self.rows[points[np.argmin(np.abs(time - lowest))]]
         held = float(max(rows[CONTACTING], np.max(rows[bonds], initial=0.0)))
         return _unloading(-float(along(lowest)), float(place), work, held, True)
 
     def maximum_force(self) -> float:
         """Largest force of the first impact [N], by a parabola of time through three samples."""
-        force = self.series.rows[self.series.phase < 2, FORCE]
+        force = self.rows[self.phase < 2, FORCE]
         k = int(np.argmax(force))
         about = slice(k - 1, k + 2)
-        span = np.ptp(self.series.time[about]) if 0 < k < force.size - 1 else 0.0
+        span = np.ptp(self.time[about]) if 0 < k < force.size - 1 else 0.0
         if not span > 0.0 or not force[k] > 0.0:
             return float(force[k])
-        time = (self.series.time[about] - self.series.time[k]) / span
+        time = (self.time[about] - self.time[k]) / span
         if np.min(np.diff(time)) < _LONE:
             return float(force[k])
         bend, slope, value = np.polyfit(time, force[about], 2)
@@ -147,8 +117,8 @@ class Trajectory(NamedTuple):
 
         first = STAGES * (k // STAGES)
         points = slice(first, first + STAGES + 1)
-        there = TO_SERIES @ (self.series.separation[points] - place)
-        speed = TO_SERIES @ self.series.speed[points]
+        there = TO_SERIES @ (self.separation[points] - place)
+        speed = TO_SERIES @ self.speed[points]
         low, high = 2.0 * KNOTS[k - first] - 1.0, 2.0 * KNOTS[k - first + 1] - 1.0
         x = brentq(lambda x: legval(x, there), low, high, xtol=1e-15)
         return float(0.5 * mass * legval(x, speed) ** 2)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from .._jax import jax
 from . import damped_series, free_series
-from .curve_table import CENTRAL, Table, read_row
+from .curve_table import CENTRAL, Quantities, Table, read_row
 from .free_series import SAMPLES
 from .record import Body, Impacts, resistances_apart
 
@@ -26,9 +26,10 @@ class Series(NamedTuple):
         [s], [m] and [m/s], shape (samples,).
     rows
         Quantities of the contact (see :mod:`.curve_table`), shape (samples, rows).
-    dissipated, drag
-        By drag: energy taken since the phase began [J], and force over speed [N s/m], shape
-        (samples, drags).
+    lost
+        Energy lost since the release [J], by law, then by drag, shape (samples, names).
+    drag
+        Force over speed of each drag [N s/m], shape (samples, drags).
     phase
         Index of the phase of each sample, two an impact.
     """
@@ -37,9 +38,14 @@ class Series(NamedTuple):
     separation: np.ndarray
     speed: np.ndarray
     rows: np.ndarray
-    dissipated: np.ndarray
+    lost: np.ndarray
     drag: np.ndarray
     phase: np.ndarray
+
+    def until(self, limit: float) -> Self:
+        """The samples up to a time limit [s]."""
+        kept = self.time <= limit
+        return type(self)(*(column[kept] for column in self))
 
 
 def sample(body: Body, table: Table, impacts: Impacts) -> Series:
@@ -57,13 +63,13 @@ def sample(body: Body, table: Table, impacts: Impacts) -> Series:
     phase = np.broadcast_to(np.arange(2 * made).reshape(made, 2, 1), joined[0].shape)
     time, separation, speed = (a.ravel() for a in joined[:3])
     time = _onwards(body, time, joined[6].ravel().astype(bool))
-    values, dissipated, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
+    values, lost, drag = (a.reshape(time.size, a.shape[-1]) for a in joined[3:6])
     keep = joined[6].ravel().astype(bool)
     row = read_row(table, 0, float(body.release))[: joined[3].shape[-1]]
     still, none = np.zeros(len(body.drags)), np.zeros(joined[4].shape[-1])
     acting = resistances_apart(body, np.asarray(row[CENTRAL])) if body.drags else still
     release = (0.0, body.release, -np.asarray(body.speed), row, none, acting, 0)
-    rest = (time, separation, speed, values, dissipated, drag, phase.ravel())
+    rest = (time, separation, speed, values, lost, drag, phase.ravel())
     return Series(
         *(
             np.concatenate([np.asarray(a)[None], b[keep]])
@@ -85,13 +91,21 @@ def compile_ahead(body: Body, table: Table, impacts: Impacts) -> None:
 
 
 def _phases(body: Body, table: Table, rows: Impacts, *, unloading: bool) -> tuple[np.ndarray, ...]:
-    """Those of impacts in one direction: see :func:`.free_series.draw`."""
-    phases = rows.rise if unloading else rows.fall
+    """Those of impacts in one direction: see :func:`.free_series.draw`; all that is lost."""
+    phases: Any = rows.rise if unloading else rows.fall
+    drawn: Any
     if body.damped:
-        return damped_series.draw(body, table, phases, jax.device_put(np.asarray(unloading)))  # type: ignore[return-value]
-    ended = np.asarray(rows.apex_time if unloading else rows.closest_approach_time)
-    places = 1 + 2 * SAMPLES // table.ends.shape[0]  # on each piece, besides those at its turns
-    return free_series.draw(body, table, phases, ended, places, unloading=unloading)
+        drawn = damped_series.draw(body, table, phases, jax.device_put(np.asarray(unloading)))
+    else:
+        ended = np.asarray(rows.apex_time if unloading else rows.closest_approach_time)
+        places = 1 + 2 * SAMPLES // table.ends.shape[0]  # on each piece, besides those at its turns
+        drawn = free_series.draw(body, table, phases, ended, places, unloading=unloading)
+    time, separation, speed, values, dissipated, drag, keep = drawn
+    bonds = np.asarray(values)[..., Quantities(phases.bonds.shape[1], 0).bonds]
+    change, (formed, broken) = bonds - phases.bonds[:, None], np.asarray(table.losses)
+    by_law = np.maximum(change, 0.0) * formed + np.maximum(-change, 0.0) * broken
+    lost = phases.lost[:, None] + np.concatenate([by_law, dissipated], axis=-1)
+    return time, separation, speed, values, lost, drag, keep
 
 
 def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
@@ -108,12 +122,6 @@ def _onwards(body: Body, time: np.ndarray, keep: np.ndarray) -> np.ndarray:
 
 def _rows(chosen: np.ndarray, leaf: jax.Array) -> np.ndarray:
     return np.asarray(leaf)[chosen]
-
-
-def until(series: Series, limit: float) -> Series:
-    """The samples up to a time limit [s]."""
-    kept = series.time <= limit
-    return Series(*(column[kept] for column in series))
 
 
 def ascending(lost: np.ndarray, least: float) -> np.ndarray:

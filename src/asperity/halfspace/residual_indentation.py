@@ -14,9 +14,11 @@ from math import asin, pi, sqrt
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..numerics.polynomials import from_points
+
 _NODES = 14
 _POINTS = chebyshev.chebpts1(_NODES)
-_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_POINTS, _NODES - 1))
+_TO_SERIES = from_points(_NODES)
 _UNTIL = chebyshev.chebvander(_POINTS, _NODES) @ chebyshev.chebint(_TO_SERIES, lbnd=-1, axis=0)
 _WHOLE = chebyshev.chebvander(np.ones(1), _NODES) @ chebyshev.chebint(_TO_SERIES, lbnd=-1, axis=0)
 _TO_POWERS = np.stack(

@@ -11,6 +11,7 @@ Units: one length for delta, z and x^2/R; energies and forces over E* and the un
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import exp, inf, sqrt
 from typing import Any, NamedTuple
 
@@ -62,6 +63,7 @@ MODULUS_SCALE = 15.0 / 8.0
 """Twice E* over the units' force: an elastic impact at unit speed then goes to depth 1."""
 
 
+@dataclass(eq=False)
 class Phase:
     """The contact while its edge moves one way, from an instant on.
 
@@ -79,21 +81,13 @@ class Phase:
         Radius of contact at its start.
     """
 
-    def __init__(
-        self,
-        solid: Solid,
-        direction: int,
-        begun: float,
-        indentation: ResidualIndentation,
-        edge: float = 0.0,
-    ) -> None:
-        self.solid, self.direction, self.begun, self.indentation, self.edge = (
-            solid,
-            direction,
-            begun,
-            indentation,
-            edge,
-        )
+    solid: Solid
+    direction: int
+    begun: float
+    indentation: ResidualIndentation
+    edge: float = 0.0
+
+    def __post_init__(self) -> None:
         self._near = 0.0
         self._followed: list[Any] = []
         self._until: list[float] = []
@@ -253,7 +247,8 @@ class Phase:
         """Times at which the edge of contact passed radii x."""
         k, tau = self.solid.ratio, self.solid.time
         rate = k if self.direction == ADVANCES else 1.0
-        low, high = np.full(x.size, self._start), np.full(x.size, end)
+        # The phase may be followed from later on than its indentation is of.
+        low, high = np.full(x.size, self._followed[0].t_min), np.full(x.size, end)
         time = 0.5 * (low + high)
         for _ in range(_STEPS):
             state = self._along(time)
@@ -274,8 +269,3 @@ class Phase:
             if moved <= _CLOSE * (1.0 + abs(end)):
                 break
         return time
-
-    @property
-    def _start(self) -> float:
-        """When the phase was first followed; its indentation may be older."""
-        return float(self._followed[0].t_min)

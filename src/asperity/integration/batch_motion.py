@@ -9,12 +9,11 @@ from typing import Any, cast
 import numpy as np
 
 from .._jax import jax
-from ..dynamics.record import IN_MOTION
+from ..dynamics.record import IN_MOTION, Begun
 from ..dynamics.release import TRIES, farther, negligible_force
 from ..errors import InputError
 from .batch_records import (
     Batch,
-    Begun,
     Checks,
     FirstImpact,
     ImpactRows,

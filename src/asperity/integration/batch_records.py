@@ -9,9 +9,8 @@ import numpy as np
 
 from .._jax import jax
 from ..contact import Contact
-from ..dynamics import Body, Impacts, Limits, Motion, Progress, Table
+from ..dynamics import Begun, Body, Impacts, Limits, Motion
 from ..dynamics.release import AtRelease
-from ..dynamics.static_equilibrium import Reference
 from ..numerics.compilation import kept
 from ..results.first_contact import FirstContact, Passing
 
@@ -36,24 +35,6 @@ class Batch(NamedTuple):
         """One case as a batch."""
         one: Batch = jax.tree_util.tree_map(_raised, cls(contact, body, limits))
         return one
-
-
-@kept
-class Begun(NamedTuple):
-    """What a motion goes on from.
-
-    Attributes
-    ----------
-    table, reference, origin
-        Curves, static equilibrium, and mechanical energy at the release [J].
-    progress
-        The motion at its last apex.
-    """
-
-    table: Table
-    reference: Reference
-    origin: jax.Array
-    progress: Progress
 
 
 @kept

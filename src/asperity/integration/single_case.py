@@ -264,7 +264,7 @@ def _solution(problem: Problem, motion: BatchMotion, here: Slice | None = None) 
         raise SimulationError(_STOPPED)
     moved = whole(unbatched(ends[0]), unbatched(rows))
     outcome = outcome or ENDS[int(moved.end.outcome)]
-    return Solution(moved, problem.contact, outcome, body=_body(problem, motion))
+    return Solution(moved, problem.contact, _body(problem, motion), outcome)
 
 
 def _integrate_in_time(problem: Problem, motion: BatchMotion, here: Slice) -> Solution:
@@ -288,7 +288,7 @@ def _integrate_in_time(problem: Problem, motion: BatchMotion, here: Slice) -> So
         )
     except Ended as error:
         raise SimulationError(_STOPPED) from error
-    return Solution(moved, contact, outcome, trajectory, body)
+    return Solution(moved, contact, body, outcome, trajectory)
 
 
 def _raise_failure(motion: BatchMotion) -> None:

@@ -14,7 +14,7 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..contact import Contact, ElasticContact, RigidContact
 from ..contact.rough import RoughContact
-from ..dynamics import Body, Impacts, Motion, Progress, Table, integrate_impacts, prepare, start
+from ..dynamics import Begun, Body, Impacts, Progress, Table, integrate_impacts, prepare, start
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
 from ..numerics.compilation import AT_ONCE, QUICKLY, Options, Program
@@ -23,7 +23,6 @@ from ..results.first_contact import FirstContact, first_contact, passing_at
 from ..results.measures import Measures, measure
 from .batch_records import (
     Batch,
-    Begun,
     Checks,
     FirstImpact,
     ImpactRows,
@@ -51,11 +50,10 @@ def _curves(batch: Batch, cuts: np.ndarray, tabulated: bool) -> tuple[Begun, Che
     def one(values: tuple[Batch, jax.Array]) -> tuple[Begun, Checks]:
         (contact, body, _), cuts = values
         table, reference = prepare(contact, body, tabulated, cuts)
-        progress, origin = start(contact, body, table)
         # Beyond it a rough contact has panels of its own kind.
         reach = contact.interaction_range if isinstance(contact, RoughContact) else table.ends[-1]
         checks = Checks(table.ends, table.errors, table.residual, reach, at_release(table, body))
-        return Begun(table, reference, origin, progress), checks
+        return start(contact, body, table, reference), checks
 
     return _over(batch)(one)((batch, cuts))
 
@@ -69,13 +67,11 @@ def _impacts(
         values: tuple[Batch, Begun, FirstImpact | None],
     ) -> tuple[Progress, FirstImpact | None, ImpactRows]:
         (contact, body, limits), begun, first = values
-        table, progress = begun.table, begun.progress
-        after, impacts = integrate_impacts(
-            contact, body, table, begun.reference, begun.origin, progress, limits, count
-        )
+        table = begun.table
+        after, impacts = integrate_impacts(contact, body, begun, limits, count)
         if first is None:
             return after, None, ImpactRows(impacts)
-        now = progress.made == 0
+        now = begun.progress.made == 0
         found = jax.lax.cond(
             unvmap_any(now), lambda: _first_impact(table, impacts, body), lambda: first
         )
@@ -99,8 +95,7 @@ def _measure(batch: Batch, ends: Begun, first: FirstContact, rows: ImpactRows) -
     """Measures of motions that have ended; their tables are not needed."""
 
     def one(body: Body, ends: Begun, first: FirstContact, rows: ImpactRows) -> Measures:
-        motion = Motion(rows.impacts, ends.progress, ends.table, ends.reference, ends.origin)
-        return measure(motion, body, rows.passing, first)
+        return measure(whole(ends, rows), body, rows.passing, first)
 
     return jax.vmap(one)(batch.body, ends, first, rows)
 

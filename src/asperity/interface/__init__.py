@@ -1,6 +1,7 @@
 """Mean pressure and energy between two rough planes, with the memory of every bond.
 
 `rough_planes`: what a contact asks of all that follow.
+`named_means`: which means laws ask for, and how they are put together.
 `interface`: one law over one distribution of heights; its memory is a play operator.
 `height_quadrature`: means over heights of laws without a closed form.
 `panel_table`, `branch_pressure`: means over the separation, read from polynomials on panels.

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.polynomial import chebyshev
-
 from .._jax import jax, jnp
 from ..laws.law import Law
-from ..numerics.polynomials import chebyshev_sum, from_points, local
+from ..numerics.polynomials import chebyshev_sum, from_points, local, points_between
 from ..surfaces.heights.distribution import Heights
 from .height_quadrature import between
 
@@ -51,12 +48,12 @@ class ClassBonds(NamedTuple):
         forming, breaking = (jnp.clip(place, low, high) for place in (forms, end))
 
         first, last = _root(end - forming), _root(end - breaking)
-        root = last + (first - last) * _steps(nodes)
+        root = last + (first - last) * points_between(nodes)
         here = jnp.where(jnp.isfinite(end), end, 0.0) - root**2
         x = local(last, first, _root(end - jnp.clip(places, forming, breaking)))
         on_way = _read(self._up_to(self._edge(here - threshold), here), x)
 
-        beyond = breaking + (high - breaking) * _steps(nodes)
+        beyond = breaking + (high - breaking) * points_between(nodes)
         x = local(breaking, high, jnp.clip(places, breaking, high))
         whole = jnp.asarray(self.law.breaking_gap, float)[None]
         parted = _read(self._up_to(whole, beyond), x)
@@ -76,12 +73,6 @@ def _root(x: jax.Array) -> jax.Array:
     """Square root of what is positive and finite, else 0; with derivatives."""
     fine = (x > 0.0) & (x < jnp.inf)
     return jnp.where(fine, jnp.sqrt(jnp.where(fine, x, 1.0)), 0.0)
-
-
-def _steps(nodes: int) -> np.ndarray:
-    """Chebyshev points between 0 and 1."""
-    points: np.ndarray = 0.5 * (1.0 + chebyshev.chebpts1(nodes))
-    return points
 
 
 def _read(values: jax.Array, x: jax.Array) -> jax.Array:

@@ -212,10 +212,15 @@ def _pieces(
     kink = jnp.sort(jnp.clip(kinks, lowest, highest))
     span = highest - lowest
     first = jnp.minimum(0.25 * shortest, span)
-    ratio = jnp.where(first > 0.0, span / jnp.where(first > 0.0, first, 1.0), 1.0)
-    ladder = first * ratio ** (np.arange(_STEPS) / _STEPS)
-    steps = [kink[0] - ladder] if law.only_bonded else [kink[0] - ladder, kink[-1] + ladder]
+    away = ladder(first, span, _STEPS)
+    steps = [kink[0] - away] if law.only_bonded else [kink[0] - away, kink[-1] + away]
     return jnp.sort(jnp.clip(jnp.concatenate([even, kink, *steps]), lowest, highest))
+
+
+def ladder(first: jax.Array, span: jax.Array, steps: int) -> jax.Array:
+    """So many distances from ``first`` on, in geometric progression towards a ``span``."""
+    ratio = jnp.where(first > 0.0, span / jnp.where(first > 0.0, first, 1.0), 1.0)
+    return first * ratio ** (np.arange(steps) / steps)
 
 
 def points(bounds: jax.Array, nodes: int = 16) -> tuple[jax.Array, jax.Array]:
@@ -224,12 +229,16 @@ def points(bounds: jax.Array, nodes: int = 16) -> tuple[jax.Array, jax.Array]:
     Gathered at both ends of each, where there may be square roots. Kept apart by pieces: XLA
     makes vector code of what follows, which it does not of nodes in one row.
     """
+    places, weights = gathered(nodes)
+    width = jnp.diff(bounds)[:, None]
+    return bounds[:-1, None] + width * places, width * weights
+
+
+def gathered(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights on [0, 1], gathered at both ends."""
     places, weights = np.polynomial.legendre.leggauss(nodes)
     t = 0.5 * (places + 1.0)
-    inner = t * t * (3.0 - 2.0 * t)
-    slope = 6.0 * t * (1.0 - t) * 0.5 * weights
-    width = jnp.diff(bounds)[:, None]
-    return bounds[:-1, None] + width * inner, width * slope
+    return t * t * (3.0 - 2.0 * t), 3.0 * t * (1.0 - t) * weights
 
 
 def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.Array:
@@ -239,6 +248,6 @@ def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.A
     known = law.energy_beyond(start)
     if known is not None:
         return known
-    ladder = shortest * 2.0 ** np.arange(-2.0, 34.0)
-    gap, weight = points(jnp.sort(jnp.maximum(jnp.append(_kinks(law), ladder), start)))
+    doubled = shortest * 2.0 ** np.arange(-2.0, 34.0)
+    gap, weight = points(jnp.sort(jnp.maximum(jnp.append(_kinks(law), doubled), start)))
     return jnp.sum(weight * law.energy(gap))

@@ -11,6 +11,7 @@ from ..laws.law import Law, Powers, Real, TruncatedPower, quantity, terms
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near, between, means, means_near
+from .named_means import asked_powers, bond_gaps, means_of
 from .panel_table import PanelTable, places_of
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
@@ -59,7 +60,7 @@ class Interface(RoughPlanes):
         return self.heights.panel_lengths
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
-        return tuple(separation - gap for gap in self.bond_gaps(separation, memory))
+        return tuple(separation - gap for gap in bond_gaps(self.hysteretic, separation, memory))
 
     @property
     def closed(self) -> bool:
@@ -68,62 +69,31 @@ class Interface(RoughPlanes):
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
     ) -> Means:
-        edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
-        laws = dict(enumerate(self.laws))
-        requests: list[tuple[str, TruncatedPower, float]] = [
-            ("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0)
-        ]
-        for k, law in laws.items():
-            size = law.radius_power
-            if law.hysteretic:
-                requests.append((f"bonds {k}", TruncatedPower(1.0, 0.0, edges[k]), size))
-            force, energy = law.powers(edges[k]) or ((), ())
-            requests += [(law.mechanism, term, size) for term in force]
-            requests += [("energy", term, size) for term in energy]
-        names, flat, sizes = zip(*requests, strict=True)
-        values = self.heights.mean_powers(flat, integrated, separation, sizes)
+        edges = bond_gaps(self.laws, separation, memory)
+        names, powers, sizes = zip(*asked_powers(self.laws, edges), strict=True)
+        values = self.heights.mean_powers(powers, integrated, separation, sizes)
         sums: dict[str, jax.Array] = {}
         for name, value in zip(names, values, strict=True):
             sums[name] = sums.get(name, 0.0) + self.density * value
-        for k, law in laws.items():
-            if law.powers(edges[k]) is None:
-                found = self._quadrature(k, edges[k], separation, integrated, near)
+        for k, (law, edge) in enumerate(zip(self.laws, edges, strict=True)):
+            if law.powers(edge) is None:
+                found = self._quadrature(k, edge, separation, integrated, near)
                 for name, mean in found.items():
                     sums[name] = sums.get(name, 0.0) + self.density * mean
-        zero = jnp.zeros_like(separation)
-        bonds = [sums[f"bonds {k}"] for k, law in laws.items() if law.hysteretic]
-        return Means(
-            parts=jnp.stack([sums.get(name, zero) for name in self.components]),
-            energy=sums.get("energy", zero),
-            bonds=jnp.stack(bonds) if bonds else jnp.zeros((0, *separation.shape)),
-            contacting=sums["contacting"],
-        )
+        return means_of(self.laws, self.components, sums, separation)
 
     def counted(
         self, separation: jax.Array, memory: Memory, integrated: int = 0
     ) -> tuple[jax.Array, jax.Array]:
         """Contacting asperities and bonds by law, as in :class:`Means`."""
-        edges: tuple[Real, ...] = (0.0, *self.bond_gaps(separation, memory))
+        edges: tuple[Real, ...] = (0.0, *bond_gaps(self.hysteretic, separation, memory))
         powers = tuple(TruncatedPower(1.0, 0.0, edge) for edge in edges)
         sizes = (0.0, *(law.radius_power for law in self.hysteretic))
         found = self.density * self.heights.mean_powers(powers, integrated, separation, sizes)
         return found[0], found[1:]
 
-    def bond_gaps(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
-        """Gap [m] of each law that remembers below which asperities are bonded."""
-        return [
-            self._bond_gap(law, b, separation)
-            for law, b in zip(self.hysteretic, memory, strict=True)
-        ]
-
     def pressure(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        return self._total(separation, memory, integrated, of_force=True)
-
-    def _total(
-        self, separation: jax.Array, memory: Memory, integrated: int, *, of_force: bool
-    ) -> jax.Array:
-        """Mean of the force or of the energy of all laws."""
-        edges = {k: self._bond_gap(law, b, separation) for k, (law, b) in self._pairs(memory)}
+        edges = bond_gaps(self.laws, separation, memory)
         total = jnp.zeros_like(separation)
         flat: Powers = ()
         sizes: tuple[float, ...] = ()
@@ -131,18 +101,15 @@ class Interface(RoughPlanes):
             powers = law.powers(edges[k])
             if powers is None:
                 found = self._quadrature(k, edges[k], separation, integrated)
-                energy = found.pop("energy")
-                total = total + (sum(found.values()) if of_force else energy)
+                del found["energy"]
+                total = total + sum(found.values())
             else:
-                flat += powers[0 if of_force else 1]
+                flat += powers[0]
                 sizes += (law.radius_power,) * (len(flat) - len(sizes))
         if flat:
             values = self.heights.mean_powers(flat, integrated, separation, sizes)
             total = total + jnp.sum(values, axis=0)
         return self.density * total
-
-    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        return self._total(separation, memory, integrated, of_force=False)
 
     def approach_tables(self, ends: jax.Array) -> tuple[PanelTable | None, ...]:
         places = places_of(ends)
@@ -172,20 +139,6 @@ class Interface(RoughPlanes):
         flat = jnp.broadcast_to(edge, shape).ravel(), separation.ravel()
         more = between(law, self.heights, begin, *flat, 0, self.pieces * self.heights.cuts)
         return {name: row + more[name].reshape(shape) for name, row in found.items()}
-
-    def _pairs(self, memory: Memory) -> list[tuple[int, tuple[Law, jax.Array | None]]]:
-        thresholds = iter(memory)
-        return [
-            (k, (law, next(thresholds) if law.hysteretic else None))
-            for k, law in enumerate(self.laws)
-        ]
-
-    @staticmethod
-    def _bond_gap(law: Law, threshold: jax.Array | None, separation: jax.Array) -> jax.Array:
-        """Gap below which asperities are bonded: the clamp, seen from the gap."""
-        if threshold is None:
-            return jnp.full_like(separation, -jnp.inf)
-        return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)
 
     def _quadrature(
         self,

@@ -156,10 +156,6 @@ class Layers(RoughPlanes):
         values = [part.pressure(separation, own, integrated) for part, own in self._shares(memory)]
         return jnp.sum(jnp.stack(values), axis=0)
 
-    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        values = [part.energy(separation, own, integrated) for part, own in self._shares(memory)]
-        return jnp.sum(jnp.stack(values), axis=0)
-
     def losses(self) -> tuple[jax.Array, jax.Array]:
         formation, rupture = zip(*(part.losses() for part in self.parts), strict=True)
         return jnp.concatenate(formation), jnp.concatenate(rupture)

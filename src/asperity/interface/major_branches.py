@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev, legendre
 
 from .._jax import jax, jnp
 from ..laws.law import Law, terms
-from ..numerics.polynomials import quintic
+from ..numerics.polynomials import from_points, quintic
 from ..numerics.splines import kernel_rule
 from ..surfaces.heights.measured_heights import Sampled
 from .height_quadrature import points
@@ -231,12 +231,9 @@ def _standing(nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
     Means of polynomials of a degree below their number are exact.
     """
-    points = chebyshev.chebpts1(_STAND)
     middle, half = 0.5 * (nodes - 1), 0.5 * (nodes + 3)
     within, share = kernel_rule()
     x = (np.arange(nodes)[:, None] + within - middle) / half
-    basis = chebyshev.chebvander(x, _STAND - 1) @ np.linalg.inv(
-        chebyshev.chebvander(points, _STAND - 1)
-    )
+    basis = chebyshev.chebvander(x, _STAND - 1) @ from_points(_STAND)
     weight: np.ndarray = np.einsum("p,jpi->ji", share, basis)
-    return middle + half * points, weight
+    return middle + half * chebyshev.chebpts1(_STAND), weight

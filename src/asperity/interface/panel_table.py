@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
 from ..numerics.compilation import kept
-from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local
+from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local, points_between
 
 _TO_COEFFICIENTS = from_points(NODES)
 _SLOPE = np.arange(NODES) ** 2 * (-1.0) ** np.arange(1, NODES + 1)  # at the lower end
@@ -18,8 +17,7 @@ _TAIL = 2.0  # power with which attraction across a gap falls: that of an asperi
 
 def places_of(ends: jax.Array) -> jax.Array:
     """Separations [m] at which values are asked for, shape (panels, NODES)."""
-    nodes = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
-    return ends[:-1, None] + jnp.diff(ends)[:, None] * nodes
+    return ends[:-1, None] + jnp.diff(ends)[:, None] * points_between(NODES)
 
 
 @kept

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 from functools import reduce
-from typing import NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import InputError
-from ..laws.law import Law, Real, TruncatedPower, quantity, terms
+from ..laws.law import Law, Real, quantity, terms
 from ..laws.plastic import PlasticContact
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
+from .named_means import asked_powers, bond_gaps, means_of
 from .plastic_means import Asperities, means_at
 from .residual_profile import HIGHEST, Flattened, contact_means, flatten, in_reach, power_means
 from .rough_planes import Means, Memory, RoughPlanes, Scale
@@ -26,15 +26,6 @@ PLASTIC = "plastic"
 _FEW_NODES = 4  # where a bound is asked for alone
 _MISSED = 0.01  # of it, at most
 _LADDER = 28  # panels on which contacts spring back that are not tabulated
-
-
-class _Ask(NamedTuple):
-    """A mean that is asked for: a term of the force or energy of a law, or a count of bonds."""
-
-    name: str
-    term: TruncatedPower
-    size: float
-    counts: bool
 
 
 class PlasticInterface(RoughPlanes):
@@ -159,9 +150,8 @@ class PlasticInterface(RoughPlanes):
 
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         deepest, *thresholds = memory
-        pairs = zip(self.hysteretic, thresholds, strict=True)
-        bonds = (separation - _bond_gap(law, b, separation) for law, b in pairs)
-        return (jnp.minimum(deepest, separation), *bonds)
+        gaps = bond_gaps(self.hysteretic, separation, tuple(thresholds))
+        return (jnp.minimum(deepest, separation), *(separation - gap for gap in gaps))
 
     def measure(
         self, separation: jax.Array, memory: Memory, integrated: int = 0, near: Near | None = None
@@ -191,12 +181,12 @@ class PlasticInterface(RoughPlanes):
         loaded = jax.tree_util.tree_map(lambda x: x.reshape(*shape, *x.shape[1:]), loaded)
         edges = [jnp.asarray(law.forming_gap if law.hysteretic else -jnp.inf)
                  for law in self.laws]  # fmt: skip
-        asked = self._asked(edges)
+        asked = asked_powers(self.laws, edges)
         whole = self.heights.mean_powers(tuple(ask.term for ask in asked), integrated, separation)
         sums: dict[str, jax.Array] = {"elastic": loaded.force, "energy": loaded.recoverable}
         for ask, value in zip(asked, whole, strict=True):
             # While it goes deeper than ever, a tip pulls as if it were whole.
-            if ask.name == "energy" or ask.counts:
+            if ask.name not in self.components:
                 gained = loaded.gained[..., self._sizes.index(ask.size), :]
                 sums[ask.name] = sums.get(ask.name, 0.0) + in_reach(ask.term, gained)
             sums[ask.name] = sums.get(ask.name, 0.0) + value
@@ -237,7 +227,7 @@ class PlasticInterface(RoughPlanes):
 
     def _measure_pressed(self, pressed: Flattened, separation: jax.Array, memory: Memory) -> Means:
         """The means after a closest approach."""
-        asked = self._asked(self._edges(separation, memory))
+        asked = asked_powers(self.laws, bond_gaps(self.laws, separation, memory[1:]))
         powers = [(ask.term, self._sizes.index(ask.size)) for ask in asked]
         values = power_means(pressed, powers, separation)
         rows = jnp.concatenate([contact_means(pressed, separation), values])
@@ -249,18 +239,6 @@ class PlasticInterface(RoughPlanes):
         """Powers of the tip radius that the laws beside contact have, 0 among them."""
         return tuple(sorted({0.0, *(law.radius_power for law in self.laws)}))
 
-    def _asked(self, edges: list[jax.Array]) -> list[_Ask]:
-        """The truncated powers whose means are those of the laws, bonded up to ``edges``."""
-        asked = [_Ask("contacting", TruncatedPower(1.0, 0.0, 0.0), 0.0, counts=False)]
-        for k, (law, edge) in enumerate(zip(self.laws, edges, strict=True)):
-            size, powers = law.radius_power, law.powers(edge)
-            assert powers is not None
-            for name, part in zip((law.mechanism, "energy"), powers, strict=True):
-                asked += [_Ask(name, term, size, counts=False) for term in part]
-            if law.hysteretic:
-                asked.append(_Ask(f"bonds {k}", TruncatedPower(1.0, 0.0, edge), size, counts=True))
-        return asked
-
     def _kept(self, dissipated: jax.Array, gained: jax.Array) -> jax.Array:
         """What one asperity per area keeps, by what its contact and the flatter tips give."""
         for law in self.laws:
@@ -271,29 +249,17 @@ class PlasticInterface(RoughPlanes):
 
     def _means(self, sums: dict[str, jax.Array], kept: jax.Array, separation: jax.Array) -> Means:
         """The means put together, from those of one asperity per area."""
-        names = [f"bonds {k}" for k, law in enumerate(self.laws) if law.hysteretic]
-        zero = jnp.zeros_like(separation)
-        return Means(
-            parts=self.density * jnp.stack([sums.get(name, zero) for name in self.components]),
-            energy=self.density * sums["energy"],
-            bonds=self.density * jnp.stack([kept + zero, *(sums[name] for name in names)]),
-            contacting=self.density * sums["contacting"],
-        )
+        means = means_of(self.laws, self.components, sums, separation)
+        kept = jnp.broadcast_to(kept, (1, *separation.shape))
+        means = means._replace(bonds=jnp.concatenate([kept, means.bonds]))
+        return jax.tree_util.tree_map(lambda mean: self.density * mean, means)
 
     def _measure_one(self, separation: jax.Array, memory: Memory, integrated: int) -> Means:
         """The means at one separation, by integration."""
         asperities = Asperities(self.contact, self.law, self.heights)
-        edges = self._edges(separation, memory)
+        edges = bond_gaps(self.laws, separation, memory[1:])
         sums = means_at(asperities, separation, memory[0], edges, integrated)
         return self._means(sums, sums["kept"], separation)
-
-    def _edges(self, separation: jax.Array, memory: Memory) -> list[jax.Array]:
-        """Gap [m] below which asperities are bonded, for each law."""
-        thresholds, apart = iter(memory[1:]), jnp.asarray(-jnp.inf)
-        return [
-            _bond_gap(law, next(thresholds), separation) if law.hysteretic else apart
-            for law in self.laws
-        ]
 
 
 def _summed(names: tuple[str, ...], rows: jax.Array) -> dict[str, jax.Array]:
@@ -305,8 +271,3 @@ def _summed(names: tuple[str, ...], rows: jax.Array) -> dict[str, jax.Array]:
     chosen = np.asarray([[name == one for name in names] for one in each], float)
     sums = jnp.tensordot(chosen, rows, axes=1)
     return dict(zip(each, sums, strict=True))
-
-
-def _bond_gap(law: Law, threshold: jax.Array, separation: jax.Array) -> jax.Array:
-    """Gap below which asperities are bonded."""
-    return jnp.clip(separation - threshold, law.forming_gap, law.breaking_gap)

@@ -15,7 +15,8 @@ from .._jax import jax, jnp
 from ..laws.law import Law, terms
 from ..laws.plastic import PlasticContact
 from ..surfaces.heights.distribution import Heights
-from .height_quadrature import points
+from .height_quadrature import ladder, points
+from .residual_profile import flatness
 
 _EVEN = 5  # pieces over the heights, besides those that kinks ask for
 _STEPS = 3  # of a ladder of pieces from where contact begins
@@ -59,7 +60,7 @@ def means_at(
     deepest = jnp.maximum(height - low, 0.0)
     overlap = jnp.maximum(height - separation, 0.0)
     gap = separation - height + contact.residual(deepest)
-    flatter = _flatter(contact, deepest)
+    flatter = flatness(deepest, deepest - contact.residual(deepest))
     # While it goes deeper than ever, a tip pulls as if it were whole.
     pulling = jnp.where(separation <= closest, 1.0, flatter)
     sums = {
@@ -94,18 +95,12 @@ def _kept(asperities: Asperities, low: jax.Array, integrated: int) -> jax.Array:
     share = weight * heights.tail(integrated, height)
     deepest = jnp.maximum(height - low, 0.0)
     kept = jnp.sum(share * contact.dissipated(deepest))
+    flatter = flatness(deepest, deepest - contact.residual(deepest))
     for one in terms(law):
         if not one.hysteretic:
-            gain = _flatter(contact, deepest) ** one.radius_power - 1.0
+            gain = flatter**one.radius_power - 1.0
             kept = kept - jnp.sum(share * gain) * one.energy(jnp.zeros(()))
     return kept
-
-
-def _flatter(contact: PlasticContact, deepest: jax.Array) -> jax.Array:
-    """Factor by which the radius of a tip has grown, of its deepest overlap [m]."""
-    pressed = deepest > 0.0
-    sprung = jnp.where(pressed, deepest - contact.residual(deepest), 1.0)
-    return jnp.where(pressed, deepest / sprung, 1.0)
 
 
 def _height(contact: PlasticContact, effective: jax.Array, low: jax.Array) -> jax.Array:
@@ -141,10 +136,8 @@ def _bounds(
     span = last - begin
     narrowest = jnp.minimum(0.25 * heights.rms, jnp.maximum(begin - low, contact.yield_overlap))
     narrowest = jnp.clip(narrowest, 0.0, jnp.maximum(span, 0.0))
-    ratio = jnp.where(narrowest > 0.0, span / jnp.where(narrowest > 0.0, narrowest, 1.0), 1.0)
-    ladder = begin + narrowest * ratio ** (np.arange(_STEPS) / _STEPS)
     kinks = low + jnp.stack(contact.kinks)
-    ends = [even, ladder, kinks, jnp.stack([begin, first, *marks])]
+    ends = [even, begin + ladder(narrowest, span, _STEPS), kinks, jnp.stack([begin, first, *marks])]
     return jnp.sort(jnp.clip(jnp.concatenate(ends), first, last))
 
 

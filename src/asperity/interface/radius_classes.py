@@ -53,13 +53,8 @@ class RadiusClasses(RoughPlanes):
         self.tables = branch_tables(self.stacked) if tabulated else ()
 
     @property
-    def law(self) -> Law:
-        """Their laws, a number for each class in each."""
-        return self.stacked.law
-
-    @property
     def laws(self) -> tuple[Law, ...]:
-        """The same, one by one."""
+        """Their laws, a number for each class in each."""
         return self.stacked.laws
 
     @property
@@ -139,13 +134,6 @@ class RadiusClasses(RoughPlanes):
             rows = self._rows(separation, memory, integrated)
             return self._sum([jnp.sum(values[:-1], axis=0) for values in rows])
         each = self._each(lambda part, own: part.pressure(separation, own, integrated), memory)
-        return jnp.sum(each, axis=0)
-
-    def energy(self, separation: jax.Array, memory: Memory, integrated: int = 0) -> jax.Array:
-        if self.tables:
-            rows = self._rows(separation, memory, integrated)
-            return self._sum([values[-1] for values in rows])
-        each = self._each(lambda part, own: part.energy(separation, own, integrated), memory)
         return jnp.sum(each, axis=0)
 
     def _rows(

@@ -21,35 +21,23 @@ from ..laws.plastic import PlasticContact
 from ..numerics.compilation import kept
 from ..numerics.polynomials import from_points, local
 from ..surfaces.heights.distribution import Heights
+from .height_quadrature import gathered
 
 HIGHEST = 2
 """Largest exponent of the truncated powers."""
 
 _NODES = 14  # coefficients of the contacts' force on a panel
 _ROW = _NODES + HIGHEST + 1  # and of what is integrated from them
-_POINTS = 14  # of a quadrature over the part of a panel above a place
-_FAR_POINTS = 14  # and over the panels above
+_POINTS = 14  # of a quadrature over the part of a panel above a place, and over each one above
 _STEPS = 5  # panels in geometric progression beyond the last kink of the contact
 _EVEN = 7  # even panels over the heights
 _BELOW = 6  # and over those below the closest approach that laws reach
 
 _X = chebyshev.chebpts1(_NODES)
 _TO_COEFFICIENTS = from_points(_NODES)
-_INTEGRAL = np.zeros((_ROW, _ROW))
-for _k in range(_ROW - 1):
-    _row = chebyshev.chebint(np.eye(_ROW - 1)[_k], lbnd=1)
-    _INTEGRAL[: _row.size, _k] = -_row  # from each place up to the end of the panel
-
-
-def _gathered(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places and weights on [0, 1], gathered at both ends, where there may be powers."""
-    places, weights = np.polynomial.legendre.leggauss(count)
-    t = 0.5 * (places + 1.0)
-    return t * t * (3.0 - 2.0 * t), 3.0 * t * (1.0 - t) * weights
-
-
-_SHARES, _WEIGHTS = _gathered(_POINTS)
-_FAR_SHARES, _FAR_WEIGHTS = _gathered(_FAR_POINTS)
+# From each place up to the end of the panel.
+_INTEGRAL = np.pad(-chebyshev.chebint(np.eye(_ROW - 1), lbnd=1), ((0, 0), (0, 1)))
+_SHARES, _WEIGHTS = gathered(_POINTS)  # there may be powers at both ends
 
 
 def _between_nodes(x: np.ndarray) -> np.ndarray:
@@ -59,7 +47,7 @@ def _between_nodes(x: np.ndarray) -> np.ndarray:
 
 
 _ABOVE = 0.5 * (1.0 - _X)  # share of a panel above each node
-_ON_PANEL = _between_nodes(2.0 * _FAR_SHARES - 1.0)
+_ON_PANEL = _between_nodes(2.0 * _SHARES - 1.0)
 _ON_REST = _between_nodes(1.0 - 2.0 * _ABOVE[:, None] * (1.0 - _SHARES))
 
 
@@ -98,6 +86,12 @@ class Flattened(NamedTuple):
         return self.ends[_BELOW + 2 :]
 
 
+def flatness(deepest: jax.Array, sprung: jax.Array) -> jax.Array:
+    """Factor by which a tip that was overlapped by ``deepest`` and springs back is flatter."""
+    pressed = sprung > 0.0
+    return jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
+
+
 def flatten(
     contact: PlasticContact,
     heights: Heights,
@@ -125,8 +119,7 @@ def flatten(
     deepest = contact.deepest(sprung)
     _, left = jax.jvp(contact.residual, (deepest,), (jnp.ones_like(deepest),))
     count = heights.tail(integrated, lowest + deepest) / (1.0 - left)
-    pressed = sprung > 0.0
-    flat = jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
+    flat = flatness(deepest, sprung)
     each = []
     for size in sizes:
         row = _fitted(flat**size * count)
@@ -217,11 +210,11 @@ def _contact_force(
     own, start, share = (
         jnp.einsum("kn,pn->pk", _ON_PANEL, rows).ravel() for rows in (exponent, logarithm, weighted)
     )
-    share = share * jnp.tile(_FAR_WEIGHTS, width.shape[0])
-    there = (low[:, None] + width[:, None] * _FAR_SHARES).ravel()
+    share = share * jnp.tile(_WEIGHTS, width.shape[0])
+    there = (low[:, None] + width[:, None] * _SHARES).ravel()
     here = (low[:, None] + width[:, None] * 0.5 * (1.0 + _X)).ravel()
     panel = np.arange(width.shape[0])
-    above = np.repeat(np.repeat(panel, _FAR_POINTS)[None] > panel[:, None], _NODES, axis=0)
+    above = np.repeat(np.repeat(panel, _POINTS)[None] > panel[:, None], _NODES, axis=0)
     apart = jnp.where(above, there - here[:, None], unit)
     further = jnp.logical_and(above, apart > 0.0)
     powers = jnp.exp(start + own * jnp.log(jnp.where(further, apart, unit) / unit))

@@ -129,6 +129,11 @@ class RoughPlanes(eqx.Module):
         """The memory on a major branch: no bond is left of what it was, or all hold."""
         return tuple(jnp.where(unloading, -jnp.inf, jnp.full_like(b, jnp.inf)) for b in memory)
 
+    def branches(self, place: jax.Array | float = 0.0) -> tuple[Memory, ...]:
+        """Memories of the major branches: without bonds, and with all where there are any."""
+        both = self.initial_memory(place), self.saturated_memory(place)
+        return both if self.mechanisms else both[:1]
+
     @abc.abstractmethod
     def remember(self, memory: Memory, separation: jax.Array) -> Memory:
         """The memory after the separation moved monotonically to ``separation`` [m]."""
@@ -189,8 +194,7 @@ class RoughPlanes(eqx.Module):
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         """Energy [J] lost when one bond forms, and when it breaks, per mechanism."""
-        each = [law.losses for law in self.hysteretic]
-        return stacked([lost[0] for lost in each]), stacked([lost[1] for lost in each])
+        return losses_of(self.hysteretic)
 
     @property
     def yields(self) -> bool:
@@ -219,6 +223,8 @@ class RoughPlanes(eqx.Module):
         return self
 
 
-def stacked(rows: list[jax.Array]) -> jax.Array:
-    """Rows as one array; none as an empty one."""
-    return jnp.stack(rows) if rows else jnp.zeros((0,))
+def losses_of(laws: Sequence[Law]) -> tuple[jax.Array, jax.Array]:
+    """Energy [J] lost when one bond forms, and when it breaks, of each of some laws."""
+    each = [law.losses for law in laws]
+    formed, broken = jnp.stack(each, axis=1) if each else jnp.zeros((2, 0))
+    return formed, broken

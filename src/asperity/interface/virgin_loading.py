@@ -9,8 +9,8 @@ import numpy as np
 from .._jax import jax, jnp
 from ..laws.plastic import PlasticContact
 from ..surfaces.heights.distribution import Heights
-from .height_quadrature import points
-from .residual_profile import HIGHEST
+from .height_quadrature import ladder, points
+from .residual_profile import HIGHEST, flatness
 
 _EVEN = 5  # pieces over the heights, besides those that kinks ask for
 _STEPS = 3  # of a ladder of pieces from where contact begins
@@ -52,8 +52,7 @@ def first_loading(
     deepest, weight = points(_bounds(contact, heights, separation), nodes)
     share = weight * heights.tail(integrated, separation + deepest)
     sprung = deepest - contact.residual(deepest)
-    pressed = sprung > 0.0
-    flat = jnp.where(pressed, deepest / jnp.where(pressed, sprung, 1.0), 1.0)
+    flat = flatness(deepest, sprung)
 
     def mean(values: jax.Array) -> jax.Array:
         return jnp.vdot(values, share)
@@ -81,8 +80,6 @@ def _bounds(contact: PlasticContact, heights: Heights, separation: jax.Array) ->
     uneven = jnp.clip(heights.bottom - separation, 0.0, span)
     even = uneven + (span - uneven) * np.linspace(0.0, 1.0, _EVEN + 1)
     first = jnp.minimum(0.25 * heights.rms, contact.yield_overlap)
-    first = jnp.minimum(first, span)
-    ratio = jnp.where(first > 0.0, span / jnp.where(first > 0.0, first, 1.0), 1.0)
-    ladder = first * ratio ** (np.arange(_STEPS) / _STEPS)
-    ends = [even, ladder, jnp.stack([jnp.zeros(()), *contact.kinks])]
+    steps = ladder(jnp.minimum(first, span), span, _STEPS)
+    ends = [even, steps, jnp.stack([jnp.zeros(()), *contact.kinks])]
     return jnp.sort(jnp.clip(jnp.concatenate(ends), 0.0, span))

@@ -67,32 +67,21 @@ class Jkr(OnlyBonded):
         w, r, e = self.work_of_adhesion, self.radius, self.modulus
         return jnp.cbrt(2.0 * pi * w * r**2 / e)
 
-    def bonded_force(self, gap: jax.Array) -> jax.Array:
-        parts = self.response(gap, jnp.asarray(True))
-        return parts["elastic"] + parts["adhesion"]
+    def bonded_response(self, gap: jax.Array) -> dict[str, jax.Array]:
+        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy.
 
-    def bonded_energy(self, gap: jax.Array) -> jax.Array:
-        """Elastic energy of both stress fields less the work of adhesion of the disc.
-
+        The elastic energy of both stress fields less the work of adhesion of the disc:
         E* a (overlap_1^2 - (2/3) a^2 overlap_1/R + a^4/(5 R^2)) - pi a^2 w, overlap_1 the
-        overlap: the energy of a flat punch pressed through overlap_1 - a^2/R after the
+        overlap. It is that of a flat punch pressed through overlap_1 - a^2/R after the
         paraboloid touched over a (Johnson 1985, section 5.5).
         """
-        return self.response(gap, jnp.asarray(True))["energy"]
-
-    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy."""
         a = self.contact_radius(gap)
         elastic = 4.0 / 3.0 * self.modulus * a**3 / self.radius
         pull = -jnp.sqrt(8.0 * pi * self.work_of_adhesion * self.modulus * a**3)
         depth, rise = -gap, a**2 / self.radius
         stored = self.modulus * a * (depth**2 - 2.0 / 3.0 * depth * rise + rise**2 / 5.0)
-        stored = stored - pi * a**2 * self.work_of_adhesion
-        return {
-            "elastic": jnp.where(bonded, elastic, 0.0),
-            "adhesion": jnp.where(bonded, pull, 0.0),
-            "energy": jnp.where(bonded, stored, 0.0),
-        }
+        energy = stored - pi * a**2 * self.work_of_adhesion
+        return {"elastic": elastic, "adhesion": pull, "energy": energy}
 
 
 _FOLD = 2.0 ** (-2.0 / 3.0)  # where d(u^4 - u)/du = 0

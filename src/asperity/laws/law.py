@@ -188,6 +188,10 @@ class Law(eqx.Module):
 class OnlyBonded(Law):
     """A law whose free branch is nothing at all: what its forces are, it is by its bond."""
 
+    @abc.abstractmethod
+    def bonded_response(self, gap: jax.Array) -> dict[str, jax.Array]:
+        """The bonded branch at a gap, as :meth:`response`."""
+
     @property
     def hysteretic(self) -> bool:
         return True
@@ -201,6 +205,17 @@ class OnlyBonded(Law):
 
     def energy(self, gap: jax.Array) -> jax.Array:
         return jnp.zeros_like(gap)
+
+    def bonded_force(self, gap: jax.Array) -> jax.Array:
+        parts = self.bonded_response(gap)
+        return sum((parts[name] for name in sorted(self.counts)), jnp.zeros_like(gap))
+
+    def bonded_energy(self, gap: jax.Array) -> jax.Array:
+        return self.bonded_response(gap)["energy"]
+
+    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
+        held = self.bonded_response(gap)
+        return {name: jnp.where(bonded, value, 0.0) for name, value in held.items()}
 
 
 class Sum(Law):

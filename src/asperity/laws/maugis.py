@@ -76,26 +76,17 @@ class Maugis(OnlyBonded):
         w, r, e = self.work_of_adhesion, self.radius, self.modulus
         return jnp.cbrt((0.75 * pi * w / e) ** 2 * r)
 
-    @property
-    def _pull(self) -> jax.Array:
-        """Unit of force [N]."""
-        return pi * self.work_of_adhesion * self.radius
+    def bonded_response(self, gap: jax.Array) -> dict[str, jax.Array]:
+        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy.
 
-    def bonded_force(self, gap: jax.Array) -> jax.Array:
-        elastic, pull, _ = _state(-gap / self._depth, self.elasticity)
-        return self._pull * (elastic + pull)
-
-    def bonded_energy(self, gap: jax.Array) -> jax.Array:
-        """Elastic energy and that of the adhesive stress, 0 where bodies begin to attract."""
-        return self._pull * self._depth * _state(-gap / self._depth, self.elasticity)[2]
-
-    def response(self, gap: jax.Array, bonded: jax.Array) -> dict[str, jax.Array]:
-        """Hertz force at this contact radius, the pull of the adhesive stress, and the energy."""
+        The energy, of the bodies and of the adhesive stress, is 0 where they begin to attract.
+        """
         elastic, pull, energy = _state(-gap / self._depth, self.elasticity)
+        unit = pi * self.work_of_adhesion * self.radius
         return {
-            "elastic": jnp.where(bonded, self._pull * elastic, 0.0),
-            "adhesion": jnp.where(bonded, self._pull * pull, 0.0),
-            "energy": jnp.where(bonded, self._pull * self._depth * energy, 0.0),
+            "elastic": unit * elastic,
+            "adhesion": unit * pull,
+            "energy": unit * self._depth * energy,
         }
 
 

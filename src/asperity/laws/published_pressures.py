@@ -116,7 +116,8 @@ class PublishedPressure(eqx.Module):
     def contact(self, separation: jax.Array) -> jax.Array:
         """Pressure of elastic contact, positive apart: eq. 16 per area."""
         scale = 4.0 / 3.0 * self.density * jnp.sqrt(self.radius) * self.rms_height**1.5
-        return self._inside(separation, self.modulus * scale * self._contact(separation))
+        share = self.functions.contact(separation / self.rms_height)
+        return self._inside(separation, self.modulus * scale * share)
 
     def adhesion(self, separation: jax.Array) -> jax.Array:
         """Dry adhesion, a pull being positive: eq. 9 per area."""
@@ -154,9 +155,6 @@ class PublishedPressure(eqx.Module):
         """Asperities that touch [1/m^2], eq. 8 with the exact F_0."""
         share = height_integral(0.0, separation / self.rms_height)
         return self._inside(separation, self.density * share)
-
-    def _contact(self, separation: jax.Array) -> jax.Array:
-        return self.functions.contact(separation / self.rms_height)
 
     def _touching(self, separation: jax.Array) -> jax.Array:
         return self.functions.touching(separation / self.rms_height)

@@ -26,6 +26,7 @@ DIMENSIONS: dict[str, tuple[float, float]] = {
 _SLOPE = 1e-7  # relative difference of the force and the slope of the energy
 _WORK = 1e-4  # of the work between two gaps: a root's kink is integrated no closer
 _FAR = 1e6  # times the largest length of a law
+_OTHER_UNITS = 7.0, 3.0  # by which the numbers of a length and of a force grow in other units
 _NODES, _WEIGHTS = (np.asarray(a) for a in np.polynomial.legendre.leggauss(16))
 
 Curve = Callable[[jax.Array], jax.Array]
@@ -45,7 +46,6 @@ def check_law(
     *,
     gaps: Sequence[float] | None = None,
     dimensions: Mapping[str, tuple[float, float]] | None = None,
-    unit_scale: tuple[float, float] = (7.0, 3.0),
 ) -> None:
     """Prove that a law is one: energies, branches, units, and that it can be traced.
 
@@ -60,9 +60,6 @@ def check_law(
         Powers of (length, force) of each of the law's values, such as
         ``{"stiffness": (-1, 1)}``; (0, 0) for a pure number. Names in :data:`DIMENSIONS`
         need none.
-    unit_scale
-        Factors by which the numbers of a length and of a force grow in the other units in
-        which the law is computed again.
 
     Raises
     ------
@@ -92,7 +89,7 @@ def check_law(
         _check_losses(part, places)
         _check_response(part, places)
         _check_powers(part, places)
-        _check_units(part, places, known, unit_scale)
+        _check_units(part, places, known)
 
 
 def _name(law: Law) -> str:
@@ -345,10 +342,9 @@ def _check_units(
     law: Law,
     gaps: np.ndarray,
     dimensions: Mapping[str, tuple[float, float]],
-    unit_scale: tuple[float, float],
 ) -> None:
     """The law in other units of length and force is the same law."""
-    per_length, per_force = unit_scale
+    per_length, per_force = _OTHER_UNITS
     changed = {}
     for name, value in _values(law).items():
         if name not in dimensions:

@@ -12,11 +12,17 @@ from .._jax import jax, jnp
 NODES = 16
 """Coefficients of each polynomial."""
 
-ANTIDERIVATIVE = np.array([chebyshev.chebint(row) for row in np.eye(NODES)]).T
+ANTIDERIVATIVE = chebyshev.chebint(np.eye(NODES))
 """From coefficients to those of the integral over x."""
 
-DERIVATIVE = np.array([chebyshev.chebder(row) for row in np.eye(NODES)]).T
+DERIVATIVE = chebyshev.chebder(np.eye(NODES))
 """From coefficients to those of the derivative with x, one fewer."""
+
+
+def points_between(nodes: int) -> np.ndarray:
+    """So many Chebyshev points between 0 and 1."""
+    points: np.ndarray = 0.5 * (1.0 + chebyshev.chebpts1(nodes))
+    return points
 
 
 def from_points(nodes: int) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from scipy.interpolate import BSpline
 from scipy.special import roots_jacobi
 
 
@@ -39,14 +40,8 @@ def _kernel(order: float, derivative: int, nodes: int) -> np.ndarray:
 
 def _spline(y: np.ndarray, derivative: int = 0) -> np.ndarray:
     """Cubic B-spline of unit area on [-2, 2], or its first or second derivative."""
-    a = np.abs(y)
-    rest = 2.0 - a
-    inner, outer = (
-        (2.0 / 3.0 - a**2 + 0.5 * a**3, rest**3 / 6.0),
-        (np.sign(y) * (1.5 * a**2 - 2.0 * a), -np.sign(y) * 0.5 * rest**2),
-        (3.0 * a - 2.0, rest),
-    )[derivative]
-    return np.where(a < 1.0, inner, np.where(a < 2.0, outer, 0.0))
+    spline = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
+    return np.nan_to_num(spline(y, derivative))
 
 
 @cache

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from math import exp, sqrt
+from math import cos, exp, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +24,7 @@ from ..model import build
 from ..numerics.compilation import Program, kept
 from ..results.result import Result
 from ..solver import solve
+from .comparison import rows_of
 from .parameter_estimation import WITHIN, Unknowns
 from .published_tables import Entry, read_tables
 
@@ -221,6 +222,10 @@ class Evidence:
         """Kelvin radius [m] of the case's liquid at a relative humidity below 1."""
         return _kelvin_radius(self.inputs, humidity)
 
+    def interaction_range(self, humidity: float) -> float:
+        """Gap [m] at which its menisci end at such a humidity."""
+        return 2.0 * self.kelvin_radius(humidity) * cos(self.inputs.contact_angle)
+
 
 def _kelvin_radius(inputs: Inputs, humidity: float) -> float:
     liquid, temperature = inputs.liquid, inputs.liquid_temperature
@@ -253,14 +258,10 @@ def _printed_off(stop: threading.Event) -> dict[str, float]:
     worst = dict.fromkeys(WITHIN, 0.0)
     for entry in read_tables():
         motion = solve(entry.within(case), name=entry.name, stop=stop, critical=False)
-        found = {
-            "log_decrement": first(motion.measures["log_decrement"]),
-            "time_to_rest": motion.measures["time_to_rest"] or np.nan,
-        }
-        for name, value in found.items():
-            published = entry.values[name]
-            assert published is not None
-            worst[name] = max(worst[name], abs(value / published - 1.0))
+        for row in rows_of(entry, motion):
+            name, off = row["quantity"], row["relative_difference"]
+            if name in WITHIN and off is not None:
+                worst[name] = max(worst[name], abs(off))
     return worst
 
 

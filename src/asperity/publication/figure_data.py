@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
+
+Columns = tuple[np.ndarray, ...]
 
 
 class Drawing(NamedTuple):
@@ -27,7 +30,7 @@ class Drawing(NamedTuple):
 
     title: str
     columns: tuple[str, ...]
-    series: Mapping[str, tuple[np.ndarray, ...]]
+    series: Mapping[str, Columns]
     about: Mapping[str, float]
 
     def csv(self) -> bytes:
@@ -42,3 +45,16 @@ class Drawing(NamedTuple):
             rows = np.column_stack([np.asarray(values, dtype=float) for values in arrays])
             writer.writerows((name, *(f"{value:.9g}" for value in row)) for row in rows)
         return store.getvalue().encode()
+
+
+def map_columns(heights: np.ndarray, steps: Sequence[float]) -> Columns:
+    """Place x and y [m] of each pixel of a map, by its steps along x and y, and its height."""
+    places = (np.arange(n) * step for n, step in zip(heights.shape, steps[::-1], strict=True))
+    y, x = np.meshgrid(*places, indexing="ij")
+    return x.ravel(), y.ravel(), heights.ravel()
+
+
+def gaussian(low: float, high: float, rms: float) -> Columns:
+    """Heights [m] from one to another, and the density [1/m] of a Gaussian of this rms there."""
+    fine = np.linspace(low, high, 301)
+    return fine, np.exp(-0.5 * (fine / rms) ** 2) / (rms * sqrt(2.0 * pi))

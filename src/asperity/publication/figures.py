@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, pi, sin, sqrt
+from functools import partial
+from math import pi, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,12 +13,10 @@ from .. import regimes
 from ..results.result import Result
 from ..surfaces.generation.synthetic import gaussian_surface, length_for_density, summits
 from .evidence import Evidence
-from .figure_data import Drawing
+from .figure_data import Columns, Drawing, gaussian, map_columns
 
 if TYPE_CHECKING:
     from ..surfaces.measured_surface import Pair
-
-Columns = tuple[np.ndarray, ...]
 
 _SEED = 2014
 _SHOWN_HUMIDITY = 0.6
@@ -45,8 +44,8 @@ def drawings(evidence: Evidence, measured: Pair | None = None) -> dict[str, Draw
         "figure-6": _conjunction,
         "figure-7a": _wet_and_dry,
         "figure-7b": _forces,
-        "figure-8": _by_radius,
-        "figure-9": _by_height,
+        "figure-8": partial(_by_table, table=2, title="Figure 8: asperity radius and the motion"),
+        "figure-9": partial(_by_table, table=3, title="Figure 9: rms height and the motion"),
     }
     drawn = {name: make(evidence) for name, make in makers.items()}
     if measured is not None:
@@ -89,12 +88,10 @@ def _surface(evidence: Evidence) -> tuple[np.ndarray, float]:
 def _heights(evidence: Evidence) -> Drawing:
     heights, spacing = _surface(evidence)
     rows, columns = 90, 150
-    y, x = np.meshgrid(np.arange(rows) * spacing, np.arange(columns) * spacing, indexing="ij")
-    piece = heights[:rows, :columns]
     return Drawing(
         "Figure 2: heights of a synthetic composite surface (measured ones with --surfaces)",
         ("x [m]", "y [m]", "height [m]"),
-        {"composite": (x.ravel(), y.ravel(), piece.ravel())},
+        {"composite": map_columns(heights[:rows, :columns], (spacing, spacing))},
         {"rows": rows, "columns": columns, "rms height [m]": float(heights.std())},
     )
 
@@ -109,8 +106,7 @@ def _distribution(evidence: Evidence) -> Drawing:
         name: (middle, np.histogram(values, edges, density=True)[0])
         for name, values in (("surface", heights.ravel()), ("summits", tops))
     }
-    fine = np.linspace(edges[0], edges[-1], 301)
-    series["Gaussian"] = (fine, np.exp(-0.5 * (fine / rms) ** 2) / (rms * sqrt(2.0 * pi)))
+    series["Gaussian"] = gaussian(edges[0], edges[-1], rms)
     return Drawing(
         "Figure 3: heights of the synthetic composite surface and of its summits (measured ones "
         "with --surfaces)",
@@ -150,7 +146,7 @@ def _meniscus(evidence: Evidence) -> Drawing:
     rough, angle = evidence.rough, evidence.inputs.contact_angle
     radius, flat = rough.asperity_radius, float(evidence.contact.pressure.end)
     kelvin = evidence.kelvin_radius(_SHOWN_HUMIDITY)
-    interaction_range = 2.0 * kelvin * cos(angle)
+    interaction_range = evidence.interaction_range(_SHOWN_HUMIDITY)
     gap = 0.3 * interaction_range
     # The parabola meets the filled height where its own rise has used up the rest of the range.
     filled = sqrt(2.0 * radius * (interaction_range - gap))
@@ -233,14 +229,6 @@ def _forces(evidence: Evidence) -> Drawing:
         {"wet": (time, *(np.insert(wet.forces[name], after, forces[name]) for name in names))},
         {"first closest approach [s]": float(wet.events["closest_approach_time"][0])},
     )
-
-
-def _by_radius(evidence: Evidence) -> Drawing:
-    return _by_table(evidence, 2, "Figure 8: asperity radius and the motion")
-
-
-def _by_height(evidence: Evidence) -> Drawing:
-    return _by_table(evidence, 3, "Figure 9: rms height and the motion")
 
 
 def _by_table(evidence: Evidence, table: int, title: str) -> Drawing:

@@ -24,8 +24,6 @@ from .published_tables import Entry
 WITHIN = {"log_decrement": 0.03, "time_to_rest": 0.05}
 """Relative difference up to which a published number counts as met."""
 
-UNKNOWN = ("conjunction_ends", "release_separation", "capillary_factor")
-
 _IMPACTS = 96
 """A motion of more impacts counts as one that does not rest."""
 
@@ -113,8 +111,8 @@ def refit(
     case: Case,
     entries: Sequence[Entry],
     *,
-    report: Callable[[float, str], None] | None = None,
-    stop: threading.Event | None = None,
+    report: Callable[[float, str], None],
+    stop: threading.Event,
 ) -> Refit | None:
     """Least squares of relative differences over decrements and stiction times.
 
@@ -131,12 +129,11 @@ def refit(
     -------
     None where fewer than three numbers are there, or where it was stopped.
     """
-    report = report or (lambda fraction, text: None)
     problem = _Problem(case, entries)
-    if len(problem.targets) < len(UNKNOWN):
+    if len(problem.targets) < len(Unknowns._fields):
         return None
     first = problem.start(Unknowns.of(case))
-    if stop is not None and stop.is_set():
+    if stop.is_set():
         return None
     report(0.1, "two inputs at each end of the conjunction")
     inner = [edge for edge in reversed(_EDGES) if edge <= first[0]]
@@ -144,7 +141,7 @@ def refit(
     with ThreadPoolExecutor(2) as pool:
         both = list(pool.map(lambda edges: _chain(problem, first, edges, stop), (inner, outer)))
     found = sorted([*both[0], *both[1]], key=lambda x: x[0])
-    if stop is not None and stop.is_set():
+    if stop.is_set():
         return None
     report(0.7, "all three inputs")
     best = min([first, *found], key=problem.rms)
@@ -155,12 +152,12 @@ def refit(
 
 
 def _chain(
-    problem: _Problem, first: np.ndarray, edges: list[float], stop: threading.Event | None
+    problem: _Problem, first: np.ndarray, edges: list[float], stop: threading.Event
 ) -> list[np.ndarray]:
     """Fits for ends of the conjunction one after the other, each a guess for the next."""
     found: list[np.ndarray] = []
     for edge in edges:
-        if stop is not None and stop.is_set():
+        if stop.is_set():
             break
         near = found[-1] if found else first
         # The pull at the edge falls with its pressure, by some e^-3.7 per rms height.

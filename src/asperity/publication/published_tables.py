@@ -7,34 +7,41 @@ import importlib.resources
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
+from typing import NamedTuple
 
 from ..config import Case
 from ..errors import InputError
 from ..units import shown
 
-QUANTITIES = ("log_decrement", "time_to_rest", "power_loss")
-"""What the tables hold of each case."""
+
+class Quantity(NamedTuple):
+    """What the tables hold of each case: its column, its name in words, its SI unit."""
+
+    column: str
+    words: str
+    unit: str
+
+
+QUANTITIES = {
+    "log_decrement": Quantity("log_decrement", "decrement", ""),
+    "time_to_rest": Quantity("time_to_rest_us", "stiction time", "s"),
+    "power_loss": Quantity("power_loss_1e-4_nW", "power loss", "W"),
+}
 
 SIZE_LIMIT = 1 << 20
 """Largest size of a file of tables [bytes]."""
 
 _COLUMNS = {
-    "asperity_radius_nm": -9,
-    "rms_height_nm": -9,
-    "time_to_rest_us": -6,
-    "power_loss_1e-4_nW": -13,
-    "log_decrement": 0,
+    "asperity_radius_nm": (-9, 1e-3, 1e6),
+    "rms_height_nm": (-9, 1e-3, 1e6),
+    "time_to_rest_us": (-6, 1e-6, 1e12),
+    "power_loss_1e-4_nW": (-13, 1e-12, 1e12),
+    "log_decrement": (0, 1e-9, 1e3),
 }
-"""Power of ten of each column's unit in SI."""
+"""Of each column the power of ten of its unit in SI, and its smallest and largest value.
 
-_RANGE = {
-    "asperity_radius_nm": (1e-3, 1e6),
-    "rms_height_nm": (1e-3, 1e6),
-    "time_to_rest_us": (1e-6, 1e12),
-    "power_loss_1e-4_nW": (1e-12, 1e12),
-    "log_decrement": (1e-9, 1e3),
-}
-"""Smallest and largest value of each, both allowed: wide, but nothing overflows."""
+Both are allowed. The range is wide, but nothing overflows.
+"""
 
 _KEYS = ("asperity_radius_nm", "rms_height_nm")
 """Columns that no row can do without."""
@@ -148,33 +155,29 @@ def _entries(text: str, file: str) -> list[Entry]:
 
 def _entry(row: dict[str, str], place: str, file: str) -> Entry:
     found = {name: _value(row, name, place, file) for name in _COLUMNS}
-    table = row.get("table", "").strip()
+    table = row["table"].strip()
     if not (table.isdecimal() and len(table) < 10):
         raise InputError(f"{place}: `table` must be a whole number; got {shown(table)}", file=file)
     radius, height = found["asperity_radius_nm"], found["rms_height_nm"]
     assert radius is not None
     assert height is not None
-    values = {
-        "log_decrement": found["log_decrement"],
-        "time_to_rest": found["time_to_rest_us"],
-        "power_loss": found["power_loss_1e-4_nW"],
-    }
+    values = {name: found[quantity.column] for name, quantity in QUANTITIES.items()}
     return Entry(int(table), radius, height, values)
 
 
 def _value(row: dict[str, str], name: str, place: str, file: str) -> float | None:
     """A value in SI; None where it is left empty and may be."""
-    text = row.get(name, "").strip()
+    text = row[name].strip()
     if not text and name not in _KEYS:
         return None
     try:
         value = Decimal(text if len(text) <= _LONGEST else "NaN")
     except InvalidOperation:
         value = Decimal("NaN")
-    low, high = _RANGE[name]
+    power, low, high = _COLUMNS[name]
     if not (value.is_finite() and low <= value <= high):
         raise InputError(
             f"{place}: `{name}` must be a number in [{low:g}, {high:g}]; got {shown(text)}",
             file=file,
         )
-    return float(value.scaleb(_COLUMNS[name]))
+    return float(value.scaleb(power))

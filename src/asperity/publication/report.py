@@ -6,23 +6,15 @@ import csv
 import io
 import json
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable
 from math import degrees
 from typing import Any
 
 from ..results.summary import WIDTH, amount
+from .audit import Claim
+from .published_tables import QUANTITIES
 from .reproduce import Reproduction
 
-_UNITS = {"log_decrement": "", "time_to_rest": "s", "power_loss": "W"}
-_NAMES = {
-    "log_decrement": "decrement",
-    "time_to_rest": "stiction time",
-    "power_loss": "power loss",
-}
-_ROWS = (
-    "table", "asperity_radius", "rms_height", "quantity", "published", "computed",
-    "relative_difference",
-)  # fmt: skip
 _BALANCES = (
     "over_first_impact", "over_whole_drop", "over_mean_of_impacts", "over_mean_of_large_impacts",
 )  # fmt: skip
@@ -48,9 +40,9 @@ def whole(done: Reproduction) -> str:
 def files(done: Reproduction) -> dict[str, bytes]:
     """The tables, the audit and both together, by file name."""
     return {
-        "tables.csv": _csv(_ROWS, done.rows),
-        "table-1.csv": _csv(("quantity", "unit", "published", "used"), done.table_1),
-        "audit.csv": _csv(("claim", "published", "found", "verdict"), done.audit),
+        "tables.csv": _csv(done.rows[0], done.rows),
+        "table-1.csv": _csv(done.table_1[0], done.table_1),
+        "audit.csv": _csv(Claim._fields, done.audit),
         "reproduction.json": json.dumps(
             done.json_object(), allow_nan=False, indent=1, ensure_ascii=False
         ).encode(),
@@ -58,7 +50,7 @@ def files(done: Reproduction) -> dict[str, bytes]:
     }
 
 
-def _csv(columns: Sequence[str], rows: Iterable[dict[str, Any]]) -> bytes:
+def _csv(columns: Collection[str], rows: Iterable[dict[str, Any]]) -> bytes:
     store = io.StringIO()
     writer = csv.DictWriter(store, columns, lineterminator="\n")
     writer.writeheader()
@@ -78,7 +70,7 @@ def _tables(done: Reproduction) -> list[str]:
         lines += [
             f"Table {table}: published / computed (power loss: mean of eq. 23 over all impacts)"
         ]
-        lines.append(_line(("beta", "sigma"), _NAMES.values()))
+        lines.append(_line(("beta", "sigma"), (q.words for q in QUANTITIES.values())))
         rows = [row for row in done.rows if row["table"] == table]
         surfaces = dict.fromkeys((row["asperity_radius"], row["rms_height"]) for row in rows)
         for surface in surfaces:
@@ -102,7 +94,7 @@ def _line(left: Iterable[str], cells: Iterable[str]) -> str:
 
 
 def _pair(row: dict[str, Any]) -> str:
-    unit = _UNITS[row["quantity"]]
+    unit = QUANTITIES[row["quantity"]].unit
     published, computed = (amount(row[side], unit) for side in ("published", "computed"))
     # The unit once where both have the same.
     number, _, prefixed = published.partition(" ")

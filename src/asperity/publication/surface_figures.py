@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
-
 import numpy as np
 
 from ..surfaces.description.convolution import HeightDistribution
 from ..surfaces.measured_surface import Pair
-from .figure_data import Drawing
+from .figure_data import Columns, Drawing, gaussian, map_columns
 
 _FINEST = 150
 """Pixels a side that Figure 2 shows and its table holds, of more every second, third and so on."""
@@ -25,11 +23,10 @@ def heights(found: Pair) -> Drawing:
     shown = surface.heights[::every, ::every]
     steps = [every * step for step in surface.pixel_size]
     rows, columns = shown.shape
-    y, x = np.meshgrid(np.arange(rows) * steps[1], np.arange(columns) * steps[0], indexing="ij")
     return Drawing(
         f"Figure 2: heights of {found.name}, {found.composite.how}",
         ("x [m]", "y [m]", "height [m]"),
-        {found.name: (x.ravel(), y.ravel(), shown.ravel())},
+        {found.name: map_columns(shown, steps)},
         {"rows": rows, "columns": columns, "pixels left out between two": every - 1,
          "rms height [m]": surface.rms_height},
     )  # fmt: skip
@@ -43,7 +40,7 @@ def distribution(found: Pair) -> Drawing:
     half_width = _REACH * shape.rms
     edges = np.linspace(max(low, -half_width), min(high, half_width), _BINS + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    series = {found.name: (middle, in_bins(both, edges))}
+    series: dict[str, Columns] = {found.name: (middle, in_bins(both, edges))}
     about = {
         "rms height [m]": shape.rms,
         "skewness [-]": shape.skewness,
@@ -53,10 +50,7 @@ def distribution(found: Pair) -> Drawing:
     if peaks is not None:
         series["summits"] = (middle, in_bins(peaks, edges))
         about["summits' rms [m]"] = peaks.rms
-    fine = np.linspace(edges[0], edges[-1], 301)
-    series["Gaussian"] = (
-        fine, np.exp(-0.5 * (fine / shape.rms) ** 2) / (shape.rms * sqrt(2.0 * pi))
-    )  # fmt: skip
+    series["Gaussian"] = gaussian(edges[0], edges[-1], shape.rms)
     return Drawing(
         f"Figure 3: heights of {found.name} by convolution of their distributions, each about "
         "its mean, against the Gaussian",

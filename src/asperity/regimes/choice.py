@@ -86,7 +86,6 @@ def choose_adhesion(tabor: float) -> AdhesionChoice:
         Tabor number of one asperity, or of the smooth body; positive.
     """
     elasticity = ELASTICITY_PER_TABOR * tabor
-    near = tuple(border for border in _BORDERS if _is_near(elasticity, border))
     if elasticity < RIGID_BELOW:
         law, why = "bradley", "the pull does not compress the tip"
         rule = f"elasticity parameter {elasticity:.3g} < {RIGID_BELOW:.3g}"
@@ -100,12 +99,12 @@ def choose_adhesion(tabor: float) -> AdhesionChoice:
     else:
         law, why = "jkr", "adhesion bends the contact over far more than its range"
         rule = f"Tabor number {tabor:.3g} > {JKR_ABOVE:g}"
-    warnings = tuple(_near(elasticity, border, law) for border in near)
+    warnings = tuple(
+        _near(elasticity, border, law)
+        for border in _BORDERS
+        if 1.0 / BORDER_FACTOR <= elasticity / border.elasticity <= BORDER_FACTOR
+    )
     return AdhesionChoice(law, f"{rule}: {why}", warnings)
-
-
-def _is_near(elasticity: float, border: _Border) -> bool:
-    return 1.0 / BORDER_FACTOR <= elasticity / border.elasticity <= BORDER_FACTOR
 
 
 def _near(elasticity: float, border: _Border, law: str) -> str:

@@ -61,19 +61,22 @@ def domain_warnings(problem: Problem, elastic: float, central: float, motion: Mo
     return [
         *([] if rough is None else _asperities(inputs, rough, central)),
         *_shape(inputs, contact_radius(problem, elastic, central), motion),
-        *([] if moves else _pressed(inputs, elastic)),
         *(_waves(inputs, speed) if moves else []),
-        *(_yields(inputs, speed) if moves else []),
+        *_yields(inputs, elastic, speed if moves else None),
     ]
 
 
-def contact_radius(problem: Problem, elastic: float, central: float) -> float:
+def contact_radius(
+    problem: Problem, elastic: float, central: float, highest: float | None = None
+) -> float:
     """Radius [m] of the whole contact: of Hertz's, or of where the highest asperities touch.
 
     Parameters
     ----------
     problem, elastic, central
         As for :func:`domain_warnings`.
+    highest
+        Height [m] of the highest asperity; without it 3 rms heights above their mean.
     """
     inputs = problem.inputs
     radius, rough = inputs.radius, inputs.asperities
@@ -81,7 +84,9 @@ def contact_radius(problem: Problem, elastic: float, central: float) -> float:
     hertz = float(np.cbrt(0.75 * max(elastic, 0.0) * radius / (relaxed * inputs.modulus)))
     if rough is None:
         return hertz
-    rise = max(rough.mean_height + _EDGE * rough.rms_height - central, 0.0)
+    if highest is None:
+        highest = rough.mean_height + _EDGE * rough.rms_height
+    rise = max(highest - central, 0.0)
     bulk = 0.0 if inputs.structure.deformation == "rigid" else hertz
     return max(sqrt(2.0 * radius * rise), bulk)
 
@@ -205,39 +210,21 @@ def first_yield_load(pressure: float, modulus: float, radius: float) -> float:
     return pi**3 * pressure**3 * radius**2 / (6.0 * modulus**2)
 
 
-def _elastic_strength(inputs: Inputs) -> float | None:
-    """Pressure [Pa] at which a smooth body yields in an elastic model; None where unknown."""
+def _yields(inputs: Inputs, elastic: float, speed: float | None) -> list[str]:
+    """A smooth body that would yield in an elastic model: by its speed, or at rest by its load."""
     if inputs.asperities is not None or inputs.yields or inputs.yielding is None:
-        return None
-    return inputs.yielding.yield_pressure
-
-
-def _pressed(inputs: Inputs, elastic: float) -> list[str]:
-    """A smooth body that a load would make yield, in an elastic model."""
-    pressure = _elastic_strength(inputs)
-    if pressure is None:
         return []
-    first = first_yield_load(pressure, inputs.modulus, inputs.radius)
-    if elastic <= first:
-        return []
-    return [
-        f"the elastic force is {elastic:.3g} N, {elastic / first:.3g} times the load at which a "
-        f"smooth body first yields ({first:.3g} N), and this model is elastic: [plasticity] "
-        "lets it yield"
-    ]
-
-
-def _yields(inputs: Inputs, speed: float) -> list[str]:
-    """A smooth body that would yield, in an elastic model."""
-    pressure = _elastic_strength(inputs)
-    if pressure is None:
-        return []
-    assert inputs.body.density is not None
-    first = first_yield_speed(pressure, inputs.modulus, inputs.body.density)
-    if speed <= first:
+    pressure, modulus = inputs.yielding.yield_pressure, inputs.modulus
+    if speed is None:
+        found, what, unit, told = elastic, "load", "N", "the elastic force is"
+        first = first_yield_load(pressure, modulus, inputs.radius)
+    else:
+        assert inputs.body.density is not None
+        found, what, unit, told = speed, "speed", "m/s", "the body comes in at"
+        first = first_yield_speed(pressure, modulus, inputs.body.density)
+    if found <= first:
         return []
     return [
-        f"the body comes in at {speed:.3g} m/s, {speed / first:.3g} times the speed at which a "
-        f"smooth body first yields ({first:.3g} m/s), and this model is elastic: [plasticity] lets "
-        "it yield"
+        f"{told} {found:.3g} {unit}, {found / first:.3g} times the {what} at which a smooth body "
+        f"first yields ({first:.3g} {unit}), and this model is elastic: [plasticity] lets it yield"
     ]

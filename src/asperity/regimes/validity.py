@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact import Contact
 from ..dynamics import Motion
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, read_row
 from ..dynamics.problem import Problem
@@ -19,7 +18,7 @@ from . import DMT_BELOW, JKR_ABOVE, LAW_NAMES, Regime, choose_adhesion, tabor_nu
 from .accuracy import fall_warnings, ledger_warnings, ring_warnings
 from .ambient import gas_warnings, liquid_warnings
 from .few_asperities import few_warnings
-from .model_domain import covered_share, domain_warnings
+from .model_domain import contact_radius, covered_share, domain_warnings
 from .plastic_validity import yielded
 from .wave_limits import wave_warnings
 
@@ -51,13 +50,13 @@ class AtDepth(NamedTuple):
     central: float
 
     @classmethod
-    def of(cls, contact: Contact, motion: Motion, trajectory: Trajectory | None = None) -> AtDepth:
+    def of(cls, motion: Motion, trajectory: Trajectory | None = None) -> AtDepth:
         """Read off the curve of first approach, or off a motion that was stepped in time."""
         deepest = float(motion.impacts.closest_approach[0])
         if trajectory is None:
             row = read_row(motion.table, 0, deepest)
         else:
-            row = trajectory.series.rows[np.argmin(np.abs(trajectory.series.separation - deepest))]
+            row = trajectory.rows[np.argmin(np.abs(trajectory.separation - deepest))]
         elastic = row[FORCE] - row[ATTRACTION]
         return cls(float(row[CONTACTING]), float(elastic), float(row[CENTRAL]))
 
@@ -139,17 +138,12 @@ def check_surface(problem: Problem, at_depth: AtDepth) -> None:
     InputError
         If it is.
     """
-    inputs = problem.inputs
-    rough, radius = inputs.asperities, inputs.radius
+    rough = problem.inputs.asperities
     if rough is None or rough.surface is None or rough.summits is None:
         return
-    rise = max(float(rough.summits.heights.max()) - at_depth.central, 0.0)
-    hertz = 0.0
-    if inputs.structure.deformation != "rigid":
-        relaxed = 1.0 if problem.relaxation is None else float(problem.relaxation.ratio)
-        modulus = relaxed * inputs.modulus
-        hertz = np.cbrt(0.75 * max(at_depth.elastic, 0.0) * radius / modulus)
-    width, side = 2.0 * max(np.sqrt(2.0 * radius * rise), hertz), min(rough.surface.physical_size)
+    highest = float(rough.summits.heights.max())
+    width = 2.0 * contact_radius(problem, at_depth.elastic, at_depth.central, highest)
+    side = min(rough.surface.physical_size)
     if width > side:
         raise InputError(
             "`files` must hold surfaces larger than the contact, which is "
@@ -239,7 +233,7 @@ def slow_menisci(
     if trajectory is None:
         series = sample(problem.body, motion.table, motion.impacts)
     else:
-        series = trajectory.series
+        series = trajectory
     force = np.abs(series.rows[:, FORCE])
     there = force > APART * np.abs(motion.impacts.force[0])
     held = series.time[(series.phase < 2) & there]

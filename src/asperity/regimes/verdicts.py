@@ -106,7 +106,7 @@ def verdicts(situation: Situation) -> dict[str, Verdict]:
         "kelvin_radius": _kelvin(situation),
         "kelvin_radius_over_spacing": _over_spacing(situation),
         "kelvin_radius_over_tip_radius": _over_tip(situation),
-        "liquid_regime": _humidity(situation),
+        "liquid_regime": Verdict(regime.liquid_regime, "", regime.liquid_regime_reason),
     }
 
 
@@ -234,8 +234,3 @@ def _over_tip(situation: Situation) -> Verdict:
     else:
         said = "above 1: menisci are wider than their tips, against what their law assumes"
     return Verdict(ratio, "1", said)
-
-
-def _humidity(situation: Situation) -> Verdict:
-    """Dry, isolated or coalesced menisci, or a gap full of liquid."""
-    return Verdict(situation.regime.liquid_regime, "", situation.regime.liquid_regime_reason)

@@ -44,7 +44,7 @@ def assessment_of(name: str, problem: Problem, motion: Motion) -> Assessment:
     motion
         The motion.
     """
-    at_depth = AtDepth.of(problem.contact, motion)
+    at_depth = AtDepth.of(motion)
     check_surface(problem, at_depth)
     regime = regime_of(problem, at_depth)
     inputs = problem.inputs

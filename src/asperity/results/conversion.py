@@ -15,7 +15,7 @@ from ..dynamics.curve_table import CENTRAL, FORCE, STORED, Quantities, Table, qu
 from ..dynamics.problem import Problem
 from ..dynamics.static_equilibrium import Reference, end_of_contact
 from ..dynamics.stepped_series import Trajectory
-from ..dynamics.time_series import Series, ascending, sample, until
+from ..dynamics.time_series import Series, ascending, sample
 from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
@@ -49,9 +49,9 @@ class Solution(NamedTuple):
 
     motion: Motion
     contact: Contact
+    body: Body
     outcome: Outcome
     trajectory: Trajectory | None = None
-    body: Body | None = None
 
 
 def contact_end(table: Table, peak: float) -> float:
@@ -71,9 +71,9 @@ def compile_ahead(motion: Motion, body: Body) -> None:
     _measure.ahead(without_curves(blank), body, passing, first)
 
 
-def measured(solution: Solution, body: Body) -> Measures:
+def measured(solution: Solution) -> Measures:
     """Measures, by programs that serve many kinds of case."""
-    motion, body = solution.motion, solution.body or body
+    motion, body = solution.motion, solution.body
     plain, passing = without_curves(motion), None
     if solution.trajectory is None:
         table, impacts = with_phases(motion, body)
@@ -117,16 +117,17 @@ def _sampled(
     cut = most is not None and most < int(np.sum(impacts.made))
     if cut:
         impacts = jax.tree_util.tree_map(lambda leaf: leaf[:most], impacts)
+    series: Series
     if stepped is not None:
-        kept = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
-        return kept.series, _by_name(contact, body, ascending(kept.lost, _known(motion)))
-    series = until(sample(body, motion.table, impacts), limit)
-    return series, _losses_along(contact, motion, body, series)
+        series = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
+    else:
+        series = sample(body, motion.table, impacts).until(limit)
+    return series, _by_name(contact, body, ascending(series.lost, _known(motion)))
 
 
-def first_restitution(solution: Solution, body: Body) -> float | None:
+def first_restitution(solution: Solution) -> float | None:
     """Restitution of a motion's first impact; None where it has none."""
-    return _number(measured(solution, body).restitution[0])
+    return _number(measured(solution).restitution[0])
 
 
 def beside_mean(problem: Problem, solution: Solution) -> Problem:
@@ -144,7 +145,7 @@ def beside_mean(problem: Problem, solution: Solution) -> Problem:
     inputs = problem.inputs
     if inputs.beside is None:
         return problem
-    at_depth = AtDepth.of(solution.contact, solution.motion, solution.trajectory)
+    at_depth = AtDepth.of(solution.motion, solution.trajectory)
     if not bodies_differ(problem, regime_of(problem, at_depth), solution.motion):
         return problem
     return problem._replace(inputs=inputs.with_bodies())
@@ -176,12 +177,12 @@ def result_of(
     realisations
         First impacts of single bodies, where the case asks for them.
     """
-    problem = problem._replace(body=solution.body or problem.body)
-    motion, body, inputs = solution.motion, problem.body, problem.inputs
+    problem = problem._replace(body=solution.body)
+    motion, body, inputs = solution.motion, solution.body, problem.inputs
     made = int(np.sum(motion.impacts.made))
-    measures = measured(solution, body)
+    measures = measured(solution)
     series, lost = _sampled(problem, solution, most)
-    at_depth = AtDepth.of(solution.contact, motion, solution.trajectory)
+    at_depth = AtDepth.of(motion, solution.trajectory)
     check_surface(problem, at_depth)
     regime = regime_of(problem, at_depth)
     forces, energies = _histories(solution.contact, motion, body, series, lost)
@@ -253,23 +254,6 @@ def _histories(
     return forces, energies
 
 
-def _losses_along(
-    contact: Contact, motion: Motion, body: Body, series: Series
-) -> dict[str, np.ndarray]:
-    """Energy lost by mechanism at every sample: by bonds made and broken until then, and drag."""
-    formation, rupture = np.asarray(motion.table.losses)
-    bonds = series.rows[:, quantities(contact).bonds]
-    impact, rising = series.phase // 2, series.phase % 2 == 1
-    fall, rise = motion.impacts.fall, motion.impacts.rise
-    begun = np.where(rising[:, None], rise.bonds[impact], fall.bonds[impact])
-    lost = np.where(rising[:, None], rise.lost[impact], fall.lost[impact])
-    change = bonds - begun
-    laws = len(contact.mechanisms)
-    lost[:, :laws] += np.maximum(change, 0.0) * formation + np.maximum(-change, 0.0) * rupture
-    lost[:, laws:] += series.dissipated
-    return _by_name(contact, body, ascending(lost, _known(motion)))
-
-
 def _known(motion: Motion) -> float:
     """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
     share = max(2.0 * balance_error(motion), CLOSED)
@@ -277,10 +261,10 @@ def _known(motion: Motion) -> float:
 
 
 def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
-    """Losses by mechanism, those of one name together."""
+    """Losses by mechanism, along the last axis, with those of one name together."""
     out: dict[str, np.ndarray] = {}
     for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
-        out[name] = out.get(name, 0.0) + lost[:, k]
+        out[name] = out.get(name, 0.0) + lost[..., k]
     return out
 
 
@@ -292,10 +276,8 @@ def _zero_height(ground: Reference) -> float:
 
 def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str, Any]:
     """Energy at the release, lost by mechanism, and how well all of it adds up."""
-    lost: dict[str, float] = {}
-    names = (*contact.mechanisms, *body.mechanisms)
-    for name, value in zip(names, motion.impacts.lost[made - 1], strict=True):
-        lost[name] = lost.get(name, 0.0) + float(value)
+    by_name = _by_name(contact, body, np.asarray(motion.impacts.lost[made - 1]))
+    lost = {name: float(energy) for name, energy in by_name.items()}
     zero = _zero_height(motion.reference)
     initial = float(motion.release) - float(body.plain.load.potential_gain(0.0, zero))
     return {"initial": initial, "lost": lost, "energy_balance_error": balance_error(motion)}

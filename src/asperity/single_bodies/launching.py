@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._jax import jax, jnp
-from ..contact.asperity_table import AsperityTable, asperity_table
+from ..contact.asperity_table import Asperities, asperity_table
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
@@ -76,7 +76,7 @@ class SingleBodies:
         every = [one for one in terms(self._laws[0]) if one.hysteretic]
         self.mechanisms = tuple(one.mechanism for one in every)
         self._seed = inputs.placement.seed
-        self._table: tuple[float, AsperityTable] | None = None
+        self._table: tuple[float, Asperities] | None = None
         self._felt = self._range
 
     def impacts(
@@ -118,7 +118,7 @@ class SingleBodies:
 
     def _all(
         self,
-        table: AsperityTable,
+        table: Asperities,
         launches: Launch,
         stop: threading.Event | None,
         *,
@@ -159,7 +159,7 @@ class SingleBodies:
         within = gaps <= max(self._range, gaps[0])
         return {"x": x[within], "y": y[within], "gap": gaps[within]}
 
-    def _tabulated(self, launches: Launch) -> AsperityTable:
+    def _tabulated(self, launches: Launch) -> Asperities:
         """The table of an asperity, deep enough for the energy of such bodies."""
         fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
         energy = _DEEPER * float(np.nanmax(launches.kinetic + launches.weight * np.abs(fall)))
@@ -169,7 +169,7 @@ class SingleBodies:
         return self._table[1]
 
     def _block(
-        self, table: AsperityTable, launches: Launch, number: int, with_pull_off: bool
+        self, table: Asperities, launches: Launch, number: int, with_pull_off: bool
     ) -> SingleImpact:
         """WIDTH bodies, each with as many summits as the one that has most within range."""
         count = self._count

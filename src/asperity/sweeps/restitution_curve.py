@@ -26,7 +26,9 @@ from ..results.assessment import assessment_of
 from ..results.case_source import CaseLike, case_of
 from ..results.conversion import measured
 from ..results.realisations import percent
+from ..results.record_layout import plain
 from ..results.result import drawing
+from ..results.results_folder import RESTITUTION_FILES, write_folder
 from ..results.summary import amount, warning_lines
 from .capture_probability import CaptureProbability, capture_probability
 from .curve_speeds import checked, decades, left_out
@@ -111,13 +113,9 @@ class RestitutionCurve:
 
     def json_object(self) -> dict[str, Any]:
         """Plain values in SI, None where one does not apply."""
-        from asperity.results import records
-
-        held = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        held = dataclasses.asdict(self)
         del held["case"]
-        if self.single_bodies is not None:
-            held["single_bodies"] = dataclasses.asdict(self.single_bodies)
-        found: dict[str, Any] = records.plain(held)
+        found: dict[str, Any] = plain(held)
         return found
 
     def plot(self) -> Figure:
@@ -187,9 +185,7 @@ class RestitutionCurve:
 
     def save(self, directory: str | os.PathLike[str], force: bool = False) -> list[Path]:
         """Write table, pictures and summary, all or none; as `Result.save`."""
-        from asperity.results import records
-
-        return records.write_folder(directory, self.files(), records.RESTITUTION_FILES, force=force)
+        return write_folder(directory, self.files(), RESTITUTION_FILES, force=force)
 
     def _table(self) -> str:
         out = io.StringIO()
@@ -258,7 +254,7 @@ def restitution_curve(
     problem, limits = build(inputs), Limits.of(inputs.tolerance)
     solution = integrate(problem, report, stop, drawn=False)
     about = assessment_of(name, problem._replace(contact=solution.contact), solution.motion)
-    measures = measured(solution, problem.body)
+    measures = measured(solution)
     own = float(measures.impact_speed)  # none where gas stops the body before
     own = own if np.isfinite(own) else float(measures.maximum_speed)
     launcher = Launcher(problem, solution, limits, finer=_FINER, stop=stop)

@@ -133,7 +133,7 @@ def step(relaxation: Relaxation, body: Body, size: Real, here: RingState, span: 
     pressure, _ = bulk.pressed(end.gaps, end.thresholds)
     bonds = bulk.contact.interface.hysteretic if bulk.delayed is None else bulk.delayed.laws
     more = beyond(bulk.contact, bulk.size, end.gaps[-1]) if fills_by_contact(bonds) else 0.0
-    fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), bulk.contact.rings, more)
+    fit = asked_size(Settled(end.gaps, pressure, jnp.zeros(())), more)
     if bulk.delayed is None:
         lost = jnp.append(lost, change.dissipated)
     else:

@@ -71,7 +71,7 @@ class Bulk(NamedTuple):
     @property
     def profile(self) -> jax.Array:
         """Profile of the body at the rings and at the mesh's end [m]."""
-        return profile_of(self.contact, self.size, self.contact.rings)
+        return profile_of(self.contact, self.size)
 
     def pressed(self, gaps: jax.Array, held: Thresholds) -> tuple[jax.Array, jax.Array]:
         """Pressure on the rings [Pa] and the whole force [N]."""

@@ -74,7 +74,7 @@ class RoughBounce:
         self._tolerance = _TRIAL if trial else TOLERANCE
         self._rms = float(base.interface.scale.rms)
         self._interaction_range = float(base.interaction_range)
-        self._profile = np.asarray(_profile_of(base, np.asarray(size, float), base.rings))
+        self._profile = np.asarray(_profile_of(base, np.asarray(size, float)))
         self._rate = float(relaxation.ratio / relaxation.time)
         self._gravity, self._mass = float(body.gravity), float(body.mass)
         self._columns = quantities(base).components.stop

@@ -21,10 +21,8 @@ from ...halfspace.viscoelastic_paraboloid import (
     Phase,
     Solid,
 )
+from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED
 from .sample_times import flight_times
-
-TURNED, LEFT, AT_REST, FAILED = "turned", "left", "at rest", "failed"
-"""How a phase ends: by a turn, at the top, at rest without a turn, not at all."""
 
 _TOLERANCE, _LEAST = 1e-11, 1e-15  # of the integration, relative and absolute
 _STIFF = 0.05  # relaxation time over that of an impact below which explicit steps are too many

@@ -113,17 +113,21 @@ class AdhesiveThorntonNing(eqx.Module):
         curvature = 1.0 / self.radius - 1.0 / self.tip_radius(deepest)
         return self._root(deepest) ** 4 * curvature
 
+    def tip(self, deepest: jax.Array) -> Jkr:
+        """The elastic contact of the tip that unloads from the deepest overlap."""
+        return Jkr(self.tip_radius(deepest), self.modulus, self.work)
+
     def force(self, gap: jax.Array, deepest: jax.Array) -> jax.Array:
         """Force [N] of the bonded contact at a gap [m] not deeper than the deepest overlap."""
-        return self._tip(deepest).bonded_force(gap + self.residual(deepest))
+        return self.tip(deepest).bonded_force(gap + self.residual(deepest))
 
     def energy(self, gap: jax.Array, deepest: jax.Array) -> jax.Array:
         """Energy [J] of the bonded contact that unloading gives back."""
-        return self._tip(deepest).bonded_energy(gap + self.residual(deepest))
+        return self.tip(deepest).bonded_energy(gap + self.residual(deepest))
 
     def breaking_gap(self, deepest: jax.Array) -> jax.Array:
         """Gap [m] at which the bond breaks on unloading."""
-        return self._tip(deepest).breaking_gap - self.residual(deepest)
+        return self.tip(deepest).breaking_gap - self.residual(deepest)
 
     def forming_gap(self, deepest: jax.Array) -> jax.Array:
         """Gap [m] at which the flattened tip touches again and bonds."""
@@ -131,11 +135,11 @@ class AdhesiveThorntonNing(eqx.Module):
 
     def formation_loss(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] lost when the bond forms; at first touch that of a deepest overlap 0."""
-        return self._tip(deepest).formation_loss
+        return self.tip(deepest).formation_loss
 
     def rupture_loss(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] lost when the bond breaks."""
-        return self._tip(deepest).rupture_loss
+        return self.tip(deepest).rupture_loss
 
     def dissipated(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] that plastic flow has taken, 0 until yield."""
@@ -145,9 +149,6 @@ class AdhesiveThorntonNing(eqx.Module):
     @property
     def _virgin(self) -> Jkr:
         return Jkr(self.radius, self.modulus, self.work)
-
-    def _tip(self, deepest: jax.Array) -> Jkr:
-        return Jkr(self.tip_radius(deepest), self.modulus, self.work)
 
     @property
     def _rise(self) -> jax.Array:

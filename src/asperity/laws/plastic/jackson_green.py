@@ -66,10 +66,6 @@ class JacksonGreen(EtsionUnloading):
     def yield_overlap(self) -> jax.Array:
         return self._meeting * self.critical_overlap
 
-    @property
-    def kinks(self) -> tuple[jax.Array, ...]:
-        return (self.yield_overlap,)
-
     def loading_force(self, overlap: jax.Array) -> jax.Array:
         return self._changing_at(self._meeting, overlap)
 

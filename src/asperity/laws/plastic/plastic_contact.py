@@ -54,9 +54,9 @@ class PlasticContact(eqx.Module):
         """Overlap [m] up to which the contact is elastic."""
 
     @property
-    @abc.abstractmethod
     def kinks(self) -> tuple[jax.Array, ...]:
         """Overlaps [m] at which the loading law is not smooth, ascending from the yield's."""
+        return (self.yield_overlap,)
 
     @abc.abstractmethod
     def loading_force(self, overlap: jax.Array) -> jax.Array:
@@ -100,8 +100,7 @@ class PlasticContact(eqx.Module):
     def returned(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] that unloading from ``deepest`` gives back on the whole."""
         deep = jnp.maximum(deepest, self.yield_overlap)
-        span = deep - self.residual(deep)
-        back = self.loading_force(deep) * span / (self.exponent(deep) + 1.0)
+        back = self.recoverable(deep, deep)
         return jnp.where(deepest > self.yield_overlap, back, self.loading_work(deepest))
 
     def dissipated(self, deepest: jax.Array) -> jax.Array:

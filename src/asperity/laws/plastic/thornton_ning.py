@@ -37,10 +37,6 @@ class ThorntonNing(PlasticContact):
     def yield_overlap(self) -> jax.Array:
         return (pi * self.yield_pressure / (2.0 * self.modulus)) ** 2 * self.radius
 
-    @property
-    def kinks(self) -> tuple[jax.Array, ...]:
-        return (self.yield_overlap,)
-
     def loading_force(self, overlap: jax.Array) -> jax.Array:
         x = overlap / self.yield_overlap
         return self._yield_force * jnp.where(x <= 1.0, power(x, 1.5), 1.5 * x - 0.5)

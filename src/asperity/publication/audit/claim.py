@@ -33,11 +33,6 @@ class Claim(NamedTuple):
     verdict: str
 
 
-def either(holds: bool, then: str, otherwise: str) -> str:
-    """A verdict that a number decides."""
-    return then if holds else otherwise
-
-
 def close(found: float, published: float, within: float) -> bool:
     """Whether two numbers agree to a relative difference."""
     return abs(found / published - 1.0) <= within

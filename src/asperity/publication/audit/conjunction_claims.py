@@ -9,34 +9,28 @@ import numpy as np
 from ..._jax import jnp
 from ...results.summary import amount
 from ..evidence import Evidence
-from .claim import AGREES, OUTSIDE, WRONG, Claim, either
+from .claim import AGREES, OUTSIDE, WRONG, Claim
 
 
 def claims(evidence: Evidence) -> list[Claim]:
     """From the forces at lambda' = 3 to the number of asperities."""
     at_edge = evidence.exact_state(3.0 * evidence.rough.rms_height)
-    push, pull = float(at_edge.elastic), _dry_adhesion(evidence)
-    times = push / evidence.weight
+    push, times = float(at_edge.elastic), float(at_edge.elastic) / evidence.weight
+    tip, work = evidence.rough.asperity_radius, evidence.inputs.work_of_adhesion
+    pull = float(at_edge.contacting) * 2.0 * pi * tip * work  # eq. 9
     return [
         Claim("Dry adhesion matters beside contact (eqs. 9, 16)", "-",
               f"{amount(pull, 'N')} against {amount(push, 'N')} at lambda' = 3",
-              either(pull > 0.01 * push, AGREES, WRONG)),
+              AGREES if pull > 0.01 * push else WRONG),
         Claim("The functions virtually diminish at lambda' = 3 (section 3.4)", "0",
               f"by the exact integrals contact carries {amount(push, 'N')} there, {times:.2g} "
               "times the weight",
-              either(times < 1.0, AGREES, WRONG)),
+              AGREES if times < 1.0 else WRONG),
         _pressure(evidence),
         _cylinder(evidence),
         *_deformation(evidence),
         _few(evidence),
     ]  # fmt: skip
-
-
-def _dry_adhesion(evidence: Evidence) -> float:
-    """Pull of all contacting asperities at lambda' = 3 by the exact model [N], eq. 9."""
-    rough = evidence.rough
-    contacting = float(evidence.exact_state(3.0 * rough.rms_height).contacting)
-    return contacting * 2.0 * pi * rough.asperity_radius * evidence.inputs.work_of_adhesion
 
 
 def _pressure(evidence: Evidence) -> Claim:
@@ -64,7 +58,7 @@ def _cylinder(evidence: Evidence) -> Claim:
         "x^2/2R",
         f"that is a cylinder: on the square around the conjunction at closest approach it "
         f"carries {ratio:.2f} times what the sphere does",
-        either(abs(ratio - 1.0) < 0.01, AGREES, WRONG),
+        AGREES if abs(ratio - 1.0) < 0.01 else WRONG,
     )
 
 
@@ -80,7 +74,7 @@ def _deformation(evidence: Evidence) -> list[Claim]:
             f"the motion needs the rigid separation; the pressure of contact moves the surfaces "
             f"by {amount(middle, 'm')} at the axis, {100.0 * middle / depth:.2g} % of the "
             f"{amount(depth, 'm')} past the edge, which the case `published` leaves out",
-            either(middle < 0.01 * depth, AGREES, WRONG),
+            AGREES if middle < 0.01 * depth else WRONG,
         ),
         Claim(
             "The pressures have converged when eq. 22 is met",
@@ -104,5 +98,5 @@ def _few(evidence: Evidence) -> Claim:
         f"{contacting:.2g} asperities of the conjunction touch at closest approach, "
         f"{amount(depth, 'm')} past its edge, and {at_rest:.2g} at rest by the exact model: single "
         f"impacts scatter by {100.0 / sqrt(max(contacting, 1e-12)):.0f} % in that number",
-        either(min(contacting, at_rest) > 10.0, AGREES, OUTSIDE),
+        AGREES if min(contacting, at_rest) > 10.0 else OUTSIDE,
     )

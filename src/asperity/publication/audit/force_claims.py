@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from math import cos, exp, pi, sqrt
+from math import exp, pi, sqrt
 
 import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from ... import regimes
 from ...laws.published_pressures import EQ_10, EQ_17
 from ...numerics.height_integrals import height_integral
 from ...results.summary import amount
 from ..evidence import PRINTED, Evidence, first
 from ..parameter_estimation import WITHIN
-from .claim import AGREES, OUTSIDE, WRONG, Claim, close, either
+from .claim import AGREES, OUTSIDE, WRONG, Claim, close
 
 CONDENSATION = 4.2e-3
 """Time in which a water bridge of nanometres nucleates at 40 % relative humidity and 26 degC [s].
@@ -43,25 +42,23 @@ def claims(evidence: Evidence) -> list[Claim]:
 
 
 def _models(evidence: Evidence) -> list[Claim]:
-    inputs = evidence.inputs
-    tabor = regimes.tabor_number(
-        inputs.tip_radius, inputs.work_of_adhesion, inputs.modulus, inputs.equilibrium_spacing
+    tabor, elasticity, psi = (
+        float(evidence.wet.regime[name])
+        for name in ("tabor_number", "elasticity_parameter", "plasticity_index")
     )
-    elasticity = regimes.ELASTICITY_PER_TABOR * tabor
-    psi = float(evidence.wet.regime["plasticity_index"])
     load = evidence.load_at_rest
     return [
         Claim("The Tabor number (eq. 2)", "0.02", f"{tabor:.4f}",
-              either(round(tabor, 2) == 0.02, AGREES, WRONG)),
+              AGREES if round(tabor, 2) == 0.02 else WRONG),
         Claim("The elasticity parameter, 1.16 times that", "0.0235", f"{elasticity:.4f}",
-              either(close(elasticity, 0.0235, 0.03), AGREES, WRONG)),
+              AGREES if close(elasticity, 0.0235, 0.03) else WRONG),
         Claim("The load parameter places the case in the DMT region (fig. 4, below 100)", "< 100",
               f"{load:.2g} at rest, so that adhesion is negligible there",
-              either(load < 100.0, AGREES, WRONG)),
+              AGREES if load < 100.0 else WRONG),
         Claim("Asperities deform elastically (eq. 16), whatever eq. 3 says", "-",
               f"the plasticity index is {psi:.3g} at a hardness of "
-              f"{amount(inputs.body.hardness, 'Pa')}; above 1 they yield",
-              either(psi < 1.0, AGREES, OUTSIDE)),
+              f"{amount(evidence.inputs.body.hardness, 'Pa')}; above 1 they yield",
+              AGREES if psi < 1.0 else OUTSIDE),
     ]  # fmt: skip
 
 
@@ -91,15 +88,15 @@ def _polynomials(evidence: Evidence) -> list[Claim]:
         Claim("F_0 may be taken from eq. 10", f"{printed_0(3.0):.5f} at lambda' = 3",
               f"{exact_0:.5f}, {100.0 * (printed_0(3.0) / exact_0 - 1.0):+.0f} % there: the "
               "coefficients are rounded",
-              either(close(printed_0(3.0), exact_0, 0.01), AGREES, WRONG)),
+              AGREES if close(printed_0(3.0), exact_0, 0.01) else WRONG),
         Claim("F_3/2 may be taken from eq. 17", f"{printed_32(3.0):.2e} at lambda' = 3",
               f"{exact_32:.2e} there; the polynomial is negative from lambda' = {low:.3f} to "
               f"{high:.3f}, where contact attracts",
-              either(close(printed_32(3.0), exact_32, 0.01), AGREES, WRONG)),
+              AGREES if close(printed_32(3.0), exact_32, 0.01) else WRONG),
         Claim("Eqs. 10 and 17 as printed, with the other inputs in use",
               f"decrement {published}",
               f"with the end of the conjunction at {edge:.3g} the sphere {stays}{other}",
-              either(close(decrement, published, WITHIN["log_decrement"]), AGREES, WRONG)),
+              AGREES if close(decrement, published, WITHIN["log_decrement"]) else WRONG),
     ]  # fmt: skip
 
 
@@ -113,13 +110,8 @@ def _kelvin(evidence: Evidence) -> Claim:
     )
 
 
-def _interaction_range(evidence: Evidence, humidity: float) -> float:
-    """Gap at which a meniscus ends [m]."""
-    return 2.0 * evidence.kelvin_radius(humidity) * cos(evidence.inputs.contact_angle)
-
-
 def _push(evidence: Evidence) -> Claim:
-    end = _interaction_range(evidence, 0.5)
+    end = evidence.interaction_range(0.5)
     return Claim(
         "A meniscus pulls as in eq. 12 at any gap",
         "-",
@@ -143,7 +135,7 @@ def _factor_of_bands(evidence: Evidence) -> Claim:
 def _left_out(evidence: Evidence) -> Claim:
     """What the sum of eq. 15 omits: asperities that touch, and those below the mean plane."""
     sigma, at = evidence.rough.rms_height, 3.0
-    interaction_range = _interaction_range(evidence, _EXAMPLE) / sigma
+    interaction_range = evidence.interaction_range(_EXAMPLE) / sigma
     inside = min(interaction_range, at)
 
     def waiting(gap: float) -> float:
@@ -173,13 +165,13 @@ def _water(evidence: Evidence) -> list[Claim]:
             "-",
             f"their Kelvin radius is infinite; at 99 % it is {damp * 1e9:.3g} nm, the asperities "
             f"are {spacing * 1e9:.2g} nm apart: they have coalesced",
-            either(damp < spacing, AGREES, OUTSIDE),
+            AGREES if damp < spacing else OUTSIDE,
         ),
         Claim(
             "Menisci are in equilibrium throughout (eq. 11)",
             f"{amount(MONOLAYER, 's')} for a monolayer",
             f"the first contact lasts {amount(contact, 's')}, less than that, and a bridge "
             f"nucleates in some {amount(CONDENSATION, 's')} (at 40 %)",
-            either(contact > CONDENSATION, AGREES, OUTSIDE),
+            AGREES if contact > CONDENSATION else OUTSIDE,
         ),
     ]

@@ -11,7 +11,8 @@ from ...materials.solids import ROOM_TEMPERATURE
 from ...results.summary import amount
 from ..evidence import Evidence, first
 from ..parameter_estimation import WITHIN
-from .claim import AGREES, MISSING, OUTSIDE, REPRODUCED, UNEXPLAINED, WRONG, Claim, close, either
+from ..published_tables import QUANTITIES
+from .claim import AGREES, MISSING, OUTSIDE, REPRODUCED, UNEXPLAINED, WRONG, Claim, close
 
 
 def claims(evidence: Evidence) -> list[Claim]:
@@ -36,7 +37,7 @@ def _damping(evidence: Evidence) -> list[Claim]:
         Claim("Adhesion and menisci damp the motion (eqs. 9, 15, 21)", f"decrement {published}",
               f"as forces of position alone they give a restitution of {restitution:.8f}. Pulling "
               f"only while the bodies part, which no equation says, they give {wet:.4f}",
-              either(restitution < 0.999, AGREES, UNEXPLAINED)),
+              AGREES if restitution < 0.999 else UNEXPLAINED),
         Claim("Release gap, density, number of bands, grid", "-",
               f"{amount(unknowns.release_separation, 'm')} from rest, found from the tables; "
               f"{evidence.inputs.body.density:g} kg/m^3, assumed",
@@ -45,31 +46,29 @@ def _damping(evidence: Evidence) -> list[Claim]:
               f"times {unknowns.capillary_factor:.4g}, found from the tables. The asperities that "
               f"the sum leaves out would be {left_out:.3g} of that; an end of the conjunction "
               "farther out needs less (see --refit)",
-              either(close(unknowns.capillary_factor, 1.0, 0.1), AGREES, UNEXPLAINED)),
+              AGREES if close(unknowns.capillary_factor, 1.0, 0.1) else UNEXPLAINED),
     ]  # fmt: skip
 
 
 def _tables(evidence: Evidence) -> list[Claim]:
     out = []
-    for quantity, name in (("log_decrement", "decrements"), ("time_to_rest", "stiction times")):
-        rows = [row for row in evidence.rows if row["quantity"] == quantity]
+    for quantity, limit in WITHIN.items():
         known = {
             (row["asperity_radius"], row["rms_height"]): row["relative_difference"]
-            for row in rows
-            if row["published"] is not None
+            for row in evidence.rows
+            if row["quantity"] == quantity and row["published"] is not None
         }
         if not known:
             continue
         none = sum(off is None for off in known.values())
         worst = max((abs(off) for off in known.values() if off is not None), default=np.inf)
         found = f"the worst is off by {100.0 * worst:.1f} %, with one set of inputs"
-        met = not none and worst <= WITHIN[quantity]
         out.append(
             Claim(
-                f"The {name} of the tables",
+                f"The {QUANTITIES[quantity].words}s of the tables",
                 f"{len(known)} of them",
                 f"{none} of them have none by the model" if none else found,
-                either(met, REPRODUCED, WRONG),
+                REPRODUCED if not none and worst <= limit else WRONG,
             )
         )
     return out
@@ -81,7 +80,7 @@ def _wet_over_dry(evidence: Evidence) -> Claim:
         "The decrement is 200 times larger wet than dry (section 5)",
         "200",
         f"{wet / dry:.0f} times ({wet:.4f} and {dry:.2e}) with the inputs found",
-        either(close(wet / dry, 200.0, 0.1), REPRODUCED, UNEXPLAINED),
+        REPRODUCED if close(wet / dry, 200.0, 0.1) else UNEXPLAINED,
     )
 
 
@@ -133,7 +132,7 @@ def _power(evidence: Evidence) -> list[Claim]:
         Claim("The work of the pulls on the way out is lost (eq. 23)", "all of it",
               f"by the exact model, at 60 % from 60 nm, eq. 23 says {ratio:.0f} times what is "
               "lost: most comes back on the way in",
-              either(close(ratio, 1.0, 0.1), AGREES, WRONG)),
+              AGREES if close(ratio, 1.0, 0.1) else WRONG),
         Claim("The heading of the power loss in Table 3", "1e-8 nW",
               "1e-4 nW: the row that both tables hold differs by 10 000 otherwise", WRONG),
     ]  # fmt: skip
@@ -159,12 +158,12 @@ def _exact(evidence: Evidence) -> list[Claim]:
               f"{release * 1e9:.4g} nm and lambda' = {edge:.4g}; by the exact model it rests at "
               f"lambda' = {rest / sigma:.2f} ({rest * 1e9:.1f} nm), and at {release * 1e9:.4g} nm "
               f"contact pushes with {push:.2g} times the weight",
-              either(release > rest, AGREES, WRONG)),
+              AGREES if release > rest else WRONG),
         Claim("The decrement by the exact model, where that has one: menisci that end, and a "
               "release outside contact",
               f"{published}",
               f"{found:.2g} at {100.0 * capillary.humidity:g} % and {amount(gap, 'm')}, {damp:.2g} "
               f"at {100.0 * humidity:.3g} %, above which menisci coalesce. Rest never comes: a "
               "swing within the reach of the menisci loses nothing",
-              either(close(found, published, 0.1), REPRODUCED, OUTSIDE)),
+              REPRODUCED if close(found, published, 0.1) else OUTSIDE),
     ]  # fmt: skip
