@@ -22,13 +22,14 @@ def solver(behaviour: str = "quick") -> Any:
     """A stand-in for the module ``asperity.solver``."""
     module = types.ModuleType("asperity.solver")
 
-    def solve(case: Any, *, name: str = "case", progress: Any = None, stop: Any = None) -> Any:
-        result = bounce(impacts=6, case=case, name=name)
+    def solve(case: Any, *, name: str = "", progress: Any = None, stop: Any = None) -> Any:
+        result = bounce(impacts=6, case=case, name=name or case.name)
         if behaviour == "refuse":
             rule = "`release_separation` must be above 45.9 nm; got 40 nm"
             raise InputError(rule, key="impact.release_separation")
         if behaviour == "fail":
-            raise SimulationError("no equilibrium at 44 nm", result)
+            failed = dataclasses.replace(result, outcome=Outcome.FAILED)
+            raise SimulationError("no equilibrium at 44 nm", failed)
         if behaviour == "break":
             raise SimulationError("no equilibrium at 44 nm")
         if behaviour == "bug":
@@ -44,8 +45,8 @@ def solver(behaviour: str = "quick") -> Any:
             progress(0.5, "impact 3")
         return result
 
-    def curve(case: Any, *, name: str = "case", progress: Any = None, stop: Any = None) -> Any:
-        return loading(case=case, name=name)
+    def curve(case: Any, *, name: str = "", progress: Any = None, stop: Any = None) -> Any:
+        return loading(case=case, name=name or case.name)
 
     module.solve, module.curve = solve, curve  # type: ignore[attr-defined]
     return module

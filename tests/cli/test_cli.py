@@ -21,7 +21,7 @@ from asperity.cli import app
 from asperity.config import load_file
 from asperity.config.case_file import builtin_text
 from asperity.errors import Outcome
-from asperity.results import records
+from asperity.results import results_folder
 from asperity.results.read_record import read
 from asperity.results.result import Curve, Result
 
@@ -100,7 +100,7 @@ def test_run_writes_record_pictures_and_summary(place: Path):
     ran = call("run", CASE)
     assert ran.exit_code == 0, ran.output
     folder = place / f"{CASE}-out"
-    assert names(folder) == sorted(records.RUN_FILES)
+    assert names(folder) == sorted(results_folder.RUN_FILES)
     assert names(place) == [folder.name]
     assert "published-exact: rest" in ran.stdout
     assert f"written to {folder.name}:\n  record.nc motion.png" in ran.stdout
@@ -121,13 +121,14 @@ def test_json_with_a_folder_writes_files_too(place: Path):
     ran = call("run", CASE, "--json", "-o", "out")
     assert strict(ran.stdout)["outcome"] == "rest"
     assert "written to out" in ran.stderr
-    assert names(place / "out") == sorted(records.RUN_FILES)
+    assert names(place / "out") == sorted(results_folder.RUN_FILES)
 
 
 def test_curve_writes_its_own_files_and_prints_its_own_json(place: Path):
     assert call("run", CASE).exit_code == 0
     assert call("curve", CASE).exit_code == 0
-    assert names(place / f"{CASE}-out") == sorted([*records.RUN_FILES, *records.CURVE_FILES])
+    both = [*results_folder.RUN_FILES, *results_folder.CURVE_FILES]
+    assert names(place / f"{CASE}-out") == sorted(both)
     found = strict(call("curve", CASE, "--json").stdout)
     assert len(found["force_unloading"]) == len(found["rigid_separation"])
     assert isinstance(found["pull_off"], float)
@@ -143,7 +144,7 @@ def test_quiet_prints_nothing(place: Path):
 def test_a_record_repeats_its_run_byte_by_byte(place: Path):
     assert call("run", CASE, "-o", "first").exit_code == 0
     assert call("run", "first/record.nc", "-o", "second").exit_code == 0
-    for name in records.RUN_FILES:
+    for name in results_folder.RUN_FILES:
         assert (place / "first" / name).read_bytes() == (place / "second" / name).read_bytes()
 
 
@@ -183,9 +184,9 @@ def test_plot_draws_a_record_again(place: Path):
     (place / "out" / "motion.png").write_bytes(b"old")
     assert call("plot", "out/record.nc").exit_code == 0
     assert (place / "out" / "motion.png").read_bytes() == before
-    assert names(place / "out") == sorted(records.RUN_FILES)
+    assert names(place / "out") == sorted(results_folder.RUN_FILES)
     assert call("plot", "out/record.nc", "-o", "pictures").exit_code == 0
-    drawn = [name for name in records.RUN_FILES if name.endswith((".png", ".svg"))]
+    drawn = [name for name in results_folder.RUN_FILES if name.endswith((".png", ".svg"))]
     assert names(place / "pictures") == sorted(drawn)
     assert call("plot", "out/record.nc", "-o", "pictures").exit_code == 2
     assert call("plot", "out/record.nc", "-o", "pictures", "--force").exit_code == 0
@@ -255,7 +256,7 @@ def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Pat
     assert_one_line(ran.stderr, folder.name, "--force", "notes.txt")
     assert names(folder) == ["notes.txt"]
     assert call("run", CASE, "--force").exit_code == 0
-    assert names(folder) == sorted([*records.RUN_FILES, "notes.txt"])
+    assert names(folder) == sorted([*results_folder.RUN_FILES, "notes.txt"])
 
 
 @pytest.mark.parametrize("command", ["run", "curve"])
@@ -269,7 +270,7 @@ def test_an_earlier_answer_for_the_same_case_is_replaced(place: Path, command: s
     ran = call(command, CASE)
     assert ran.exit_code == 0, ran.output
     assert "in place of the earlier results" in ran.stdout
-    own = records.RUN_FILES if command == "run" else records.CURVE_FILES
+    own = results_folder.RUN_FILES if command == "run" else results_folder.CURVE_FILES
     assert names(folder) == sorted(own)
     assert not any(path.read_bytes() == b"old" for path in folder.iterdir())
 
@@ -454,9 +455,9 @@ def test_a_folder_without_permission_is_found_before_computing(place: Path):
     # Rights are given up after the imports, within the folder, and only where there are root's,
     # which no permission stops.
     program = (
-        "import os; from asperity.results import records; "
+        "import os; from asperity.results import results_folder; "
         "os.geteuid() or (os.setgroups([]), os.setgid(65534), os.setuid(65534)); "
-        "records.check_folder('out', records.RUN_FILES)"
+        "results_folder.check_folder('out', results_folder.RUN_FILES)"
     )
     ran = subprocess.run(
         [sys.executable, "-c", program], cwd=closed, capture_output=True, text=True, check=False

@@ -815,7 +815,7 @@ def test_plot_writes_a_folder_beside_the_store_and_says_what_failed(
 ):
     store = stored(tmp_path, GRID, LOST)
     for _ in range(2):  # drawn again in place
-        study_plots.plot_store(str(store), output=None, force=False)
+        study_plots.plot(str(store), output=None, force=False)
     out, error = capsys.readouterr()
     assert sorted(path.name for path in (tmp_path / "study-out").iterdir()) == [
         "map.png",
@@ -829,7 +829,7 @@ def test_plot_lists_the_front(
     stores: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     goals = ("max:impact_speed", "max:restitution")
-    study_plots.plot_store(str(stores["speeds"]), output=str(tmp_path), force=False, pareto=goals)
+    study_plots.plot(str(stores["speeds"]), output=str(tmp_path), force=False, pareto=goals)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "Pareto front of max:impact_speed, max:restitution: 1 of 19 cases"
     assert lines[3].split() == ["500", "mm/s", "500", "mm/s", "0.9798"]
@@ -841,7 +841,7 @@ def test_held_axes_of_the_command_are_key_and_value(
     stores: dict[str, Path], tmp_path: Path, given: str
 ):
     with pytest.raises(InputError, match="KEY=VALUE"):
-        study_plots.plot_store(str(stores["grid"]), output=str(tmp_path), force=False, at=[given])
+        study_plots.plot(str(stores["grid"]), output=str(tmp_path), force=False, at=[given])
 
 
 def test_export_wants_one_kind_of_file(stores: dict[str, Path]):

@@ -14,7 +14,7 @@ from asperity.config.resolve import resolve
 from asperity.errors import InputError, Outcome
 from asperity.model import build
 from asperity.regimes.validity import CLASSED, _one_law
-from asperity.results import records
+from asperity.results import netcdf_record, record_layout
 from asperity.results.read_record import read
 from asperity.surfaces import Topography
 from asperity.surfaces.description.sum_of_maps import added
@@ -153,15 +153,15 @@ def test_the_ledger_closes_with_either_source_on_either_body(case, source, chang
 
 def test_record_and_json_hold_the_surface_and_come_back(solved, folder, tmp_path):
     path = tmp_path / "record.nc"
-    path.write_bytes(records.encode(solved))
+    path.write_bytes(netcdf_record.encode(solved))
     surface = read(path).surface
-    assert surface == records.plain(solved.surface)
+    assert surface == record_layout.plain(solved.surface)
     assert surface["source"] == "summits"
     assert surface["summits"] == resolve(solved.case).asperities.summits.count
     (file,) = surface["files"]
     assert file["file"] == str(folder / "surface.nc")
     assert len(file["sha256"]) == 64
-    found = json.loads(json.dumps(records.json_object(solved), allow_nan=False))
+    found = json.loads(json.dumps(record_layout.json_object(solved), allow_nan=False))
     assert found["surface"] == surface
     assert "Surface" in solved.summary()
 
@@ -175,7 +175,7 @@ def test_a_surface_file_that_has_gone_is_one_line(solved, tmp_path):
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     there = asperity.load(str(tmp_path / "case.toml"))
     record = tmp_path / "record.nc"
-    record.write_bytes(records.encode(dataclasses.replace(solved, case=there)))
+    record.write_bytes(netcdf_record.encode(dataclasses.replace(solved, case=there)))
     for file in (tmp_path / "case.toml", record):
         found = call("run", file, "-o", tmp_path / "out")
         assert found.exit_code == 2
@@ -191,7 +191,7 @@ def test_a_record_is_not_run_again_on_a_surface_that_has_changed(case, solved, t
     there = asperity.load(str(tmp_path / "case.toml"))
     record = tmp_path / "record.nc"
     facts = resolve(there).asperities.facts
-    record.write_bytes(records.encode(dataclasses.replace(solved, case=there, surface=facts)))
+    record.write_bytes(netcdf_record.encode(dataclasses.replace(solved, case=there, surface=facts)))
     assert call("regime", record).exit_code == 0
     write_topography(MADE.with_heights(2.0 * MADE.heights), surface, force=True)
     found = call("run", record, "-o", tmp_path / "out")

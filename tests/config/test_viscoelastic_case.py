@@ -12,7 +12,7 @@ import asperity
 from asperity import solver
 from asperity.cli import app
 from asperity.config import load
-from asperity.config.case_solids import solids_of
+from asperity.config.bodies import solids_of
 from asperity.config.resolve import resolve
 from asperity.materials.solids import contact_modulus
 from asperity.model import build

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from asperity.config import Case, builtin
 from asperity.errors import InputError, Outcome, OutputError
-from asperity.results import records
+from asperity.results import netcdf_record, record_layout, results_folder
 from asperity.results.read_record import read
 from asperity.results.result import Curve, Result
 
@@ -65,32 +65,33 @@ def assert_same(found: Result | Curve, wanted: Result | Curve) -> None:
 
 
 def test_a_result_comes_back_from_its_record(result: Result, tmp_path: Path):
-    found = read(stored(records.encode(result), tmp_path))
+    found = read(stored(netcdf_record.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert_same(found, result)
 
 
 def test_a_curve_comes_back_from_its_record(curve: Curve, tmp_path: Path):
-    found = read(stored(records.encode(curve), tmp_path))
+    found = read(stored(netcdf_record.encode(curve), tmp_path))
     assert isinstance(found, Curve)
     assert_same(found, curve)
 
 
 def test_the_same_result_gives_the_same_bytes_in_another_process(result: Result, tmp_path: Path):
-    here = records.encode(result)
+    here = netcdf_record.encode(result)
     program = (
         "import sys; sys.path.insert(0, sys.argv[1]); from fake_result import bounce; "
-        "from asperity.results import records; "
-        "sys.stdout.buffer.write(records.encode(bounce(impacts=4)))"
+        "from asperity.results import netcdf_record; "
+        "sys.stdout.buffer.write(netcdf_record.encode(bounce(impacts=4)))"
     )
     command = [sys.executable, "-c", program, str(Path(__file__).parents[1])]
     there = subprocess.run(command, capture_output=True, check=True).stdout
     assert here == there
-    assert records.encode(read(stored(here, tmp_path))) == here
+    assert netcdf_record.encode(read(stored(here, tmp_path))) == here
 
 
 def test_a_record_says_what_made_it(result: Result, tmp_path: Path):
-    path = stored(records.encode(dataclasses.replace(result, input_sha256="ab" * 32)), tmp_path)
+    given = dataclasses.replace(result, input_sha256="ab" * 32)
+    path = stored(netcdf_record.encode(given), tmp_path)
     with netCDF4.Dataset(path) as held:
         said = {name: held.getncattr(name) for name in held.ncattrs()}
     assert said["input_sha256"] == "ab" * 32
@@ -115,7 +116,7 @@ def test_every_variable_of_a_record_has_a_unit_and_a_meaning(result: Result, cur
 
 
 def test_xarray_reads_a_record_as_the_dataset(result: Result, tmp_path: Path):
-    path = stored(records.encode(result), tmp_path)
+    path = stored(netcdf_record.encode(result), tmp_path)
     with xarray.open_dataset(path) as found:
         wanted = result.dataset()
         xarray.testing.assert_equal(found.load(), wanted)
@@ -125,7 +126,7 @@ def test_xarray_reads_a_record_as_the_dataset(result: Result, tmp_path: Path):
 
 def test_without_motion_a_record_keeps_the_measures_alone(tmp_path: Path):
     result = bounce(impacts=4, case=with_output(motion=False))
-    path = stored(records.encode(result), tmp_path)
+    path = stored(netcdf_record.encode(result), tmp_path)
     found = read(path)
     assert isinstance(found, Result)
     assert found.time.size == 0
@@ -145,7 +146,7 @@ def test_a_motion_without_an_impact_is_kept_too(result: Result, tmp_path: Path):
         measures=measures,
         events=dict.fromkeys(result.events, nothing),
     )
-    found = read(stored(records.encode(result), tmp_path))
+    found = read(stored(netcdf_record.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert_same(found, result)
     assert "impacts" in found.summary()
@@ -154,14 +155,14 @@ def test_a_motion_without_an_impact_is_kept_too(result: Result, tmp_path: Path):
 def test_ten_thousand_impacts_are_kept(result: Result, tmp_path: Path):
     many = [0.1 + 1e-9 * number for number in range(10_000)]
     result = dataclasses.replace(result, measures={**result.measures, "restitution": many})
-    found = read(stored(records.encode(result), tmp_path))
+    found = read(stored(netcdf_record.encode(result), tmp_path))
     assert isinstance(found, Result)
     assert found.measures["restitution"] == many
 
 
 @pytest.mark.parametrize("length", [0, 3, 100, 2000, -8000, -8, -1])
 def test_a_record_cut_short_is_refused(result: Result, tmp_path: Path, length: int):
-    path = stored(records.encode(result)[:length], tmp_path)
+    path = stored(netcdf_record.encode(result)[:length], tmp_path)
     with pytest.raises(InputError, match="must be a") as caught:
         read(path)
     assert str(path) in str(caught.value)
@@ -169,7 +170,7 @@ def test_a_record_cut_short_is_refused(result: Result, tmp_path: Path, length: i
 
 @given(data=st.data())
 def test_a_changed_record_is_refused(result: Result, tmp_path_factory, data):
-    content = bytearray(records.encode(result))
+    content = bytearray(netcdf_record.encode(result))
     place = data.draw(st.integers(4, len(content) - 1))
     content[place] ^= data.draw(st.integers(1, 255))
     path = tmp_path_factory.getbasetemp() / "changed.nc"
@@ -205,16 +206,16 @@ def test_a_missing_record_and_a_folder_are_refused(tmp_path: Path):
 
 @given(st.recursive(st.none() | st.booleans() | st.floats() | st.text(), st.lists))
 def test_json_is_strict_whatever_the_values(value: object):
-    text = json.dumps(records.plain({"a": value, "b": np.float64("nan")}), allow_nan=False)
+    text = json.dumps(record_layout.plain({"a": value, "b": np.float64("nan")}), allow_nan=False)
     assert json.loads(text)["b"] is None
 
 
 def test_json_of_a_result_has_the_documented_keys(result: Result, curve: Curve):
-    found = records.json_object(result)
+    found = record_layout.json_object(result)
     assert list(found) == ["outcome", "regime", "measures", "ledger", "warnings"]
     assert found["outcome"] == "rest"
     assert found["regime"]["load_parameter"] is None
-    assert list(records.json_object(curve)) == [
+    assert list(record_layout.json_object(curve)) == [
         *("rigid_separation", "central_separation", "force_loading", "force_unloading"),
         *("minimum_separation", "pull_off", "pull_off_separation", "work_of_separation", "preload"),
         *("loss", "warnings"),
@@ -224,7 +225,7 @@ def test_json_of_a_result_has_the_documented_keys(result: Result, curve: Curve):
 def test_a_result_saves_itself(result: Result, tmp_path: Path):
     folder = tmp_path / "new" / "folder"
     written = result.save(folder)
-    assert [path.name for path in written] == list(records.RUN_FILES)
+    assert [path.name for path in written] == list(results_folder.RUN_FILES)
     assert sorted(folder.iterdir()) == sorted(written)
     assert list(tmp_path.iterdir()) == [tmp_path / "new"]
     assert "came to rest" in (folder / "summary.txt").read_text()
@@ -238,13 +239,13 @@ def test_pictures_are_left_out_where_the_case_says_so(tmp_path: Path):
 
 def write(folder: Path, *, force: bool = False, **files: bytes) -> list[Path]:
     named = {name.replace("_", "."): content for name, content in files.items()}
-    return records.write_folder(folder, named, records.RUN_FILES, force=force)
+    return results_folder.write_folder(folder, named, results_folder.RUN_FILES, force=force)
 
 
 def test_a_folder_in_use_is_refused_without_force(tmp_path: Path):
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match=r"must be empty.*got mine\.txt"):
-        records.check_folder(tmp_path, records.RUN_FILES)
+        results_folder.check_folder(tmp_path, results_folder.RUN_FILES)
     with pytest.raises(InputError, match="must be empty"):
         write(tmp_path, record_nc=b"1")
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
@@ -260,15 +261,15 @@ def test_force_replaces_earlier_results_and_nothing_else(tmp_path: Path):
 
 def test_run_and_curve_of_a_case_share_a_folder(tmp_path: Path):
     write(tmp_path, record_nc=b"1")
-    records.write_folder(tmp_path, {"curve.nc": b"2"}, records.CURVE_FILES)
+    results_folder.write_folder(tmp_path, {"curve.nc": b"2"}, results_folder.CURVE_FILES)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["curve.nc", "record.nc"]
     with pytest.raises(InputError, match="must be empty"):
-        records.check_folder(tmp_path, records.CURVE_FILES)
+        results_folder.check_folder(tmp_path, results_folder.CURVE_FILES)
 
 
 def test_an_empty_folder_and_the_current_one_are_taken(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    records.check_folder(".", records.RUN_FILES)
+    results_folder.check_folder(".", results_folder.RUN_FILES)
     assert write(Path(), record_nc=b"1") == [Path("record.nc")]
     assert (tmp_path / "record.nc").read_bytes() == b"1"
 
@@ -318,7 +319,7 @@ def test_a_place_that_cannot_be_written_is_found_before_computing(tmp_path: Path
     (tmp_path / "link").symlink_to("nowhere")
     for place in ("file", "file/below", "link", "x" * 300):
         with pytest.raises(OutputError, match="cannot be written"):
-            records.check_folder(tmp_path / place, records.RUN_FILES)
+            results_folder.check_folder(tmp_path / place, results_folder.RUN_FILES)
     with pytest.raises(OutputError, match="Is a directory"):
-        records.check_folder(tmp_path / "taken", records.RUN_FILES, force=True)
+        results_folder.check_folder(tmp_path / "taken", results_folder.RUN_FILES, force=True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link", "taken"]

@@ -22,7 +22,7 @@ import pytest
 from asperity.config import load_file
 from asperity.config.case_file import builtin_text, tables
 from asperity.errors import InputError
-from asperity.results import records
+from asperity.results import record_layout
 from asperity.results.read_record import read
 from asperity.results.record_layout import json_object
 from asperity.solver import explore
@@ -243,7 +243,7 @@ def test_what_is_downloaded_names_the_users_file_alone(
         found = read(str(tmp_path / name))
         assert found.case.roughness is not None
         assert found.case.roughness.files == ["scan.csv"]
-        told = json.dumps([found.case.toml(), json_object(found), records.attributes(found)])
+        told = json.dumps([found.case.toml(), json_object(found), record_layout.attributes(found)])
         assert folder_of(client) not in told
 
 

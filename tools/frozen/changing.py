@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import asperity
-from asperity.config.case_solids import solids_of
+from asperity.config.bodies import solids_of
 
 CHANGE = 1e-14
 """Relative change of an input: 45 units in the last place."""

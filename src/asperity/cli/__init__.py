@@ -1,6 +1,6 @@
 """The command line: ``asperity run``, ``curve``, ``regime``, ``adhesion-map`` and the rest.
 
-This module imports nothing but typer, so that ``--help`` answers at once; every command imports
+Nothing but typer is imported with it, so that ``--help`` answers at once; every command imports
 what it needs when it is called.
 """
 
@@ -35,10 +35,15 @@ from asperity.cli.arguments import (
     Version,
     VersionJson,
 )
+from asperity.cli.attributing import sensitivity
 from asperity.cli.doctor import doctor
-from asperity.cli.measuring import add_surfaces_to
-from asperity.cli.studying import add_to
+from asperity.cli.exporting import export
+from asperity.cli.measuring import generate, surface
+from asperity.cli.merging import merge
+from asperity.cli.study_plots import plot
+from asperity.cli.sweeping import sweep
 from asperity.cli.terminal import Commands
+from asperity.errors import InputError
 
 app = typer.Typer(
     name="asperity",
@@ -57,9 +62,15 @@ def asperity(
     as_json: VersionJson = False,
 ) -> None:
     """Impact of a small body on a rough surface: bounce or stick, and where the energy goes."""
-    from asperity.cli.program_options import answer
+    if version:
+        from asperity.cli.stack import tell_versions
 
-    answer(context, version, as_json)
+        tell_versions(as_json=as_json)
+        raise typer.Exit
+    if as_json:
+        raise InputError("`--json` must go with --version, or after a command; got it alone")
+    if context.invoked_subcommand is None:
+        context.fail("Missing command.")
 
 
 @app.command()
@@ -177,12 +188,11 @@ def adhesion_map(
     """
     from asperity.cli.regimes import draw_map
 
-    draw_map(
-        cases, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose
-    )  # fmt: skip
+    draw_map(cases, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
-add_surfaces_to(app)
+app.command()(surface)
+app.command()(generate)
 
 
 @app.command()
@@ -275,8 +285,8 @@ def web(
     show(case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet)
 
 
-add_to(app)
-app.command()(doctor)
+for command in (plot, sweep, merge, export, sensitivity, doctor):
+    app.command()(command)
 
 
 def main() -> None:

@@ -150,80 +150,28 @@ Missing = Annotated[
         "refuse", "keep", "fill",
     ),
 ]  # fmt: skip
-
-SurfaceFiles = Annotated[
-    list[str],
-    typer.Argument(
-        metavar="FILE [FILE2]",
-        help="A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
-        "instrument's.",
-        show_default=False,
-    ),
-]
-Channel = Annotated[str | None, optional("channel", "NAME|N", "Channel of an instrument's file.")]
-FormRemoval = Annotated[
-    str | None,
-    choice(
-        "form-removal", "FORM", "none|mean|tilt|curvature|sphere", "tilt",
-        "none", "mean", "tilt", "curvature", "sphere",
-    ),
-]  # fmt: skip
-LineLevelling = Annotated[
-    str | None,
-    choice(
-        "line-levelling", "HOW", "Scan lines: none|median|median-difference|polynomial", "none",
-        "none", "median", "median-difference", "polynomial",
-    ),
-]  # fmt: skip
-Direction = Annotated[
-    str | None,
-    choice(
-        "direction", "rows|columns", "What a scan line is.", "rows",
-        "rows", "columns",
-    ),
-]  # fmt: skip
-Degree = Annotated[int | None, optional("degree", "N", "Degree of a scan line's polynomial.", "1")]
-SFilter = Annotated[
-    str | None, optional("s-filter", "LENGTH", "Cut wavelengths below this, such as '50 nm'.")
-]
-LFilter = Annotated[
-    str | None, optional("l-filter", "LENGTH", "Cut wavelengths above this, such as '5 um'.")
-]
-MadeFile = Annotated[
+StudyFile = Annotated[
     str,
     typer.Argument(
-        metavar="FILE", help="File to write: .npy .csv .xyz .nc, each also .gz.", show_default=False
+        metavar="STUDY.toml", help="The study.", show_default=False,
+        autocompletion=shell_completion.study,
     ),
-]
-MadeSize = Annotated[
-    str | None, optional("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")
-]
-Points = Annotated[str, typer.Option("--points", metavar="N|NxM", help="Pixels along x and y.")]
-Hurst = Annotated[float, typer.Option("--hurst", metavar="H", help="Hurst exponent.")]
-RollOff = Annotated[
+]  # fmt: skip
+StoreName = Annotated[
     str | None,
-    optional("roll-off", "LENGTH", "Wavelength above which the spectrum is flat.", "none"),
-]
-CutOff = Annotated[str | None, optional("cut-off", "LENGTH", "Shortest wavelength.", "two pixels")]
-RmsHeight = Annotated[
-    str | None, optional("rms-height", "LENGTH", "Rms height; this or --rms-slope.")
-]
-RmsSlope = Annotated[float | None, optional("rms-slope", "NUMBER", "Rms of the gradient.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of the random numbers.")]
-Skewness = Annotated[float | None, optional("skewness", "S", "Skewness of the heights.", "0")]
-Kurtosis = Annotated[
-    float | None, optional("kurtosis", "K", "Kurtosis of the heights.", "3, a Gaussian's")
-]
-Heights = Annotated[
-    str | None,
-    optional(
-        "heights",
-        "FILE",
-        "Take the distribution of these heights: an .npy of numbers, or "
-        "a surface, whose tilt is removed.",
+    typer.Option(
+        "-o", "--output", metavar="NAME.zarr", help="The store.  [default: ./STUDY.zarr]",
+        show_default=False,
     ),
-]
-ForceFile = Annotated[bool, typer.Option("--force", help="Replace FILE.")]
+]  # fmt: skip
+Replace = Annotated[bool, typer.Option("--force", help="Replace what is there.")]
+At = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--at", metavar="KEY=VALUE", help="Take an axis' nearest value; may be repeated.",
+        show_default=False,
+    ),
+]  # fmt: skip
 Refit = Annotated[
     bool, typer.Option("--refit", help="Find the unknown inputs again from the tables.")
 ]

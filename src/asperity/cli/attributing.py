@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
+import typer
+
+from asperity.cli.arguments import Folder, Json, Quiet, Replace, StudyFile, Verbose
 from asperity.cli.reporter import Reporter
-from asperity.cli.study_plots import done
+from asperity.cli.working import completed
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,26 +25,24 @@ _WIDEST = 28
 
 
 def sensitivity(
-    study: str, *, measure: str, output: str | None, force: bool, **manner: bool
+    study: StudyFile,
+    measure: Annotated[
+        str, typer.Option("--measure", metavar="NAME", help="The measure.", show_default=False)
+    ],
+    output: Folder = None,
+    force: Replace = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Compute Sobol's indices of a measure over the axes of a study, keep them and say them.
+    """Say which axes of a study a measure depends on.
 
-    Parameters
-    ----------
-    study : str
-        The study file.
-    measure : str
-        Name of the measure.
-    output : str or None
-        Folder for the files.
-    force : bool
-        Whether earlier files may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
+    Sobol indices of first order and in total, with their confidence. Writes a picture and a table
+    to DIR, ./STUDY-sensitivity unless given.
     """
-    from asperity.results.records import check_folder, write_folder
+    from asperity.results.results_folder import check_folder, write_folder
 
-    reporter = Reporter(**manner)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     folder = None
     if output is not None or not reporter.as_json:
         folder = Path(output or f"{Path(study).stem}-sensitivity")
@@ -51,9 +51,9 @@ def sensitivity(
     reporter.answer(lambda: "\n".join(_index_lines(found)), found.json_object)
     if folder is not None:
         with reporter.step("pictures and files"):
-            files = done(
-                lambda: importlib.import_module("asperity.plots.study.bars").pictures(found)
-            )
+            from asperity.plots.study.bars import pictures
+
+            files = completed(lambda stop: pictures(found))
             text = json.dumps(found.json_object(), allow_nan=False)
             files["sensitivity.json"] = text.encode() + b"\n"
             written = write_folder(folder, files, SENSITIVITY_FILES, force=force)
@@ -66,6 +66,7 @@ def _indices(file: str, measure: str, reporter: Reporter) -> Sensitivity:
 
     from asperity.sweeps.analysis.sensitivity import check, measured
     from asperity.sweeps.analysis.sensitivity import sensitivity as indices
+    from asperity.sweeps.compute.batch import evaluate
     from asperity.sweeps.study.study import read
 
     # A study keeps what is measured and no more; its other measures would cost time alone.
@@ -75,7 +76,6 @@ def _indices(file: str, measure: str, reporter: Reporter) -> Sensitivity:
     except InputError as error:
         error.file = error.file or file
         raise
-    batch = importlib.import_module("asperity.sweeps.compute.batch")
     cases, computed = study.size * (len(study.axes) + 2), 0
     with reporter.watch() as progress:
 
@@ -86,10 +86,9 @@ def _indices(file: str, measure: str, reporter: Reporter) -> Sensitivity:
                 progress(computed / cases, f"{computed:,} of {cases:,} cases")
 
         tell_of(0)
-        found: Sensitivity = done(
-            lambda: indices(study, measure, lambda values: batch.evaluate(study, values, tell_of))
+        return completed(
+            lambda stop: indices(study, measure, lambda values: evaluate(study, values, tell_of))
         )
-    return found
 
 
 def _index_lines(found: Sensitivity) -> list[str]:

@@ -1,4 +1,4 @@
-"""``asperity run``, ``curve``, ``restitution`` and ``plot``: from a case to files or JSON."""
+"""``asperity run``, ``curve`` and ``restitution``: from a case to files or JSON."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from asperity.cli.reporter import Reporter, files_of, written_to
+from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.results import summary
 from asperity.results.case_source import Source, source_of
 from asperity.results.read_record import read
-from asperity.results.records import (
+from asperity.results.record_layout import json_object
+from asperity.results.result import Curve, Result
+from asperity.results.results_folder import (
     CURVE_FILES,
     RESTITUTION_FILES,
     RUN_FILES,
     SINGLE_BODY_FILES,
     check_folder,
     holds_only_results,
-    json_object,
     write_folder,
 )
-from asperity.results.result import Curve, Result
 
 if TYPE_CHECKING:
     from asperity.sweeps.restitution_curve import RestitutionCurve
@@ -91,7 +91,7 @@ def compute(
     named = source_of(case)
     folder, earlier = None, False
     if output is not None or not reporter.as_json:
-        folder = Path(output or named.case.output.directory or f"{named.name}-out")
+        folder = Path(output or named.case.output.directory or f"{named.case.name}-out")
         earlier = _earlier(folder, what, named)
         force = force or earlier
         check_folder(folder, _FILES[what], force=force)
@@ -104,12 +104,11 @@ def compute(
         error.file = error.file or named.file
         raise
     except SimulationError as error:
-        if isinstance(error.partial, (Result, Curve)):
-            _deliver(_ended(request, error.partial, Outcome.FAILED), request, 0)
+        if isinstance(error.partial, Result):
+            _deliver(_sourced(error.partial, request.source), request, 0)
         raise
     if result is not None:
-        ended = _ended(request, result, Outcome.INTERRUPTED if code else None)
-        code = _deliver(ended, request, code)
+        code = _deliver(_sourced(result, request.source), request, code)
     elif code:
         say("asperity: interrupted before there was anything to keep", whole=True)
     if code:
@@ -141,9 +140,7 @@ def _task(request: _Request, stop: threading.Event, progress: Progress | None) -
     named, tell = request.source, progress
     if request.folder is not None:
         tell = _importing(progress)
-    answer: Answer = function(
-        named.case, name=named.name, progress=tell, stop=stop, **request.given
-    )
+    answer: Answer = function(named.case, progress=tell, stop=stop, **request.given)
     return answer
 
 
@@ -167,20 +164,13 @@ def _importing(progress: Progress | None) -> Progress:
 
 def _import_ahead() -> None:
     """Import what writes and draws: a second less to wait for in the end."""
-    for name in ("asperity.plots", "asperity.results.records", "matplotlib.backends.backend_agg"):
+    for name in ("asperity.plots", "matplotlib.backends.backend_agg"):
         importlib.import_module(name)
 
 
-def _ended(request: _Request, result: Answer, outcome: Outcome | None) -> Answer:
-    """The result with the hash of its input, and with how it was cut short."""
-    source = request.source
-    changes: dict[str, object] = {
-        "input_sha256": source.input_sha256,
-        "case_file": source.case_file,
-    }
-    if isinstance(result, Result) and outcome is not None:
-        changes["outcome"] = outcome if outcome is Outcome.FAILED else result.outcome
-    return dataclasses.replace(result, **changes)  # type: ignore[arg-type]
+def _sourced(result: Answer, source: Source) -> Answer:
+    """The result with the hash of its input, and with its case file."""
+    return dataclasses.replace(result, input_sha256=source.input_sha256, case_file=source.case_file)
 
 
 def _deliver(result: Answer, request: _Request, code: int) -> int:
@@ -224,33 +214,3 @@ def _keep(result: Answer, request: _Request, code: int) -> tuple[Sequence[Path],
     files = files or _files(result, request, pictures=False)
     with request.reporter.step("files"):
         return write_folder(request.folder, files, own, force=request.force), code
-
-
-def redraw(record: str, output: str | None, *, force: bool, **manner: bool) -> None:
-    """Draw the pictures of a record again.
-
-    Parameters
-    ----------
-    record : str
-        Path of the record.
-    output : str or None
-        Folder for the pictures; without it they go beside the record, in place of those there.
-    force : bool
-        Whether pictures in ``output`` may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
-    """
-    from asperity import plots
-
-    reporter = Reporter(**manner)
-    with reporter.step("record"):
-        result = read(record)
-    with reporter.step("pictures"):
-        pictures = plots.pictures(result)
-    if not pictures:
-        raise InputError(
-            f"{record}: a record must hold its motion to be drawn; it has none", file=record
-        )
-    folder = Path(record).parent if output is None else Path(output)
-    written = write_folder(folder, pictures, tuple(pictures), force=force or output is None)
-    reporter.answer(lambda: written_to(written), lambda: {"record": record, **files_of(written)})

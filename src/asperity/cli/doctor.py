@@ -1,6 +1,6 @@
 """The command ``asperity doctor``: what is installed, on what it runs, and whether it works.
 
-Like `asperity.cli` itself it imports typer alone; each section imports what it needs.
+Like `asperity.cli` itself it imports nothing heavy; each section imports what it needs.
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ from typing import Annotated, Any, NamedTuple
 import typer
 
 from asperity.cli.arguments import OnlyJson, Quiet, Verbose
+from asperity.cli.reporter import Reporter, seconds
+from asperity.cli.terminal import say, tell, wrapped
+from asperity.cli.working import Work
 from asperity.errors import InputError, SimulationError
 
 LEAST_ROOM = 200 * 2**20
@@ -52,9 +55,6 @@ def doctor(
     nothing but the compile cache.
     """
     from asperity.cli import compile_cache
-    from asperity.cli.reporter import Reporter
-    from asperity.cli.terminal import say
-    from asperity.cli.working import Work
 
     reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     if empty_cache:
@@ -79,30 +79,28 @@ def doctor(
         raise SimulationError(f"{len(failed)} of {count} checks fail: {', '.join(failed)}")
 
 
-def _examined(reporter: Any, stop: threading.Event) -> dict[str, Any]:
+def _examined(reporter: Reporter, stop: threading.Event) -> dict[str, Any]:
     """All sections, each line said as soon as it is known; plain values by section."""
-    from asperity.cli.terminal import tell, wrapped
-
-    say = tell if not (reporter.as_json or reporter.quiet) else lambda text: None
+    show = tell if not (reporter.as_json or reporter.quiet) else lambda text: None
     found: dict[str, Any] = {}
     checks: list[dict[str, Any]] = []
     for title, section in _SECTIONS.items():
-        say(title)
+        show(title)
         values = found[title.lower().replace(" ", "_").replace("-", "_")] = {}
         with reporter.step(title):
             for line in _attempted(title, section()):
                 mark = "" if line.ok is None else f"{'ok' if line.ok else 'FAIL':<6}"
                 text = f"  {line.name:<{_WIDE}}{mark}{line.words}"
-                say("\n".join(wrapped(text, hanging=2 + _WIDE)))
+                show("\n".join(wrapped(text, hanging=2 + _WIDE)))
                 if line.ok is not None:
                     checks.append({"name": line.name, "ok": line.ok, "found": line.words})
                 if line.value is not None:
                     values[line.name.replace(" ", "_")] = line.value
                 if stop.is_set():
                     return found
-        say("")
+        show("")
     found |= {"checks": checks, "ok": all(one["ok"] for one in checks)}
-    say("all is well" if found["ok"] else "NOT all is well")
+    show("all is well" if found["ok"] else "NOT all is well")
     return found
 
 
@@ -174,7 +172,6 @@ def _self_test() -> Iterator[Line]:
 
 def _speed() -> Iterator[Line]:
     from asperity.cli.compiling import compilation
-    from asperity.cli.reporter import seconds
     from asperity.config import BUILTINS, builtin
     from asperity.solver import solve
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
+
+from asperity.cli import shell_completion
+from asperity.cli.arguments import At, OnlyJson, Quiet, Replace, Verbose, optional
 from asperity.cli.reporter import Reporter
-from asperity.cli.study_plots import done, held_axes, is_store
-from asperity.cli.working import Progress
+from asperity.cli.study_plots import held_axes, is_store
+from asperity.cli.working import Progress, completed
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,33 +22,33 @@ Exported = tuple[Path, dict[str, Any]]
 
 
 def export(
-    source: str,
-    *,
-    output: str | None = None,
-    restitution: str | None = None,
-    force_table: str | None = None,
-    at: Sequence[str] = (),
-    force: bool = False,
-    **manner: bool,
-) -> None:
-    """Write a study's results, or what a particle code reads of a study or a case.
+    source: Annotated[
+        str,
+        typer.Argument(metavar="STORE|CASE", help="A store, or a case for --force-table.",
+                       show_default=False, autocompletion=shell_completion.store_or_case),
+    ],
+    output: Annotated[
+        str | None,
+        typer.Option("-o", "--output", metavar="FILE", help="A table: .csv .parquet .nc.",
+                     show_default=False),
+    ] = None,
+    restitution: Annotated[
+        str | None,
+        optional("restitution", "FILE", "Restitution over speed: .csv .txt .foam .h .dat."),
+    ] = None,
+    force_table: Annotated[
+        str | None, optional("force-table", "FILE", "Force over separation of a case, for LAMMPS.")
+    ] = None,
+    at: At = None,
+    force: Replace = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:  # fmt: skip
+    """Write results for other programs.
 
-    Parameters
-    ----------
-    source : str
-        A store; a case for ``force_table``.
-    output : str or None
-        File for all results: ``.csv``, ``.parquet`` or ``.nc``.
-    restitution : str or None
-        File for restitution against impact speed.
-    force_table : str or None
-        File for force against distance.
-    at : sequence of str
-        Axes held fixed for ``restitution``, as ``KEY=VALUE``.
-    force : bool
-        Whether files may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
+    A table of all cases of a store, the restitution over the impact speed, or the force table of
+    one case.
     """
     options = {"output": output, "restitution": restitution, "force-table": force_table}
     given = [name for name, file in options.items() if file is not None]
@@ -57,12 +59,12 @@ def export(
         )
     if at and restitution is None:
         raise InputError("`at` must go with --restitution; got it without", key="at")
-    reporter = Reporter(**manner)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     if force_table is not None:
         written, facts = _export_force(source, force_table, reporter, force=force)
     elif restitution is not None:
         written, facts = _export_restitution(
-            source, restitution, held_axes(at), reporter, force=force
+            source, restitution, held_axes(at or ()), reporter, force=force
         )
     else:
         assert output is not None
@@ -76,7 +78,7 @@ def _export_table(source: str, output: str, reporter: Reporter, *, force: bool) 
     from asperity.sweeps.store.dataset import open_results
 
     with reporter.step("table"):
-        path: Path = done(lambda: write(source, output, force=force))
+        path: Path = completed(lambda stop: write(source, output, force=force))
     found = open_results(source)
     columns = [*(axis.key for axis in found.study.axes), *found.columns]
     facts = {"kind": "table", "cases": found.study.size, "done": found.store.cases_done}
@@ -111,13 +113,13 @@ def _export_force(source: str, file: str, reporter: Reporter, *, force: bool) ->
     check_force_table(Path(file), force=force)
 
     def task(progress: Progress | None) -> Curve:
-        solver = importlib.import_module("asperity.solver")
-        curve: Curve = solver.curve(given.case, name=given.name, progress=progress)
-        return curve
+        from asperity.solver import curve
+
+        return curve(given.case, progress=progress)
 
     try:
         with reporter.watch() as progress:
-            curve = done(lambda: task(progress))
+            curve = completed(lambda stop: task(progress))
         path = write_force_table(curve, file, force=force)
     except InputError as error:
         error.file = error.file or given.file

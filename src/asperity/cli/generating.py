@@ -10,14 +10,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import typer
 
 from asperity.cli.options import in_options
 from asperity.cli.reporter import Reporter
-from asperity.cli.terminal import WIDTH, say
-from asperity.cli.working import Progress, Work
+from asperity.cli.terminal import WIDTH
+from asperity.cli.working import Progress, completed
 from asperity.errors import InputError, OutputError, one_line
-from asperity.results.records import check_folder
+from asperity.results.results_folder import check_folder
 from asperity.results.summary import amount
 from asperity.results.surface_report import pixel_in_words, rows
 from asperity.surfaces import Topography
@@ -33,16 +32,13 @@ from asperity.units import lengths, quantity, shown
 _POINTS = re.compile(r"([0-9]{1,9})(?:\s*[x×]\s*([0-9]{1,9}))?")
 _GAUSSIAN = (0.0, 3.0)
 
-Spectrum = dict[str, Any]
-"""Hurst exponent, roll-off and cut-off as `self_affine` takes them."""
-
 
 class _Wanted(NamedTuple):
     """What to make: the arguments of `self_affine`, and how the heights are called."""
 
     points: tuple[int, int]
     pixel_size: tuple[float, float]
-    spectrum: Spectrum
+    spectrum: dict[str, Any]
     rest: dict[str, Any]
     words: str
 
@@ -80,10 +76,7 @@ def generate(
     with in_options(heights=distribution):
         wanted = _wanted(options)
         with reporter.watch(compiles=False) as progress:
-            made, code = Work(lambda stop: _make(wanted, progress)).wait()
-    if code or made is None:
-        say("asperity: interrupted; nothing was written", whole=True)
-        raise typer.Exit(code)
+            made = completed(lambda stop: _make(wanted, progress))
     with reporter.step("file"):
         write_topography(made.topography, file, force=force)
     reporter.answer(

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
+import typer
+
+from asperity.cli import shell_completion
+from asperity.cli.arguments import OnlyJson, Quiet, Replace, StoreName, Verbose
 from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines
 from asperity.errors import InputError
@@ -14,28 +18,25 @@ _NAMED = 8
 
 
 def merge(
-    stores: Sequence[str],
-    *,
-    output: str | None = None,
-    force: bool = False,
-    **manner: bool,
+    stores: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="STORE...",
+            help="Stores of shards.",
+            show_default=False,
+            autocompletion=shell_completion.store,
+        ),
+    ],
+    output: StoreName = None,
+    force: Replace = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Make one store of those of a study's shards, and say what it holds.
-
-    Parameters
-    ----------
-    stores : sequence of str
-        The stores.
-    output : str or None
-        The store to make, NAME.zarr for NAME.i-of-N.zarr unless given.
-    force : bool
-        Whether a store that is there may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
-    """
+    """Make one store of those of a study's shards."""
     from asperity.sweeps.store.merge import join, whole
 
-    reporter = Reporter(**manner)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     path = Path(output) if output is not None else whole(Path(stores[0]))
     if path.resolve() in {Path(store).resolve() for store in stores}:
         raise InputError(f"`--output` must be none of the stores to merge; got {path}")

@@ -11,7 +11,7 @@ from asperity.cli.terminal import exit_code_of, say, tell
 from asperity.config import BUILTINS, FIRST, load
 from asperity.config.case_file import builtin, builtin_text, read_text
 from asperity.errors import InputError
-from asperity.web.serving import Address, serve
+from asperity.web.serving import serve
 
 
 def show(
@@ -31,7 +31,7 @@ def show(
     case : str, optional
         As the user named it: a built-in case or a TOML file; without it `FIRST`.
     port, host, names
-        See :class:`asperity.web.serving.Address`.
+        As :func:`asperity.web.serving.serve` takes them.
     browse : bool
         Whether to open the page in the browser.
     as_json, quiet : bool
@@ -48,7 +48,7 @@ def show(
             typer.launch(address)
 
     try:
-        serve(Address(host, port, names), first, ready)
+        serve(host, port, names, first, ready)
     except KeyboardInterrupt as stop:
         if not quiet:
             say("asperity: the page is closed")

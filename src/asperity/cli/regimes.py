@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import textwrap
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from asperity.cli.reporter import Reporter
-from asperity.cli.terminal import say
-from asperity.cli.working import Progress, Work
+from asperity.cli.working import Progress, completed
 from asperity.errors import InputError, SimulationError
 from asperity.regimes import LAW_NAMES, Boundary, Frame, Place, Verdict, region
 from asperity.results.case_source import Source, source_of
-from asperity.results.records import check_folder, plain, write_folder
+from asperity.results.record_layout import plain
+from asperity.results.results_folder import check_folder, write_folder
 from asperity.results.summary import WIDTH, amount, warning_lines
 
 if TYPE_CHECKING:
@@ -99,26 +96,25 @@ def _assessed(given: Sequence[Source], reporter: Reporter) -> list[Assessment]:
     """What each case's numbers say; an error names the file."""
 
     def task(stop: threading.Event, progress: Progress | None) -> list[Assessment]:
-        assess: Callable[..., Assessment] = importlib.import_module("asperity.solver").assess
+        from asperity.solver import assess
+
         found: list[Assessment] = []
         for one in given:
             if stop.is_set():
                 break
             try:
-                found.append(assess(one.case, name=one.name, progress=progress, stop=stop))
+                found.append(assess(one.case, progress=progress, stop=stop))
             except InputError as error:
                 error.file = error.file or one.file
                 raise
             except SimulationError as error:
-                raise SimulationError(f"{one.file or one.name}: {error}", error.partial) from error
+                raise SimulationError(
+                    f"{one.file or one.case.name}: {error}", error.partial
+                ) from error
         return found
 
     with reporter.watch() as progress:
-        found, code = Work(lambda stop: task(stop, progress)).wait()
-    if code or found is None:
-        say("asperity: interrupted; nothing was written", whole=True)
-        raise typer.Exit(code)
-    return found
+        return completed(lambda stop: task(stop, progress))
 
 
 def _row(name: str, one: Verdict) -> list[str]:
@@ -158,7 +154,9 @@ def _places(given: Sequence[Source], found: Sequence[Assessment]) -> list[Place]
     names = [one.name for one in found]
     out = []
     for one, assessed in zip(given, found, strict=True):
-        name = one.name if names.count(one.name) == 1 else one.file or one.name
+        name = assessed.name
+        if names.count(name) > 1:
+            name = one.file or name
         elasticity, load = assessed.regime.elasticity_parameter, assessed.regime.load_parameter
         assert elasticity is not None
         out.append(Place(name, elasticity, math.nan if load is None else load))

@@ -38,11 +38,6 @@ class Reporter:
     ) -> None:
         self.as_json, self.quiet, self.verbose = as_json, quiet, verbose
 
-    @property
-    def silent(self) -> bool:
-        """Whether nothing is said while it computes: neither a bar nor steps."""
-        return (self.quiet or self.as_json) and not self.verbose
-
     def answer(self, text: Callable[[], str], found: Callable[[], Mapping[str, Any]]) -> None:
         """Say what came out: one JSON object, words, or nothing.
 
@@ -61,27 +56,25 @@ class Reporter:
         if not self.quiet:
             say(text)
 
-    def written(self, paths: Sequence[Path], *, after: bool = True, earlier: bool = False) -> None:
+    def written(self, paths: Sequence[Path], *, earlier: bool = False) -> None:
         """Say what was written; below the answer unless that is JSON.
 
         Parameters
         ----------
         paths : sequence of Path
             Files of one folder; none says nothing.
-        after : bool
-            Whether an answer stands above.
         earlier : bool
             Whether an earlier answer for the same case was replaced.
         """
         if paths:
-            self.below(written_to(paths, earlier=earlier), after=after)
+            self.below(written_to(paths, earlier=earlier))
 
-    def below(self, text: str, *, after: bool = True) -> None:
+    def below(self, text: str) -> None:
         """Say a text below the answer, beside it where that is JSON."""
         if self.as_json:
             self.note(text)
         elif not self.quiet:
-            tell("\n" * after + text)
+            tell("\n" + text)
 
     @contextlib.contextmanager
     def watch(self, *, compiles: bool = True) -> Iterator[Progress | None]:
@@ -93,7 +86,7 @@ class Reporter:
             Whether it uses JAX, whose compiling is told at the end.
         """
         if not self.verbose:
-            with progress_bar(not self.silent) as progress:
+            with progress_bar(not (self.quiet or self.as_json)) as progress:
                 yield progress
             return
         steps = _Steps()

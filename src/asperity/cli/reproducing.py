@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,12 +9,12 @@ import typer
 
 from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
-from asperity.cli.working import Progress, Work
+from asperity.cli.working import Work
 from asperity.errors import InputError, Outcome, SimulationError
 from asperity.publication import report
 from asperity.publication.published_tables import read_tables
 from asperity.publication.reproduce import Reproduction, reproduce
-from asperity.results.records import REPRODUCTION_FILES, check_folder, write_folder
+from asperity.results.results_folder import REPRODUCTION_FILES, check_folder, write_folder
 from asperity.results.summary import amount
 
 if TYPE_CHECKING:
@@ -95,19 +94,17 @@ def _computed(
 ) -> tuple[Reproduction | None, int]:
     """The reproduction, or what there is of it, and the exit code of an interruption."""
     kept: list[Reproduction] = []
-
-    def task(stop: threading.Event, progress: Progress | None) -> Reproduction:
-        return reproduce(
-            tables=tables,
-            refitted=refit,
-            measured=None if measured is None else _pair(*measured),
-            progress=progress,
-            stop=stop,
-            keep=kept.append,
-        )
-
     with reporter.watch() as progress:
-        done, code = Work(lambda stop: task(stop, progress)).wait()
+        done, code = Work(
+            lambda stop: reproduce(
+                tables=tables,
+                refitted=refit,
+                measured=None if measured is None else _pair(*measured),
+                progress=progress,
+                stop=stop,
+                keep=kept.append,
+            )
+        ).wait()
     return done or (kept[-1] if kept else None), code
 
 

@@ -18,9 +18,6 @@ STORE = ".zarr"
 _PLAIN = re.compile(r"[\w./+,@%-]+")  # a shell would split or expand any other name
 _CASES = Path(__file__).parents[1] / "config" / "cases"
 
-Complete = Callable[[str], list[str]]
-"""What can follow the beginning of a word."""
-
 
 def case(incomplete: str) -> list[str]:
     """Built-in cases, case files and records."""
@@ -65,7 +62,7 @@ def column(ctx: typer.Context) -> list[str]:
     return sorted(entry.parent.name for entry in folder.glob("*/zarr.json"))
 
 
-def one_of(*words: str) -> Complete:
+def one_of(*words: str) -> Callable[[str], list[str]]:
     """Completion of an option that takes one of some words."""
     return lambda incomplete: list(words)
 

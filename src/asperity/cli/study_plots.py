@@ -1,24 +1,25 @@
-"""``asperity plot STORE``: the results of a study, looked at."""
+"""``asperity plot``: a record's pictures again, or the results of a study, looked at."""
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from asperity.cli import shell_completion
+from asperity.cli.arguments import At, Folder, OnlyJson, Quiet, Verbose, optional
 from asperity.cli.reporter import Reporter, files_of, written_to
-from asperity.cli.terminal import WIDTH, say, wrapped
-from asperity.cli.working import Work
+from asperity.cli.terminal import WIDTH, wrapped
+from asperity.cli.working import completed
 from asperity.errors import InputError
 from asperity.units import shown
 
 if TYPE_CHECKING:
     import xarray
 
-    from asperity.sweeps.analysis.pareto import Front
+    from asperity.sweeps.analysis.pareto import Front, Goal
     from asperity.sweeps.store.dataset import Results
 
 _STORE_FILES = tuple(
@@ -28,70 +29,75 @@ _STORE_FILES = tuple(
 )
 _LISTED = 12
 
-Answer = TypeVar("Answer")
-
 
 def is_store(path: str) -> bool:
     """Whether an argument names the store of a study rather than a record."""
     return Path(path).is_dir() or Path(path).suffix.lower() == ".zarr"
 
 
-def plot_store(
-    store: str,
-    *,
-    output: str | None,
-    force: bool,
-    measure: str | None = None,
-    x: str | None = None,
-    y: str | None = None,
-    at: Sequence[str] = (),
-    pareto: tuple[str, str] | None = None,
-    **manner: bool,
-) -> None:
-    """Draw the results of a study.
+def plot(
+    record: Annotated[
+        str,
+        typer.Argument(
+            metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.",
+            autocompletion=shell_completion.record_or_store,
+        ),
+    ],
+    output: Folder = None,
+    measure: Annotated[
+        str | None,
+        optional(
+            "measure", "NAME", "Of a store: what to draw.", values=shell_completion.column
+        ),
+    ] = None,
+    x: Annotated[str | None, optional("x", "KEY", "Of a store: the axis to the right.")] = None,
+    y: Annotated[str | None, optional("y", "KEY", "Of a store: the axis upwards.")] = None,
+    at: At = None,
+    pareto: Annotated[
+        tuple[str, str] | None,
+        typer.Option(
+            "--pareto", metavar="SENSE:NAME SENSE:NAME",
+            help="Of a store: the front of two measures, each min: or max:.", show_default=False,
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace pictures in DIR.")] = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:  # fmt: skip
+    """Draw a record's pictures again, or the results of a study.
 
-    Parameters
-    ----------
-    store : str
-        The store.
-    output : str or None
-        Folder for the pictures; without it ``NAME-out`` beside the store, where earlier ones are
-        replaced.
-    force : bool
-        Whether earlier pictures there may be replaced.
-    measure, x, y : str or None
-        What is drawn over what.
-    at : sequence of str
-        Axes held fixed, as ``KEY=VALUE``.
-    pareto : tuple of str or None
-        Two goals such as ``min:time_to_rest``, in place of a picture over axes.
-    **manner : bool
-        As `Reporter` takes them.
+    Beside the record, in place of those there, unless DIR is given; of a store to NAME-out.
     """
-    from asperity.results.records import check_folder, write_folder
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
+    if not is_store(record):
+        given = {"measure": measure, "x": x, "y": y, "at": at, "pareto": pareto}
+        for name, value in given.items():
+            if value:
+                raise InputError(
+                    f"`--{name}` must be given with a store; got a record", file=record
+                )
+        _redraw(record, output, reporter, force=force)
+        return
+    from asperity.results.results_folder import check_folder, write_folder
     from asperity.sweeps.analysis.pareto import front_of, goal_of
     from asperity.sweeps.analysis.view import at as held_at
-    from asperity.sweeps.store.dataset import dataset_of, open_results
+    from asperity.sweeps.store.dataset import open_results
 
-    reporter, held = Reporter(**manner), held_axes(at)
+    held = held_axes(at or ())
     goals = None if pareto is None else (goal_of(pareto[0]), goal_of(pareto[1]))
-    folder = Path(output) if output is not None else _beside(store)
+    folder = Path(output) if output is not None else _beside(record)
     again = force or output is None
     check_folder(folder, _STORE_FILES, force=again)
-    found = open_results(store)
+    found = open_results(record)
     found.refuse_empty()
-    wanted = [measure] if measure else [goal.measure for goal in goals or ()]
-
-    def draw() -> tuple[xarray.Dataset, dict[str, bytes]]:
-        sweep = importlib.import_module("asperity.plots.study")
-        dataset = dataset_of(found, _read_for(found, wanted))
-        return dataset, sweep.pictures(dataset, measure=measure, x=x, y=y, held=held, pareto=goals)
-
     with reporter.step("results and pictures"):
-        dataset, files = done(draw)
+        dataset, files = completed(
+            lambda stop: _drawn(found, measure=measure, x=x, y=y, held=held, pareto=goals)
+        )
     written = write_folder(folder, files, tuple(files), force=again)
     _note_missing(dataset, reporter)
-    about = {"store": store, **files_of(written)}
+    about = {"store": record, **files_of(written)}
     about |= {name: int(dataset.attrs[name]) for name in ("cases", "computed", "failed")}
     if goals is None:
         reporter.answer(lambda: written_to(written), lambda: about)
@@ -102,6 +108,37 @@ def plot_store(
         lambda: "\n".join([*_front_lines(chosen, front), "", written_to(written)]),
         lambda: {**about, "front": _front_object(chosen, front)},
     )
+
+
+def _redraw(record: str, output: str | None, reporter: Reporter, *, force: bool) -> None:
+    """Draw the pictures of a record again; beside it, in place of those there, unless told else."""
+    from asperity import plots
+    from asperity.results.read_record import read
+    from asperity.results.results_folder import write_folder
+
+    with reporter.step("record"):
+        result = read(record)
+    with reporter.step("pictures"):
+        pictures = plots.pictures(result)
+    if not pictures:
+        raise InputError(
+            f"{record}: a record must hold its motion to be drawn; it has none", file=record
+        )
+    folder = Path(record).parent if output is None else Path(output)
+    written = write_folder(folder, pictures, tuple(pictures), force=force or output is None)
+    reporter.answer(lambda: written_to(written), lambda: {"record": record, **files_of(written)})
+
+
+def _drawn(
+    found: Results, *, measure: str | None, pareto: tuple[Goal, Goal] | None, **view: Any
+) -> tuple[xarray.Dataset, dict[str, bytes]]:
+    """The results that a picture needs, and its files; in a thread of its own."""
+    from asperity.plots import study
+    from asperity.sweeps.store.dataset import dataset_of
+
+    wanted = [measure] if measure else [goal.measure for goal in pareto or ()]
+    dataset = dataset_of(found, _read_for(found, wanted))
+    return dataset, study.pictures(dataset, measure=measure, pareto=pareto, **view)
 
 
 def _read_for(found: Results, wanted: Sequence[str]) -> list[str]:
@@ -139,15 +176,6 @@ def _beside(store: str) -> Path:
     return path.with_name(f"{path.name.removesuffix('.zarr')}-out")
 
 
-def done(task: Callable[[], Answer]) -> Answer:
-    """What a task gives, in a thread so that Ctrl-C is heard; an interruption ends the program."""
-    found, code = Work(lambda stop: task()).wait()
-    if code or found is None:
-        say("asperity: interrupted; nothing was written", whole=True)
-        raise typer.Exit(code)
-    return found
-
-
 def _note_missing(dataset: xarray.Dataset, reporter: Reporter) -> None:
     """Say how many cases are not computed yet, and how many failed."""
     cases, computed = dataset.attrs["cases"], dataset.attrs["computed"]
@@ -162,7 +190,7 @@ def _note_missing(dataset: xarray.Dataset, reporter: Reporter) -> None:
 
 def _front_object(dataset: xarray.Dataset, front: Front) -> dict[str, Any]:
     """The whole front as plain values: axes and measures of its cases, in SI."""
-    from asperity.results.records import plain
+    from asperity.results.record_layout import plain
     from asperity.sweeps.analysis.pareto import axis_values
 
     held = axis_values(dataset, front.cases[front.best])

@@ -13,10 +13,11 @@ import typer
 from asperity.cli.options import in_options
 from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import say
-from asperity.cli.working import Progress, Work
+from asperity.cli.working import Progress, Work, completed
 from asperity.errors import InputError
 from asperity.results import surface_report
-from asperity.results.records import SURFACE_FILES, check_folder, plain, write_folder
+from asperity.results.record_layout import plain
+from asperity.results.results_folder import SURFACE_FILES, check_folder, write_folder
 from asperity.surfaces.measured_surface import Pair, Surface, Treatment, pair, surface, surfaces
 from asperity.surfaces.preparation.prepare import Preparation
 from asperity.units import lengths, quantity
@@ -65,10 +66,9 @@ def describe(
     if output is not None or not as_json:
         folder = Path(output or "-".join([*map(_stem, files), "out"]))
         check_folder(folder, SURFACE_FILES, force=force)
-    found, code = _found(files, asked, reporter)
-    if found is None:
-        say("asperity: interrupted; nothing was written", whole=True)
-        raise typer.Exit(code)
+    with reporter.watch(compiles=False) as progress:
+        found = completed(lambda stop: _found(files, asked, progress, stop))
+    assert found is not None  # or the program has ended
     for one in found.surfaces if isinstance(found, Pair) else (found,):
         with in_options():
             one.description.summits.at_least()
@@ -119,17 +119,11 @@ def pair_of(files: tuple[str, str], asked: Treatment) -> Pair:
 
 
 def _found(
-    files: list[str], asked: Treatment, reporter: Reporter
-) -> tuple[Surface | Pair | None, int]:
-    """The description, and the exit code of an interruption."""
-
-    def task(stop: threading.Event, progress: Progress | None) -> Surface | Pair | None:
-        with in_options(*_PREPARATION):
-            return surfaces(tuple(files), asked, progress, stop)
-
-    with reporter.watch(compiles=False) as progress:
-        found, code = Work(lambda stop: task(stop, progress)).wait()
-    return (None if code else found), code
+    files: list[str], asked: Treatment, progress: Progress | None, stop: threading.Event
+) -> Surface | Pair | None:
+    """The description; None where it was stopped."""
+    with in_options(*_PREPARATION):
+        return surfaces(tuple(files), asked, progress, stop)
 
 
 def _deliver(found: Surface | Pair, request: _Request) -> None:

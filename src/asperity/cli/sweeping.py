@@ -6,12 +6,21 @@ import contextlib
 import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
+from asperity.cli.arguments import (
+    OnlyJson,
+    Quiet,
+    Replace,
+    StoreName,
+    StudyFile,
+    Verbose,
+    optional,
+)
 from asperity.cli.reporter import Reporter
-from asperity.cli.tallying import about, lines, lines_of, progress_of, took, warnings
+from asperity.cli.tallying import about, lines, lines_of, progress_of, took
 from asperity.cli.terminal import exit_code_of, say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError
@@ -39,46 +48,41 @@ class _Request(NamedTuple):
 
 
 def sweep(
-    study: str,
-    *,
-    output: str | None = None,
-    resume: bool = False,
-    repair: bool = False,
-    shard: str | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    yes: bool = False,
-    force: bool = False,
-    **manner: bool,
-) -> None:
-    """Compute the cases of a study that its store misses, and say what came out.
+    study: StudyFile,
+    output: StoreName = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a store that is there.")
+    ] = False,
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Look through a store; compute damaged tasks again.")
+    ] = False,
+    shard: Annotated[
+        str | None, optional("shard", "i/N", "Compute the i-th of N parts, for a job array.")
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers", metavar="N", help="Worker processes of a local dask cluster.",
+            show_default=False,
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str | None, optional("scheduler", "ADDRESS", "A dask scheduler whose workers compute.")
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Compute a very large study.")] = False,
+    force: Replace = False,
+    as_json: OnlyJson = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:  # fmt: skip
+    """Compute all cases of a study.
 
-    Parameters
-    ----------
-    study : str
-        The study's file.
-    output : str or None
-        The store, ./STUDY.zarr unless given.
-    resume : bool
-        Whether to go on with a store that is there.
-    repair : bool
-        Whether to look through a store and compute again what is not as it was written.
-    shard : str or None
-        "i/N" for the i-th of N parts, which goes into a store of its own.
-    workers : int or None
-        Local worker processes; this process computes unless given.
-    scheduler : str or None
-        Address of a dask scheduler whose workers compute.
-    yes : bool
-        Whether a very large study is meant.
-    force : bool
-        Whether a store that is there may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
+    Writes the store NAME.zarr and, beside it, its manifest and a log. What was finished before an
+    interruption is kept.
     """
     from asperity.sweeps.compute.runner import one_thread
 
-    reporter = Reporter(**manner)
+    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     one_thread(at_once=True)
     _refuse_both(force=force, resume=resume)
     _refuse_both(force=force, repair=repair)
@@ -251,8 +255,9 @@ def _tell_sweep(
             lambda: "\n".join([*lines(store), *lines_of(tally)]),
             lambda: about(store) | took(tally),
         )
-    for warning in [] if reporter.as_json else warnings(tally):
-        reporter.note(f"asperity: {warning}")
+    if tally is not None and not reporter.as_json:
+        for warning in tally.warnings:
+            reporter.note(f"asperity: {warning}")
     missing = store.size - store.cases_done
     if missing and not code and request.shard is None:
         reporter.note(f"asperity: {missing:,} cases are missing yet; `--resume` computes them")

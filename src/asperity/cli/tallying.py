@@ -57,13 +57,8 @@ def took(tally: Tally | None) -> dict[str, Any]:
         "batch_use": tally.batch_use,
         "overhead_share": tally.outside,
         "cases_checked": tally.looked,
-        "warnings": warnings(tally),
+        "warnings": tally.warnings,
     }
-
-
-def warnings(tally: Tally | None) -> list[str]:
-    """Where the cases looked at leave the validity of their models; see `Tally.warnings`."""
-    return [] if tally is None else tally.warnings
 
 
 def lines(store: Store) -> list[str]:

@@ -11,7 +11,9 @@ import types
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from asperity.cli.terminal import FATAL, raise_stop
+import typer
+
+from asperity.cli.terminal import FATAL, raise_stop, say
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -69,6 +71,21 @@ class Work(Generic[Answer]):
             self._error = error
         finally:
             self._ended = True
+
+
+def completed(task: Callable[[threading.Event], Answer]) -> Answer:
+    """What a task gives as a whole; an interruption ends the program, with nothing written.
+
+    Parameters
+    ----------
+    task : callable
+        As `Work` takes it; gives None where it was stopped.
+    """
+    found, code = Work(task).wait()
+    if code or found is None:
+        say("asperity: interrupted; nothing was written", whole=True)
+        raise typer.Exit(code)
+    return found
 
 
 @contextlib.contextmanager

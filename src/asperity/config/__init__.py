@@ -5,8 +5,7 @@
 `publication`. `fields`: kinds of value; `key_labels`: every key in words.
 `case_file`: text to case; `case_text`: case to text; `replacing`: a case with other values;
 `problems`: what is wrong with a case, in one line. `asperities`: heights from numbers or files.
-`case_solids`: what the bodies are made of. `resolve`: case to `asperity.inputs.Inputs`.
-`cases`: the built-in cases.
+`resolve`: case to `asperity.inputs.Inputs`. `cases`: the built-in cases.
 
 A new key is a field with its unit, meaning and example; form, template and help follow from it.
 """

@@ -17,17 +17,21 @@ class Table(BaseModel):
     loss: ClassVar[str | None] = None
     """Name of what is lost by what the table describes, in the ledger; None where nothing is."""
 
-    drives: ClassVar[bool] = False
-    """Whether the table's mechanism sets a body in motion that is at rest."""
-
     def check_beside(self, case: Any) -> None:
         """Refuse what the table cannot stand beside in a ``CaseTables``; by default nothing.
+
+        The materials of the case are known.
 
         Raises
         ------
         InputError
             With the key at fault and its rule.
         """
+
+
+def acts(table: Any) -> bool:
+    """Whether a table with a model is there, and its model is not 'none'."""
+    return table is not None and table.model != "none"
 
 
 def need(table: Any, keys: tuple[str, ...]) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -46,7 +46,7 @@ class Made(Table):
 
     material: str | None = entry(
         "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
-        default=None, among=catalogue.SOLIDS,
+        default=None, shown=True, among=catalogue.SOLIDS,
     )  # fmt: skip
     youngs_modulus: fields.Modulus | None = entry(
         "Pa", "Young's modulus, in place of `material`.", "80 GPa", default=None
@@ -104,10 +104,6 @@ class Body(Made):
 
     shape: Literal["sphere"] = entry("", "Shape of the body.", "sphere", default="sphere")
     radius: fields.Length = entry("m", "Radius of the sphere.", "50 um")
-    material: str | None = entry(
-        "", "Name from the catalogue or of a [materials.NAME] table.", "soda-lime glass",
-        default=None, shown=True, among=catalogue.SOLIDS,
-    )  # fmt: skip
 
 
 class Counterface(Made):
@@ -126,3 +122,9 @@ class Counterface(Made):
         "rigid",
         default="half-space",
     )
+
+
+def solids_of(case: Any) -> tuple[catalogue.Solid, catalogue.Solid]:
+    """The solids of the body and of the counterface of a ``CaseTables``."""
+    own = case.materials
+    return case.body.solid(own, "body"), case.counterface.solid(own, "counterface")

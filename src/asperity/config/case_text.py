@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import re
 import textwrap
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,23 +20,23 @@ _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 def toml(model: BaseModel) -> str:
     """A model as TOML: values first, then its tables; every quantity with its SI unit."""
-    return "\n".join(_lines(model, ())).strip() + "\n"
+    return text_of(written(model))
 
 
-def _lines(model: BaseModel, place: tuple[str, ...]) -> list[str]:
-    values, tables = [], []
+def written(model: BaseModel) -> dict[str, Any]:
+    """The tables of a model as `tomllib.loads` gives them, every quantity with its SI unit."""
+    found: dict[str, Any] = {}
     for name, field in ordered(type(model)).items():
-        value = getattr(model, name)
-        key = field.alias or name
+        value, unit = getattr(model, name), unit_of(field)
         if isinstance(value, BaseModel):
-            tables += _lines(value, (*place, key))
+            value = written(value)
         elif isinstance(value, dict):
-            for inner, table in value.items():
-                tables += _lines(table, (*place, key, inner))
-        elif value is not None:
-            values.append(f"{key} = {_value(value, field)}")
-    header = [f"[{'.'.join(_key(part) for part in place)}]"] if place else []
-    return [*header, *values, "", *tables]
+            value = {inner: written(table) for inner, table in value.items()} or None
+        elif isinstance(value, float) and unit not in ("", "1"):
+            value = f"{value!r} {unit}"
+        if value is not None:
+            found[field.alias or name] = value
+    return found
 
 
 def text_of(tables: Mapping[str, Any]) -> str:
@@ -61,7 +60,7 @@ def _given(tables: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
     if place and (lines or not inner):
         lines = [f"[{'.'.join(_key(part) for part in place)}]", *lines]
     rest = [line for key, table in inner.items() for line in _given(table, (*place, key))]
-    return [*lines, "", *rest]
+    return [*lines, "", *rest] if lines else rest
 
 
 def ordered(model: type[BaseModel]) -> dict[str, FieldInfo]:
@@ -75,13 +74,6 @@ def unit_of(field: FieldInfo) -> str:
     """SI unit of a field's values; ``"1"`` for plain numbers, ``""`` for text and switches."""
     extra = field.json_schema_extra
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
-
-
-def _value(value: object, field: FieldInfo) -> str:
-    unit = unit_of(field)
-    if isinstance(value, float) and unit not in ("", "1"):
-        return f'"{value!r} {unit}"'
-    return _literal(value)
 
 
 def _literal(value: object) -> str:
@@ -106,9 +98,8 @@ def _key(name: str) -> str:
     return name if _BARE.fullmatch(name) else _literal(name)
 
 
-def changed(source: str, changes: Mapping[str, object]) -> dict[str, Any]:
-    """The tables of a TOML text with other values at dotted keys; None removes a key."""
-    tables = tomllib.loads(source)
+def change(tables: dict[str, Any], changes: Mapping[str, object]) -> None:
+    """Give tables other values at dotted keys; None removes a key."""
     for dotted, value in changes.items():
         *above, last = dotted.split(".")
         table = tables
@@ -120,7 +111,6 @@ def changed(source: str, changes: Mapping[str, object]) -> dict[str, Any]:
             table.pop(last, None)
         else:
             table[last] = value
-    return tables
 
 
 def commented(model: type[BaseModel], heading: str) -> str:

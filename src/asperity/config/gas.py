@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import model_validator
 
@@ -13,10 +13,6 @@ from asperity.config.problems import did_you_mean
 from asperity.errors import InputError, refuse_all
 from asperity.materials.gases import GASES
 from asperity.units import shown
-
-if TYPE_CHECKING:
-    from asperity.config.roughness import Roughness
-    from asperity.config.run_tables import Impact
 
 _NAMED = ("pressure", "temperature")
 _BY_NUMBER = ("viscosity", "slip_length")
@@ -93,16 +89,12 @@ class Gas(Table):
         except InputError as error:
             raise InputError(str(error), key="temperature") from error
 
-    def refuse_without_ends(self, impact: Impact, roughness: Roughness | None) -> None:
-        """Refuse a film that has no thinnest or no thickest place.
-
-        Raises
-        ------
-        InputError
-            With the key that must be given.
-        """
-        closest, release = self.cutoff_separation, impact.release_separation
-        if roughness is None and closest is None:
+    def check_beside(self, case: Any) -> None:
+        """Refuse a film that has no thinnest or no thickest place."""
+        if case.impact is None:
+            return
+        closest, release = self.cutoff_separation, case.impact.release_separation
+        if case.roughness is None and closest is None:
             raise InputError(
                 "`cutoff_separation` must be given for a smooth body: a film between smooth "
                 "surfaces that touch would hold them apart for ever; got nothing",

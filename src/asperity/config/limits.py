@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from asperity.config.asperities import asperities_of, refuse_asperities
-from asperity.config.case_solids import solids_of
+from asperity.config.bodies import solids_of
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError
 from asperity.inputs import Asperities

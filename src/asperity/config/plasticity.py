@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
 from asperity.config import fields
 from asperity.config.adhesion_tables import Adhesion, Capillary
-from asperity.config.base_table import Table
-from asperity.config.bodies import Counterface
+from asperity.config.base_table import Table, acts
+from asperity.config.bodies import solids_of
 from asperity.config.fields import entry
-from asperity.config.publication import Publication
-from asperity.config.roughness import Roughness
-from asperity.errors import InputError
+from asperity.errors import InputError, check_each
 from asperity.inputs import Yielding
 from asperity.materials.solids import HARDNESS_PER_YIELD_STRENGTH, Solid, refuse_softer_than_yield
 
@@ -61,52 +59,48 @@ class Plasticity(Table):
             )
         return self
 
-    def refuse_beside(
-        self,
-        adhesion: Adhesion,
-        capillary: Capillary,
-        roughness: Roughness | None,
-        publication: Publication | None,
-    ) -> None:
-        """Refuse the tables of a case that a law of this table cannot stand beside.
+    def check_beside(self, case: Any) -> None:
+        """Refuse what the law cannot stand beside, and solids that have no strength."""
+        if self.model == "none":
+            return
+        check_each(lambda: self.refuse_models(case), lambda: yielding_of(self, solids_of(case)))
+
+    def refuse_models(self, case: Any) -> None:
+        """Refuse the models of a case that the law cannot stand beside.
 
         Raises
         ------
         InputError
-            With the rule; nothing is refused with the model 'none'.
+            With the rule.
         """
-        if self.model == "none":
-            return
-        if publication is not None:
+        check_each(lambda: self._refuse_tables(case), lambda: self._refuse_bulk(case))
+
+    def _refuse_tables(self, case: Any) -> None:
+        """Refuse the tables that the law has no room for."""
+        if case.publication is not None:
             raise InputError(
                 "[plasticity] must not be given with a [publication] table, whose asperities are "
                 f"elastic; got model = '{self.model}'",
                 key="plasticity.model",
             )
-        self._refuse_adhesion(adhesion, smooth=roughness is None)
-        self._refuse_liquid(capillary)
-        if roughness is not None and roughness.source == "summits":
+        self._refuse_adhesion(case.adhesion, smooth=case.roughness is None)
+        self._refuse_liquid(case.capillary)
+        if case.roughness is not None and case.roughness.source == "summits":
             raise InputError(
                 "`source` must be 'gaussian' with [plasticity] model = "
                 f"'{self.model}', since each summit would need a memory of its own; got 'summits'",
                 key="roughness.source",
             )
 
-    def refuse_under(self, counterface: Counterface, roughness: Roughness | None) -> None:
-        """Refuse a bulk that deforms under asperities that yield.
-
-        Raises
-        ------
-        InputError
-            With the rule; nothing is refused with the model 'none'.
-        """
-        if self.model == "none" or roughness is None or counterface.deformation == "rigid":
-            return
-        raise InputError(
-            "`deformation` must be 'rigid' where asperities yield: every place of a half-space "
-            f"would keep an approach of its own; got '{counterface.deformation}'",
-            key="counterface.deformation",
-        )
+    def _refuse_bulk(self, case: Any) -> None:
+        """Refuse a bulk that deforms under asperities that yield."""
+        deformation = case.counterface.deformation
+        if case.roughness is not None and deformation != "rigid":
+            raise InputError(
+                "`deformation` must be 'rigid' where asperities yield: every place of a half-space "
+                f"would keep an approach of its own; got '{deformation}'",
+                key="counterface.deformation",
+            )
 
     def _refuse_adhesion(self, adhesion: Adhesion, *, smooth: bool) -> None:
         """Refuse an adhesion that changes the contact itself, unless a law has it inside."""
@@ -135,6 +129,19 @@ class Plasticity(Table):
                 f"{capillary.formation_time:.6g} s",
                 key="capillary.formation_time",
             )
+
+
+def case_yielding(case: Any) -> Yielding | None:
+    """What yields in a contact of a ``CaseTables``: the softer solid, with the table's own values.
+
+    None where no solid's strength is known and no law of yielding is in use.
+    """
+    solids = solids_of(case)
+    if acts(case.plasticity):
+        return yielding_of(case.plasticity, solids)
+    if not any(solid.hardness or solid.yield_strength for solid in solids):
+        return None
+    return yielding_of(Plasticity(model="none"), solids)
 
 
 def yielding_of(table: Plasticity, solids: tuple[Solid, Solid]) -> Yielding:

@@ -37,8 +37,11 @@ def replaced(case: _Tables, changes: Mapping[str, object]) -> _Tables:
             f"{shown(changes)}"
         )
     model = type(case)
-    written = {key: as_written(model, _key(key), value) for key, value in changes.items()}
-    return named(problems.check(model, case_text.changed(case_text.toml(case), written)), case.name)
+    tables = case_text.written(case)
+    case_text.change(
+        tables, {key: as_written(model, _key(key), value) for key, value in changes.items()}
+    )
+    return named(problems.check(model, tables), case.name)
 
 
 def as_written(model: type[BaseModel], key: str, value: object) -> object:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.config.asperities import asperities_of
-from asperity.config.case_solids import case_yielding, solids_of
+from asperity.config.base_table import acts
+from asperity.config.bodies import solids_of
 from asperity.config.limits import refuse_rough
-from asperity.config.plasticity import Plasticity
+from asperity.config.plasticity import Plasticity, case_yielding
 from asperity.config.roughness import BESIDE, REALISATIONS, Roughness
 from asperity.errors import InputError, Tolerance
 from asperity.inputs import (
@@ -64,7 +65,7 @@ def resolve(case: CaseTables) -> Inputs:
     adhesion = _adhesion(case, tip, modulus)
     air, wet = case.capillary, _menisci(case)
     assert body.density is not None
-    relaxing = case.viscoelasticity is not None and case.viscoelasticity.model != "none"
+    relaxing = acts(case.viscoelasticity)
     table = case.roughness
     return Inputs(
         structure=Structure(
@@ -74,7 +75,7 @@ def resolve(case: CaseTables) -> Inputs:
             plasticity="none" if case.plasticity is None else case.plasticity.model,
             deformation=case.counterface.deformation,
             viscoelastic=relaxing,
-            waves=case.waves is not None and case.waves.model != "none",
+            waves=acts(case.waves),
             gas=case.gas is not None,
             suspension="none" if case.suspension is None else case.suspension.model,
             heights="smooth" if table is None else table.source or "gaussian",
@@ -86,7 +87,7 @@ def resolve(case: CaseTables) -> Inputs:
         mass=body.density * 4.0 / 3.0 * math.pi * radius**3,
         modulus=modulus,
         tip_radius=tip,
-        yielding=case_yielding(case.plasticity, (body, counterface)),
+        yielding=case_yielding(case),
         strength_given=_strength_given(case),
         plasticity_allowed=_plasticity_allowed(case),
         work_of_adhesion=0.0 if adhesion.law == "none" else _given(case.adhesion.work),
@@ -226,10 +227,8 @@ def _strength_given(case: CaseTables) -> bool:
 
 def _plasticity_allowed(case: CaseTables) -> bool:
     """Whether a law of yielding could stand beside the other tables."""
-    table = Plasticity(model="kogut-etsion")
     try:
-        table.refuse_beside(case.adhesion, case.capillary, case.roughness, case.publication)
-        table.refuse_under(case.counterface, case.roughness)
+        Plasticity(model="kogut-etsion").refuse_models(case)
     except InputError:
         return False
     return True

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from asperity.config import fields
-from asperity.config.base_table import Table
+from asperity.config.base_table import Table, acts
 from asperity.config.fields import Number, entry
 from asperity.errors import InputError, refuse_all
 from asperity.units import lengths
@@ -184,9 +184,9 @@ class Roughness(Table):
         others = {
             "capillary.model": case.capillary.model == "kelvin-filling",
             "capillary.formation_time": bool(case.capillary.formation_time),
-            "plasticity.model": _on(case.plasticity),
-            "waves.model": _on(case.waves),
-            "viscoelasticity.model": _on(case.viscoelasticity),
+            "plasticity.model": acts(case.plasticity),
+            "waves.model": acts(case.waves),
+            "viscoelasticity.model": acts(case.viscoelasticity),
             "gas": case.gas is not None,
             "suspension": case.suspension is not None,
             "publication": case.publication is not None,
@@ -209,8 +209,3 @@ _BESIDE = {
     "publication": "a [publication] table must be absent",
 }
 _NO_OTHER = "they have the elastic forces, adhesion and menisci of their summits alone"
-
-
-def _on(table: Any) -> bool:
-    """Whether a table is there with a model."""
-    return table is not None and table.model != "none"

@@ -6,7 +6,6 @@ import functools
 
 from asperity.config import problems
 from asperity.config.base_table import Table
-from asperity.config.case_solids import case_yielding, solids_of
 from asperity.config.limits import refuse_outside
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError, check_each, refuse_all
@@ -23,25 +22,16 @@ def check_rules(case: CaseTables) -> None:
         With the key at fault and its rule.
     """
     check_each(lambda: _known_material(case, "body"), lambda: _known_material(case, "counterface"))
+    tables = [value for _, value in case if isinstance(value, Table)]
     check_each(
         lambda: _publication_beside(case),
-        lambda: _film_between_ends(case),
         lambda: _elastic_somewhere(case),
         lambda: _bounded_liquid(case),
         lambda: _delayed_liquid(case),
-        lambda: _waves_beside(case),
-        lambda: _creep_beside(case),
-        lambda: _yielding_beside(case),
         lambda: _falls(case),
-        *(functools.partial(table.check_beside, case) for table in _tables(case)),
+        *(functools.partial(table.check_beside, case) for table in tables),
         lambda: refuse_outside(case),
     )
-
-
-def _tables(case: CaseTables) -> list[Table]:
-    """The tables that a case has."""
-    found = (getattr(case, name) for name in CaseTables.model_fields)
-    return [table for table in found if isinstance(table, Table)]
 
 
 def _falls(case: CaseTables) -> None:
@@ -49,7 +39,7 @@ def _falls(case: CaseTables) -> None:
     impact = case.impact
     if impact is None or impact.speed is not None or impact.gravity != 0.0:
         return
-    if not any(table.drives for table in _tables(case)):
+    if case.suspension is None:
         raise InputError(
             "`gravity` must be positive where there is no `speed`: the body would never fall; "
             "got 0 m/s^2",
@@ -96,12 +86,6 @@ def _publication_beside(case: CaseTables) -> None:
     )
 
 
-def _film_between_ends(case: CaseTables) -> None:
-    """Refuse a film that has no thinnest or no thickest place."""
-    if case.gas is not None and case.impact is not None:
-        case.gas.refuse_without_ends(case.impact, case.roughness)
-
-
 def _known_material(case: CaseTables, part: str) -> None:
     """Refuse the name of a material that neither the case nor the catalogue has."""
     known = [*case.materials, *catalogue.SOLIDS]
@@ -122,84 +106,6 @@ def _elastic_somewhere(case: CaseTables) -> None:
             "body has no elasticity at all; got 'rigid'",
             key="counterface.deformation",
         )
-
-
-def _waves_beside(case: CaseTables) -> None:
-    """Refuse what waves cannot stand beside."""
-    if case.waves is not None:
-        case.waves.refuse_beside(solids_of(case)[1], case.capillary, case.publication)
-
-
-def _creep_beside(case: CaseTables) -> None:
-    """Refuse what cannot stand beside a viscoelastic bulk."""
-    table = case.viscoelasticity
-    if table is None or table.model == "none":
-        return
-    with_it = f"with [viscoelasticity] model = '{table.model}'"
-    _creep_alone(case, with_it)
-    if case.counterface.deformation == "rigid":
-        raise InputError(
-            f"`deformation` must be 'half-space' {with_it}: a rigid bulk has nothing that "
-            "creeps; got 'rigid'",
-            key="counterface.deformation",
-        )
-    if case.capillary.model != "none" and case.capillary.formation_time:
-        raise InputError(
-            f"`formation_time` must be absent {with_it}; got {case.capillary.formation_time:.6g} s",
-            key="capillary.formation_time",
-        )
-    if case.roughness is None:
-        _creep_without_pulls(case, with_it)
-
-
-def _creep_alone(case: CaseTables, with_it: str) -> None:
-    """Refuse what takes energy in another way, and what has no bulk."""
-    if case.publication is not None:
-        raise InputError(
-            f"a [publication] table must be absent {with_it}: it has no bulk that creeps",
-            key="publication",
-        )
-    if case.gas is not None:
-        raise InputError(
-            f"a [gas] table must be absent {with_it}, whose motion knows no drag", key="gas"
-        )
-    if case.waves is not None and case.waves.model != "none":
-        raise InputError(
-            f"`model` must be 'none' in [waves] {with_it}, whose motion knows no drag; got "
-            f"'{case.waves.model}'",
-            key="waves.model",
-        )
-    yields = case.plasticity
-    if yields is not None and yields.model != "none":
-        raise InputError(
-            f"`model` must be 'none' in [plasticity] {with_it}; got '{yields.model}'",
-            key="plasticity.model",
-        )
-
-
-def _creep_without_pulls(case: CaseTables, with_it: str) -> None:
-    """Refuse adhesion and menisci of a smooth body."""
-    for key, model in (("adhesion", case.adhesion.model), ("capillary", case.capillary.model)):
-        if model != "none":
-            raise InputError(
-                f"`model` must be 'none' for a smooth body {with_it}: how its edge heals and "
-                f"peels is not described; got '{model}'",
-                key=f"{key}.model",
-            )
-
-
-def _yielding_beside(case: CaseTables) -> None:
-    """Refuse what a law of yielding cannot stand beside, and solids that have no strength."""
-    table = case.plasticity
-    if table is None or table.model == "none":
-        return
-    check_each(
-        lambda: table.refuse_beside(
-            case.adhesion, case.capillary, case.roughness, case.publication
-        ),
-        lambda: table.refuse_under(case.counterface, case.roughness),
-        lambda: case_yielding(table, solids_of(case)),
-    )
 
 
 def _delayed_liquid(case: CaseTables) -> None:

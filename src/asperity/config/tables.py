@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from asperity.config.adhesion_tables import Adhesion, Capillary
-from asperity.config.base_table import Table
+from asperity.config.base_table import Table, acts
 from asperity.config.bodies import Body, Counterface, Material
 from asperity.config.fields import Quantity, entry
 from asperity.config.gas import Gas
@@ -38,7 +38,6 @@ class Suspension(Table):
     """A spring and a dashpot between the body and a base at rest; without this table it is free."""
 
     loss: ClassVar[str] = "damping"
-    drives: ClassVar[bool] = True
 
     stiffness: Annotated[float, Quantity("N/m", 1e-9, 1e9)] = entry(
         "N/m", "Stiffness of the spring.", "1 N/m"
@@ -64,11 +63,10 @@ class Suspension(Table):
                 "[suspension] must not be given with a [publication] table, whose body is free",
                 key="suspension",
             )
-        relaxing = case.viscoelasticity
-        if relaxing is not None and relaxing.model != "none":
+        if acts(case.viscoelasticity):
             raise InputError(
                 "[suspension] must not be given with [viscoelasticity] model = "
-                f"'{relaxing.model}', whose motion in time knows no spring",
+                f"'{case.viscoelasticity.model}', whose motion in time knows no spring",
                 key="suspension",
             )
         if case.capillary.model != "none" and case.capillary.formation_time:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
 from asperity.config import fields
-from asperity.config.base_table import Table, need
+from asperity.config.base_table import Table, acts, need
 from asperity.config.fields import Number, entry
+from asperity.errors import InputError
 
 
 class Viscoelasticity(Table):
@@ -41,3 +42,58 @@ class Viscoelasticity(Table):
         if self.model == "none":
             return self
         return need(self, ("relaxed_modulus_ratio", "relaxation_time"))
+
+    def check_beside(self, case: Any) -> None:
+        if self.model == "none":
+            return
+        with_it = f"with [viscoelasticity] model = '{self.model}'"
+        _refuse_other_losses(case, with_it)
+        if case.counterface.deformation == "rigid":
+            raise InputError(
+                f"`deformation` must be 'half-space' {with_it}: a rigid bulk has nothing that "
+                "creeps; got 'rigid'",
+                key="counterface.deformation",
+            )
+        time = case.capillary.formation_time
+        if case.capillary.model != "none" and time:
+            raise InputError(
+                f"`formation_time` must be absent {with_it}; got {time:.6g} s",
+                key="capillary.formation_time",
+            )
+        if case.roughness is None:
+            _refuse_pulls(case, with_it)
+
+
+def _refuse_other_losses(case: Any, with_it: str) -> None:
+    """Refuse what takes energy in another way, and what has no bulk."""
+    if case.publication is not None:
+        raise InputError(
+            f"a [publication] table must be absent {with_it}: it has no bulk that creeps",
+            key="publication",
+        )
+    if case.gas is not None:
+        raise InputError(
+            f"a [gas] table must be absent {with_it}, whose motion knows no drag", key="gas"
+        )
+    if acts(case.waves):
+        raise InputError(
+            f"`model` must be 'none' in [waves] {with_it}, whose motion knows no drag; got "
+            f"'{case.waves.model}'",
+            key="waves.model",
+        )
+    if acts(case.plasticity):
+        raise InputError(
+            f"`model` must be 'none' in [plasticity] {with_it}; got '{case.plasticity.model}'",
+            key="plasticity.model",
+        )
+
+
+def _refuse_pulls(case: Any, with_it: str) -> None:
+    """Refuse adhesion and menisci of a smooth body."""
+    for key, model in (("adhesion", case.adhesion.model), ("capillary", case.capillary.model)):
+        if model != "none":
+            raise InputError(
+                f"`model` must be 'none' for a smooth body {with_it}: how its edge heals and "
+                f"peels is not described; got '{model}'",
+                key=f"{key}.model",
+            )

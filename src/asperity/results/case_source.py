@@ -25,7 +25,7 @@ _LISTED = 10_000  # files of a folder among which a near name is sought
 
 @dataclass(frozen=True)
 class Source:
-    """A case with its name, the hash of the text that it was read from, and where that is.
+    """A named case, the hash of the text that it was read from, and where that is.
 
     Attributes
     ----------
@@ -36,7 +36,6 @@ class Source:
     """
 
     case: Case
-    name: str
     input_sha256: str
     file: str | None
     case_file: str | None
@@ -80,7 +79,7 @@ def source_of(given: str | os.PathLike[str]) -> Source:
         assert record.input_sha256 is not None
         _check_surfaces(name, getattr(record, "surface", None))
         case = named(record.case, record.name)
-        return Source(case, record.name, record.input_sha256, name, record.case_file)
+        return Source(case, record.input_sha256, name, record.case_file)
     try:
         case = load_file(name)
         text = path.read_bytes()
@@ -92,7 +91,7 @@ def source_of(given: str | os.PathLike[str]) -> Source:
     except OSError as error:
         reason = error.strerror or error
         raise InputError(f"{name}: cannot be read: {reason}", file=name) from None
-    return Source(case, case.name, hashlib.sha256(text).hexdigest(), name, str(path.resolve()))
+    return Source(case, hashlib.sha256(text).hexdigest(), name, str(path.resolve()))
 
 
 def _no_source(wanted: str, given: object) -> InputError:
@@ -125,7 +124,7 @@ def _builtin(name: str) -> Source:
     except InputError as error:
         raise InputError(f"{error}{_file_of(name)}", key=error.key) from None
     digest = hashlib.sha256(builtin_text(name).encode()).hexdigest()
-    return Source(case, name, digest, None, f"built-in case {name}")
+    return Source(case, digest, None, f"built-in case {name}")
 
 
 def _file_of(name: str) -> str:

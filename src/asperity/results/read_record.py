@@ -18,9 +18,7 @@ from asperity.results.realisations import KINDS, Realisations
 from asperity.results.result import Curve, Result
 
 _MOTION = ("time", "separation", "central_separation", "speed")
-_EVENTS = ("closest_approach_time", "closest_approach_separation", "apex_time", "apex_separation")
-_NUMBERS = ("minimum_separation", "pull_off", "work_of_separation", "loss")
-_MAYBE = ("pull_off_separation", "preload")
+_MAYBE = ("pull_off_separation", "preload")  # of a curve's numbers
 _MAGIC = b"CDF\x02"
 
 
@@ -99,8 +97,8 @@ def _result(
         **motion,
         forces=_below(arrays, "force_"),
         energies={key: values for key, values in _below(arrays, "energy_").items() if values.ndim},
-        events={key: arrays.get(key, nothing) for key in _EVENTS},
-        **{key: json.loads(said[key]) for key in ("regime", "measures", "ledger", "warnings")},
+        events={key: arrays.get(key, nothing) for key in record_layout.EVENTS},
+        **{key: json.loads(said[key]) for key in record_layout.PARTS},
         surface=json.loads(said["surface"]) if "surface" in said else None,
         realisations=_realisations(arrays),
     )
@@ -116,13 +114,12 @@ def _realisations(arrays: Mapping[str, np.ndarray]) -> Realisations | None:
 
 
 def _curve(arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]) -> Curve:
-    numbers: dict[str, Any] = {key: float(arrays[key]) for key in _NUMBERS}
+    numbers: dict[str, Any] = {key: float(arrays[key]) for key in record_layout.CURVE}
     for key in _MAYBE:
-        numbers[key] = None if np.isnan(arrays[key]) else float(arrays[key])
-    along = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
+        numbers[key] = None if np.isnan(numbers[key]) else numbers[key]
     return Curve(
         **shared,
-        **{key: arrays[key] for key in along},
+        **{key: arrays[key] for key in record_layout.ALONG_CURVE},
         components_loading=_below(arrays, "force_loading_"),
         components_unloading=_below(arrays, "force_unloading_"),
         **numbers,

@@ -35,12 +35,14 @@ _ENERGIES = {
     "potential": "potential energy of weight and spring",
     "stored": "energy stored in the contact",
 }
-_EVENTS = {
+EVENTS = {
     "closest_approach_time": ("s", "time of closest approach"),
     "closest_approach_separation": ("m", "rigid separation at closest approach"),
     "apex_time": ("s", "time of the rebound's turning point"),
     "apex_separation": ("m", "rigid separation at the rebound's turning point"),
 }
+"""Unit and meaning of what is known of each impact."""
+
 _PULL = {
     "pull_off": ("N", "largest tension while unloading from the first turn"),
     "pull_off_separation": ("m", "rigid separation at pull-off"),
@@ -63,11 +65,18 @@ _MEASURES = {
     "power_loss": ("W", "energy lost over the impact time"),
     "power_loss_published": ("W", "one-way work over the impact time, as the publication counts"),
 }
-_CURVE = {
+CURVE = {
     "minimum_separation": ("m", "closest rigid separation"),
     **_PULL,
     "loss": ("J", "energy lost over in and out"),
 }
+"""Unit and meaning of the numbers of a curve."""
+
+PARTS = ("regime", "measures", "ledger", "warnings")
+"""What a record of a run holds as JSON."""
+
+ALONG_CURVE = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
+"""What a curve has at each of its points."""
 
 
 class Variable(NamedTuple):
@@ -108,7 +117,7 @@ def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
             found["jumps"] = json.dumps(plain(result.jumps), allow_nan=False)
     if isinstance(result, ResultData):
         found["outcome"] = result.outcome.value
-        for part in ("regime", "measures", "ledger", "warnings"):
+        for part in PARTS:
             found[part] = json.dumps(plain(getattr(result, part)), allow_nan=False)
         if result.surface is not None:
             found["surface"] = json.dumps(plain(result.surface), allow_nan=False)
@@ -126,11 +135,10 @@ def versions() -> dict[str, str]:
 def json_object(result: ResultData | CurveData) -> dict[str, Any]:
     """What ``--json`` prints: plain Python values in SI, None where a value does not apply."""
     if isinstance(result, CurveData):
-        arrays = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
-        names = (*arrays, *_CURVE, *(("jumps",) if result.jumps is not None else ()), "warnings")
+        jumps = () if result.jumps is None else ("jumps",)
+        names = (*ALONG_CURVE, *CURVE, *jumps, "warnings")
         return {name: plain(getattr(result, name)) for name in names}
-    parts = ("regime", "measures", "ledger", "warnings")
-    found = {name: plain(getattr(result, name)) for name in parts}
+    found = {name: plain(getattr(result, name)) for name in PARTS}
     if result.surface is not None:
         found["surface"] = plain(result.surface)
     if result.realisations is not None:
@@ -180,7 +188,7 @@ def _impacts(result: ResultData) -> list[Variable]:
     found = []
     count = np.size(result.events.get("closest_approach_time", ()))
     for name, values in result.events.items():
-        units, meaning = _EVENTS.get(name, ("1", name.replace("_", " ")))
+        units, meaning = EVENTS.get(name, ("1", name.replace("_", " ")))
         values = np.asarray(values, dtype=float)
         found.append(Variable(name, _dimension(name, values, count), values, units, meaning))
     for name, (units, meaning) in _MEASURES.items():
@@ -249,7 +257,7 @@ def _curve_variables(curve: CurveData) -> list[Variable]:
         for name, values in components.items():
             meaning = f"{name} force, {way}, positive apart"
             found.append(Variable(f"force_{way}_{name}", along, values, "N", meaning))
-    for name, (units, meaning) in _CURVE.items():
+    for name, (units, meaning) in CURVE.items():
         found.append(Variable(name, (), _numbers(getattr(curve, name)), units, meaning))
     return found
 

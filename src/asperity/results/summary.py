@@ -41,7 +41,9 @@ def of_result(
     """
     return "\n".join(
         [
-            *_heading(result.name, _ended(result)),
+            *underlined(result.name),
+            "",
+            *_wrapped(_ended(result)),
             *_section("Motion", _motion(result.measures)),
             *_section("Energy", _energy(result.ledger)),
             *_section("Single bodies", bodies_rows(result)),
@@ -58,7 +60,7 @@ def of_result(
 
 def of_curve(curve: CurveData, made: Mapping[str, object]) -> str:
     """The numbers of a curve, and where they come from; ``made`` as for `of_result`."""
-    heading = _heading(curve.name, "Force against separation, in and out.")
+    heading = [*underlined(curve.name), "", "Force against separation, in and out."]
     rows = _section("Curve", _curve(curve))
     return "\n".join([*heading, *rows, *warning_lines(curve.warnings), *_provenance(made), ""])
 
@@ -245,8 +247,9 @@ def _place(separation: float, force: float) -> str:
     return f"{amount(separation, 'm')}, {amount(force, 'N')}"
 
 
-def _heading(name: str, sentence: str) -> list[str]:
-    return [name, "=" * min(len(name), WIDTH), "", *_wrapped(sentence)]
+def underlined(name: str) -> list[str]:
+    """A name as the title of a text."""
+    return [name, "=" * min(len(name), WIDTH)]
 
 
 def _section(title: str, rows: Sequence[tuple[str, str]]) -> list[str]:
@@ -258,11 +261,14 @@ def _section(title: str, rows: Sequence[tuple[str, str]]) -> list[str]:
 
 def warning_lines(warnings: Sequence[str]) -> list[str]:
     """Warnings as a list under a heading; no lines where there are none."""
-    if not warnings:
-        return []
-    lines = ["", "Warnings"]
-    for warning in warnings:
-        lines += textwrap.wrap(warning, WIDTH, initial_indent="  - ", subsequent_indent="    ")
+    return listed("Warnings", warnings) if warnings else []
+
+
+def listed(title: str, sentences: Sequence[str]) -> list[str]:
+    """Sentences as a list under a heading."""
+    lines = ["", title]
+    for each in sentences:
+        lines += textwrap.wrap(each, WIDTH, initial_indent="  - ", subsequent_indent="    ")
     return lines
 
 

@@ -13,8 +13,8 @@ from ..surfaces import Topography
 from ..surfaces.description.describe import Description
 from ..surfaces.description.gaussianity import Gaussianity
 from ..surfaces.measured_surface import Pair, Surface
-from .records import plain
-from .summary import WIDTH, amount, warning_lines
+from .record_layout import plain
+from .summary import WIDTH, amount, listed, underlined, warning_lines
 
 Row = tuple[str, str]
 
@@ -64,8 +64,7 @@ def _of_surface(found: Surface) -> list[str]:
     count, total = found.prepared.missing_pixels, found.topography.heights.size
     share = f" ({amount(100.0 * count / total)} %)" if count else ""
     return [
-        found.name,
-        "=" * min(len(found.name), WIDTH),
+        *underlined(found.name),
         *rows(
             [
                 ("read as", f"{reading.format}{channel}{others}"),
@@ -73,7 +72,7 @@ def _of_surface(found: Surface) -> list[str]:
                 ("missing pixels", f"{count} of {total}{share}"),
             ]
         ),
-        *_listed("Preparation", found.prepared.sentences or ("nothing was done",)),
+        *listed("Preparation", found.prepared.sentences or ("nothing was done",)),
         *_described(found.description),
         *warning_lines(reading.notes),
     ]
@@ -81,7 +80,6 @@ def _of_surface(found: Surface) -> list[str]:
 
 def _of_pair(found: Pair) -> list[str]:
     """The composite of two surfaces."""
-    title = f"Composite of {found.name}"
     both, peaks = found.composite.height_gaussianity, found.composite.summit_gaussianity
     added = found.description
     tops = added.summits.rms_height if added.summit_heights else None
@@ -91,11 +89,10 @@ def _of_pair(found: Pair) -> list[str]:
         ("summit rms height", amount(peaks.rms if peaks else None, "m"), amount(tops, "m")),
     ]
     return [
-        title,
-        "=" * min(len(title), WIDTH),
+        *underlined(f"Composite of {found.name}"),
         *_wrapped(f"  Maps {found.composite.how}."),
         *_table("Both ways", ("by convolution", "by adding"), cells),
-        *_listed("Verdict on the convolution", [both.verdict]),
+        *listed("Verdict on the convolution", [both.verdict]),
         *rows([("added maps", size_in_words(found.composite.added))]),
         *_described(added),
     ]
@@ -122,7 +119,7 @@ def _described(found: Description) -> list[str]:
         *_table("Summits", ("counted", "McCool", "Nayak"), _summits(found)),
         *rows(_moments(found), "Spectral moments of profiles, by finite differences"),
         *_pixels(found),
-        *_listed("Verdicts", found.verdicts),
+        *listed("Verdicts", found.verdicts),
     ]
 
 
@@ -228,14 +225,6 @@ def _table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) ->
 
 def _line(first: str, cells: Sequence[str], narrow: int, wide: int) -> str:
     return f"{first:>{narrow}}" + "".join(f"{cell:>{wide}}" for cell in cells)
-
-
-def _listed(title: str, sentences: Sequence[str]) -> list[str]:
-    """Sentences as a list under a heading."""
-    lines = ["", title]
-    for sentence in sentences:
-        lines += textwrap.wrap(sentence, WIDTH, initial_indent="  - ", subsequent_indent="    ")
-    return lines
 
 
 def _wrapped(words: str) -> list[str]:

@@ -14,13 +14,13 @@ from asperity.config.replacing import with_unit
 from asperity.errors import InputError
 from asperity.integration import Report, silently
 from asperity.results.case_source import CaseLike, case_of
-from asperity.sweeps.compute.runner import Tally, generator_of, in_process
+from asperity.sweeps.compute.runner import Tally, in_process
 from asperity.sweeps.store.dataset import dataset_in
 from asperity.sweeps.study.axes import Axis
 from asperity.sweeps.study.axis_text import axis_of
 from asperity.sweeps.study.columns import ALWAYS, DEFAULT_KEEP
 from asperity.sweeps.study.keys import find
-from asperity.sweeps.study.refusing import refuse_unstorable, refuse_unusable
+from asperity.sweeps.study.refusing import refuse_unusable
 from asperity.sweeps.study.study import Study
 from asperity.units import shown
 
@@ -116,8 +116,7 @@ def _study(
         _whole(impacts),
         False,
     )
-    refuse_unusable(study)
-    refuse_unstorable(study.canonical)
+    refuse_unusable(study, study.canonical)
     if study.size > MOST_CASES:
         raise InputError(
             f"`axes` must give at most {MOST_CASES:,} cases in memory (`asperity sweep` keeps more "
@@ -159,14 +158,10 @@ def _computed(
     study: Study, report: Report, stop: threading.Event
 ) -> tuple[dict[str, np.ndarray], Tally]:
     """The columns of all cases, and what is to be known of them."""
-    whole = {}
-    for column in study.columns:
-        wide = (study.width(column.along),) if column.along else ()
-        whole[column.name] = np.full((study.size, *wide), column.fill, column.dtype)
-    tally = Tally(0, 0, study.tasks, study.size)
+    whole = {column.name: study.blank(column, study.size) for column in study.columns}
+    tally = Tally(0, 0, study.size)
     report(0.0, f"{study.size:,} cases (the first are compiled)")
-    answers = generator_of(in_process(study, range(study.tasks), stop))
-    with contextlib.closing(answers):
+    with contextlib.closing(in_process(study, range(study.tasks), stop)) as answers:
         for task, columns, effort in answers:
             cases = study.task(task)
             for name, values in columns.items():

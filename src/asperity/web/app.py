@@ -7,7 +7,9 @@ import contextlib
 import json
 import threading
 from collections.abc import AsyncIterator, Callable, Iterable
+from functools import partial
 from importlib import resources
+from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -28,7 +30,7 @@ from asperity.web.answer import adhesion_map
 from asperity.web.exploring import FILES, ahead, critical, file, glance, kind_of
 from asperity.web.form import form
 from asperity.web.guard import Guard
-from asperity.web.jobs import Busy, Desk, Event, Job, Report, Task
+from asperity.web.jobs import Busy, Desk, Job, Report, Task
 from asperity.web.json_answers import HANDLERS, event_line
 from asperity.web.missing_keys import completed, remedies
 from asperity.web.openapi import DESCRIPTION
@@ -130,7 +132,7 @@ class _Page:
 
     async def read(self, request: Request) -> Response:
         """The tables of a case file that the user has."""
-        body = await _body(request, SIZE_LIMIT)
+        body = await _body(request)
         try:
             text = body.decode("utf-8-sig")
         except UnicodeDecodeError:
@@ -144,7 +146,7 @@ class _Page:
 
     async def toml(self, request: Request) -> Response:
         """The case as the text that `asperity run` takes, as it was given."""
-        what = asked(await _body(request, SIZE_LIMIT))
+        what = asked(await _body(request))
         what.case()
         check(Case, what.tables)  # what it says of output counts here
         text = text_of(what.tables)
@@ -153,16 +155,16 @@ class _Page:
 
     async def complete(self, request: Request) -> Response:
         """The tables with what a choice of the user asks for, and what would mend the rest."""
-        after, before = changed(await _body(request, SIZE_LIMIT))
+        after, before = changed(await _body(request))
         found = completed(after, before)
         return JSONResponse({"tables": found, "remedies": remedies(found)})
 
     async def explore(self, request: Request) -> Response:
         """Lines of JSON: progress, and in the end the answer or what is wrong."""
-        what = asked(await _body(request, SIZE_LIMIT))
+        what = asked(await _body(request))
         case = what.case()  # refused at once, by its status
-        asker = what.asker or _from(request)
-        job = self.desk.ask(asker, glance(what, self.surfaces))
+        asker = _asker(what, request)
+        job = self.desk.ask(asker, partial(glance, what, self.surfaces))
 
         def left() -> None:
             job.stop.set()
@@ -174,10 +176,9 @@ class _Page:
         """Have what other laws need compiled while nobody asks, once for each kind of case."""
         if case.adhesion.model != "auto" or (kind := kind_of(case)) in self._ready:
             return
-        compiling = ahead(what, self.surfaces)
 
         def task(report: Report, stop: threading.Event) -> None:
-            compiling(report, stop)
+            ahead(what, self.surfaces, report, stop)
             if stop.is_set():
                 return
             if len(self._ready) >= MOST_KINDS:
@@ -188,42 +189,43 @@ class _Page:
 
     async def critical(self, request: Request) -> Response:
         """The critical velocity of the case."""
-        what = asked(await _body(request, SIZE_LIMIT))
+        what = asked(await _body(request))
         what.case()
-        asker = f"{what.asker or _from(request)} critical"
-        event = await self._last(request, asker, critical(what, self.surfaces))
-        if event.kind != "answer":
-            return JSONResponse(event_line(event), 422 if event.kind == "error" else 409)
-        return JSONResponse(event.value)
+        asker = f"{_asker(what, request)} critical"
+        return await self._answered(request, asker, partial(critical, what, self.surfaces))
 
     async def file(self, request: Request) -> Response:
         """A file of the case's results."""
         name = request.path_params["name"]
         if name not in FILES:
             raise HTTPException(404, f"no such file; there are {', '.join(FILES)}")
-        what = asked(await _body(request, SIZE_LIMIT))
+        what = asked(await _body(request))
         what.case()
-        asker = f"{what.asker or _from(request)} {name}"
-        event = await self._last(request, asker, file(what, self.surfaces, name))
-        if event.kind != "answer":
-            refusal = event_line(event)
-            return JSONResponse(refusal, 422 if event.kind == "error" else 409)
+        task = partial(file, what, self.surfaces, name)
         headers = {"content-disposition": f'attachment; filename="{name}"'}
-        return Response(event.value, media_type=FILES[name], headers=headers)
+        response = partial(Response, media_type=FILES[name], headers=headers)
+        return await self._answered(request, f"{_asker(what, request)} {name}", task, response)
 
-    async def _last(self, request: Request, asker: str, task: Task) -> Event:
+    async def _answered(
+        self,
+        request: Request,
+        asker: str,
+        task: Task,
+        response: Callable[[Any], Response] = JSONResponse,
+    ) -> Response:
+        """The response with what a computation gives, or with why it gives nothing."""
         job = self.desk.ask(asker, task)
         watch = asyncio.create_task(_dropped_by(request, job))
         events = job.events(PATIENCE)
         try:
-            async for event in events:
-                if event.last:
-                    return event
+            *_, event = [event async for event in events]
         finally:
             watch.cancel()
             await events.aclose()  # type: ignore[attr-defined]
             self.desk.forget(asker, job)
-        raise AssertionError("a computation ends with an event")
+        if event.kind == "answer":
+            return response(event.value)
+        return JSONResponse(event_line(event), 422 if event.kind == "error" else 409)
 
     async def surface(self, request: Request) -> Response:
         """Keep a surface file that was dropped in."""
@@ -272,14 +274,14 @@ async def _dropped_by(request: Request, job: Job) -> None:
     job.drop()
 
 
-async def _body(request: Request, most: int) -> bytes:
-    """A request's body, never read beyond a limit."""
+async def _body(request: Request) -> bytes:
+    """A request's body, never read beyond the limit of a case."""
     body = bytearray()
     async with _in_time():
         async for part in request.stream():
             body += part
-            if len(body) > most:
-                raise HTTPException(413, f"a case must be at most {most >> 20} MiB")
+            if len(body) > SIZE_LIMIT:
+                raise HTTPException(413, f"a case must be at most {SIZE_LIMIT >> 20} MiB")
     return bytes(body)
 
 
@@ -293,6 +295,6 @@ async def _in_time() -> AsyncIterator[None]:
         raise HTTPException(408, f"a request must arrive within {ARRIVAL:.0f} s") from None
 
 
-def _from(request: Request) -> str:
+def _asker(what: Asked, request: Request) -> str:
     client = request.client
-    return f"{client.host}:{client.port}" if client else "nobody"
+    return what.asker or (f"{client.host}:{client.port}" if client else "nobody")

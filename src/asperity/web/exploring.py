@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import importlib
 import io
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -34,63 +33,54 @@ FILES = {
 """Files that can be downloaded, and what they are."""
 
 
-def glance(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], Any]:
-    """A computation that gives what the page shows."""
+def glance(
+    asked: Asked, surfaces: Surfaces, report: Report, stop: threading.Event
+) -> dict[str, Any]:
+    """What the page shows."""
+    with _resolved(asked, surfaces, report) as (case, uploads):
+        from asperity.solver import explore  # which loads JAX
 
-    def compute(report: Report, stop: threading.Event) -> dict[str, Any]:
-        with _resolved(asked, surfaces, report) as (case, uploads):
-            solver = importlib.import_module("asperity.solver")  # which loads JAX
-            result, curve = solver.explore(
-                case, name=asked.name, most=DRAWN, progress=report, stop=stop
-            )
-            bodies = None
-            if result.realisations is not None:
-                report(0.95, "single bodies at other speeds")
-                nearby = importlib.import_module("asperity.sweeps.capture_probability")
-                try:
-                    bodies = nearby.capture_nearby(case, result, stop)
-                except (InputError, SimulationError) as error:
-                    if stop.is_set():
-                        raise
-                    result.warnings.append(f"there is no chart of single bodies: {error}")
-            return answer(renamed(result, asked.case(), uploads), curve, bodies)
+        result, curve = explore(case, name=asked.name, most=DRAWN, progress=report, stop=stop)
+        bodies = None
+        if result.realisations is not None:
+            report(0.95, "single bodies at other speeds")
+            from asperity.sweeps.capture_probability import capture_nearby
 
-    return compute
+            try:
+                bodies = capture_nearby(case, result, stop)
+            except (InputError, SimulationError) as error:
+                if stop.is_set():
+                    raise
+                result.warnings.append(f"there is no chart of single bodies: {error}")
+        return answer(renamed(result, asked.case(), uploads), curve, bodies)
 
 
 def critical(
-    asked: Asked, surfaces: Surfaces
-) -> Callable[[Report, threading.Event], dict[str, Any]]:
-    """A computation that gives the critical velocity, which takes longer than all the rest."""
+    asked: Asked, surfaces: Surfaces, report: Report, stop: threading.Event
+) -> dict[str, Any]:
+    """The critical velocity, which takes longer than all the rest."""
+    with _resolved(asked, surfaces, report) as (case, _):
+        from asperity.solver import critical_velocity
 
-    def compute(report: Report, stop: threading.Event) -> dict[str, Any]:
-        with _resolved(asked, surfaces, report) as (case, _):
-            solver = importlib.import_module("asperity.solver")
-            found: dict[str, Any] = solver.critical_velocity(case, progress=report, stop=stop)
-            return found
-
-    return compute
+        return critical_velocity(case, progress=report, stop=stop)
 
 
-def ahead(asked: Asked, surfaces: Surfaces) -> Callable[[Report, threading.Event], None]:
-    """A computation that compiles what a case needs under each law that "auto" may choose.
+def ahead(asked: Asked, surfaces: Surfaces, report: Report, stop: threading.Event) -> None:
+    """Compile what a case needs under each law that "auto" may choose.
 
     Then no slider that crosses a border between two of them has to. All are once it returns, unless
     it was stopped.
     """
+    with _resolved(asked, surfaces, report) as (case, _):
+        from asperity.solver import explore
 
-    def compute(report: Report, stop: threading.Event) -> None:
-        with _resolved(asked, surfaces, report) as (case, _):
-            solver = importlib.import_module("asperity.solver")
-            numerics = case.numerics.model_copy(update={"max_impacts": 1})
-            for law in CHOSEN:
-                adhesion = case.adhesion.model_copy(update={"model": law})
-                one = case.model_copy(update={"adhesion": adhesion, "numerics": numerics})
-                # What a law cannot do here is said once it is chosen.
-                with contextlib.suppress(InputError, SimulationError):
-                    solver.explore(one, most=DRAWN, progress=report, stop=stop)
-
-    return compute
+        numerics = case.numerics.model_copy(update={"max_impacts": 1})
+        for law in CHOSEN:
+            adhesion = case.adhesion.model_copy(update={"model": law})
+            one = case.model_copy(update={"adhesion": adhesion, "numerics": numerics})
+            # What a law cannot do here is said once it is chosen.
+            with contextlib.suppress(InputError, SimulationError):
+                explore(one, most=DRAWN, progress=report, stop=stop)
 
 
 def kind_of(case: Case) -> int:
@@ -107,26 +97,25 @@ def kind_of(case: Case) -> int:
     return hash(repr(without(case.model_copy(update={"numerics": numerics}).model_dump())))
 
 
-def file(asked: Asked, surfaces: Surfaces, name: str) -> Callable[[Report, threading.Event], bytes]:
-    """A computation that gives one of `FILES`, as `asperity run` and `asperity curve` write it."""
+def file(
+    asked: Asked, surfaces: Surfaces, name: str, report: Report, stop: threading.Event
+) -> bytes:
+    """One of `FILES`, as `asperity run` and `asperity curve` write it."""
+    with _resolved(asked, surfaces, report) as (case, uploads):
+        from asperity.solver import curve, solve
 
-    def compute(report: Report, stop: threading.Event) -> bytes:
-        with _resolved(asked, surfaces, report) as (case, uploads):
-            solver = importlib.import_module("asperity.solver")  # which loads JAX
-            made: Result | Curve
-            if name.startswith("curve"):
-                drawn = solver.curve(case, name=asked.name, progress=report, stop=stop)
-                made = replace(drawn, case=asked.case())
-            else:
-                result = solver.solve(case, name=asked.name, progress=report, stop=stop)
-                made = renamed(result, asked.case(), uploads)
-        if name.endswith(".csv"):
-            return table(made)
-        if name.endswith(".png"):
-            return picture(made, name.removesuffix(".png"))
-        return made.files(pictures=False)[name]
-
-    return compute
+        made: Result | Curve
+        if name.startswith("curve"):
+            drawn = curve(case, name=asked.name, progress=report, stop=stop)
+            made = replace(drawn, case=asked.case())
+        else:
+            result = solve(case, name=asked.name, progress=report, stop=stop)
+            made = renamed(result, asked.case(), uploads)
+    if name.endswith(".csv"):
+        return table(made)
+    if name.endswith(".png"):
+        return picture(made, name.removesuffix(".png"))
+    return made.files(pictures=False)[name]
 
 
 @contextlib.contextmanager

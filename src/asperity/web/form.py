@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from typing import Any, Literal, get_args, get_origin
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from asperity.config import Case
@@ -86,18 +85,10 @@ def _key(table: str, name: str, field: FieldInfo) -> dict[str, Any]:
 
 def _limits(field: FieldInfo) -> Quantity | Number | None:
     """What bounds a field's value."""
-    for each in (*field.metadata, *_metadata(field.annotation)):
+    for each in (*field.metadata, *_parts(field.annotation)):
         if isinstance(each, Quantity | Number):
             return each
     return None
-
-
-def _metadata(annotation: Any) -> list[Any]:
-    """What the parts of a type are annotated with."""
-    found = list(getattr(annotation, "__metadata__", ()))
-    for part in get_args(annotation):
-        found += _metadata(part)
-    return found
 
 
 def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[str]]:
@@ -105,27 +96,27 @@ def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[
         return "quantity", []
     if isinstance(limits, Number):
         return ("whole" if limits.whole else "number"), []
-    choices = _literals(annotation)
+    choices = [
+        str(value)
+        for part in _parts(annotation)
+        if get_origin(part) is Literal
+        for value in get_args(part)
+    ]
     if choices:
         return "choice", choices
     parts = [annotation, *get_args(annotation)]
     if any(part is bool for part in parts):
         return "switch", []
-    if any(get_origin(part) is list for part in _flat(annotation)):
+    if any(get_origin(part) is list for part in _parts(annotation)):
         return "list", []
     if any(part is int for part in parts):
         return "name or number", []
     return "text", []
 
 
-def _flat(annotation: Any) -> list[Any]:
-    return [annotation, *(inner for part in get_args(annotation) for inner in _flat(part))]
-
-
-def _literals(annotation: Any) -> list[str]:
-    if get_origin(annotation) is Literal:
-        return [str(value) for value in get_args(annotation)]
-    return [value for part in get_args(annotation) for value in _literals(part)]
+def _parts(annotation: Any) -> list[Any]:
+    """A type and all that it is made of, down to what its parts are annotated with."""
+    return [annotation, *(inner for part in get_args(annotation) for inner in _parts(part))]
 
 
 def _slider(limits: Quantity | Number | None) -> dict[str, Any] | None:
@@ -138,8 +129,3 @@ def _slider(limits: Quantity | Number | None) -> dict[str, Any] | None:
             return {"scale": "factor", "low": low, "high": high}
         return {"scale": "linear", "low": low, "high": high, "unit": ""}
     return None
-
-
-def tables_in(model: type[BaseModel]) -> tuple[str, ...]:
-    """Names of a model's tables."""
-    return tuple(name for name, field in model.model_fields.items() if tables_of(field.annotation))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
-from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from asperity.web.json_answers import refusal
 
 MOST = 64 << 20
 """Longest request [bytes]: a measured surface. Cases have their own, smaller limit."""
@@ -55,10 +56,10 @@ class Guard:
                 return
             await self._app(scope, receive, send)
             return
-        refusal = self._refusal(_headers(scope))
-        if refusal is not None:
-            status, reason = refusal
-            await _answer(reason, status)(scope, receive, _dressed(send))
+        refused = self._refusal(_headers(scope))
+        if refused is not None:
+            status, reason = refused
+            await refusal("request", reason, status)(scope, receive, _dressed(send))
             return
         await self._answered(scope, receive, _dressed(send))
 
@@ -83,7 +84,7 @@ class Guard:
         except TooLong:
             if begun:
                 raise
-            await _answer(_TOO_LONG, 413)(scope, receive, send)
+            await refusal("request", _TOO_LONG, 413)(scope, receive, send)
 
     def _refusal(self, headers: dict[str, list[str]]) -> tuple[int, str] | None:
         """Status and reason for which a request is refused; None where it is not."""
@@ -101,10 +102,6 @@ class Guard:
         if int(lengths[0][:20]) > MOST:
             return 413, _TOO_LONG
         return None
-
-
-def _answer(reason: str, status: int) -> JSONResponse:
-    return JSONResponse({"error": {"kind": "request", "key": None, "message": reason}}, status)
 
 
 def _headers(scope: Scope) -> dict[str, list[str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from starlette.exceptions import HTTPException
@@ -37,28 +37,20 @@ def words_of(error: Exception) -> dict[str, Any]:
     return {"kind": "program", "key": None, "message": "the program failed; its log says more"}
 
 
-def _input(request: Request, error: InputError) -> Response:
-    return JSONResponse({"error": words_of(error)}, 422)
-
-
-def _output(request: Request, error: OutputError) -> Response:
-    return JSONResponse({"error": {"kind": "output", "key": None, "message": str(error)}}, 507)
-
-
-def _busy(request: Request, error: Busy) -> Response:
-    words = {"kind": "busy", "key": None, "message": _BUSY}
-    return JSONResponse({"error": words}, 503, headers={"retry-after": "3"})
-
-
-def _http(request: Request, error: HTTPException) -> Response:
-    words = {"kind": "request", "key": None, "message": error.detail}
-    return JSONResponse({"error": words}, error.status_code, headers=error.headers)
+def refusal(
+    kind: str, message: str, status: int, headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    """An answer that refuses a request for no single key of a case."""
+    error = {"kind": kind, "key": None, "message": message}
+    return JSONResponse({"error": error}, status, headers=headers)
 
 
 HANDLERS: dict[Any, Callable[[Request, Any], Response]] = {
-    InputError: _input,
-    OutputError: _output,
-    Busy: _busy,
-    HTTPException: _http,
+    InputError: lambda request, error: JSONResponse({"error": words_of(error)}, 422),
+    OutputError: lambda request, error: refusal("output", str(error), 507),
+    Busy: lambda request, error: refusal("busy", _BUSY, 503, {"retry-after": "3"}),
+    HTTPException: lambda request, error: refusal(
+        "request", error.detail, error.status_code, error.headers
+    ),
 }
 """What answers an error of each kind."""

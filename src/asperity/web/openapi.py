@@ -24,7 +24,9 @@ _ASKED: dict[str, Any] = {
 
 _SURFACE = "# size[um] 1 1\n# unit nm\n1 2\n2 1\n"
 _TOML = builtin_text(BUILTINS[0])
-_EXAMPLES = {name: {"value": {"case": tables(builtin_text(name), None)}} for name in BUILTINS}
+_CASES = {name: tables(builtin_text(name), None) for name in BUILTINS}
+_EXAMPLES = {name: {"value": {"case": case}} for name, case in _CASES.items()}
+_CHANGES = {name: {"value": {"case": case, "before": case}} for name, case in _CASES.items()}
 
 _REFUSAL: dict[str, Any] = {
     "type": "object",
@@ -87,26 +89,25 @@ _REFUSALS = {
 }
 
 
-def _asking(
-    summary: str, answer: dict[str, Any], *more: dict[str, Any], schema: dict[str, Any] = _ASKED
+def _posting(
+    summary: str, body: dict[str, Any], answer: dict[str, Any], *parameters: dict[str, Any]
 ) -> dict[str, Any]:
-    examples = _EXAMPLES
-    if schema is _CHANGED:
-        examples = {
-            name: {"value": {**one["value"], "before": one["value"]["case"]}}
-            for name, one in _EXAMPLES.items()
-        }
     return {
         "post": {
             "summary": summary,
-            "parameters": list(more),
-            "requestBody": {
-                "required": True,
-                "content": {"application/json": {"schema": schema, "examples": examples}},
-            },
+            "parameters": list(parameters),
+            "requestBody": {"required": True, **body},
             "responses": {"200": answer, **_REFUSALS},
         }
     }
+
+
+def _asking(summary: str, answer: dict[str, Any], *parameters: dict[str, Any]) -> dict[str, Any]:
+    return _posting(summary, _in_json(_ASKED, _EXAMPLES), answer, *parameters)
+
+
+def _in_json(schema: dict[str, Any], examples: dict[str, Any]) -> dict[str, Any]:
+    return {"content": {"application/json": {"schema": schema, "examples": examples}}}
 
 
 def _getting(summary: str, *more: dict[str, Any]) -> dict[str, Any]:
@@ -133,10 +134,10 @@ DESCRIPTION: dict[str, Any] = {
             "The tables of a case.", _in_path({"type": "string"}, BUILTINS[0])
         ),
         "/api/toml": _asking("The case as text.", _json({"type": "object"}, "The text.")),
-        "/api/complete": _asking(
+        "/api/complete": _posting(
             "A case with the keys that a choice of its user asks for.",
+            _in_json(_CHANGED, _CHANGES),
             _json({"type": "object"}, "Its tables, and what would mend what is left."),
-            schema=_CHANGED,
         ),
         "/api/explore": _asking(
             "Compute a case.",
@@ -154,23 +155,16 @@ DESCRIPTION: dict[str, Any] = {
             {"description": "The file.", "content": {kind: {} for kind in {*FILES.values()}}},
             _in_path({"enum": list(FILES)}, "motion.csv"),
         ),
-        "/api/read": {
-            "post": {
-                "summary": "The tables of a case file.",
-                "requestBody": {"required": True, **_any("text/plain", example=_TOML)},
-                "responses": {"200": _json({"type": "object"}, "The tables."), **_REFUSALS},
-            }
-        },
-        "/api/surfaces/{name}": {
-            "post": {
-                "summary": "Keep a surface file.",
-                "parameters": [_in_path({"type": "string"}, "surface.csv")],
-                "requestBody": {
-                    "required": True,
-                    **_any("application/octet-stream", example=_SURFACE),
-                },
-                "responses": {"200": _json({"type": "object"}, "What it is kept as."), **_REFUSALS},
-            }
-        },
+        "/api/read": _posting(
+            "The tables of a case file.",
+            _any("text/plain", example=_TOML),
+            _json({"type": "object"}, "The tables."),
+        ),
+        "/api/surfaces/{name}": _posting(
+            "Keep a surface file.",
+            _any("application/octet-stream", example=_SURFACE),
+            _json({"type": "object"}, "What it is kept as."),
+            _in_path({"type": "string"}, "surface.csv"),
+        ),
     },
 }

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from asperity.config import Case
-from asperity.config.case_file import SIZE_LIMIT
 from asperity.config.problems import check
 from asperity.errors import InputError, refuse_all
 
@@ -98,8 +97,6 @@ def changed(body: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _read(body: bytes, keys: tuple[str, ...]) -> dict[str, Any]:
-    if len(body) > SIZE_LIMIT:
-        raise InputError(f"a case must be at most 1 MiB; got {len(body)} bytes")
     try:
         given = json.loads(body, parse_constant=_refuse)
         json.dumps(given, ensure_ascii=False).encode()  # refuses halves of characters, "\\ud800"

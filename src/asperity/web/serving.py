@@ -8,7 +8,6 @@ import ipaddress
 import socket
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import uvicorn
@@ -23,25 +22,6 @@ MOST_CONNECTIONS = 64
 
 SILENCE = 10.0
 """How long a connection may wait for a request [s], at least; at most twice as long."""
-
-
-@dataclass(frozen=True)
-class Address:
-    """Where to listen.
-
-    Parameters
-    ----------
-    host
-        Address of this machine; others than the loopback's are reached from outside.
-    port
-        Port; 0 for a free one.
-    names
-        Other names by which the server may be asked.
-    """
-
-    host: str = "127.0.0.1"
-    port: int = 8737
-    names: Sequence[str] = ()
 
 
 class Impatient(H11Protocol):
@@ -72,13 +52,23 @@ class Impatient(H11Protocol):
         self._checks = self.loop.call_later(SILENCE, self._check, cycle)
 
 
-def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]) -> None:
+def serve(
+    host: str,
+    port: int,
+    names: Sequence[str],
+    first: tuple[str, str],
+    ready: Callable[[str], None],
+) -> None:
     """Serve the page until the process is asked to end.
 
     Parameters
     ----------
-    address
-        Where to listen.
+    host
+        Address of this machine; others than the loopback's are reached from outside.
+    port
+        Port; 0 for a free one.
+    names
+        Other names by which the server may be asked.
     first
         Name and text of the case that the page opens with.
     ready
@@ -89,11 +79,9 @@ def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]
     InputError, OutputError
         Where the address is none of this machine's, or taken.
     """
-    listening = _bound(address)
-    port = listening.getsockname()[1]
-    shown = f"[{address.host}]" if ":" in address.host else address.host
-    names = {*LOCAL, address.host, *address.names} - {"0.0.0.0", "::"}
-    app = application(first, names)
+    listening = _bound(host, port)
+    shown = f"[{host}]" if ":" in host else host
+    app = application(first, {*LOCAL, host, *names} - {"0.0.0.0", "::"})
     config = uvicorn.Config(
         app,
         http=Impatient,
@@ -106,7 +94,7 @@ def serve(address: Address, first: tuple[str, str], ready: Callable[[str], None]
         lifespan="on",
     )
     threading.Thread(target=_warm, args=(first,), daemon=True).start()
-    ready(f"http://{shown}:{port}/")
+    ready(f"http://{shown}:{listening.getsockname()[1]}/")
     uvicorn.Server(config).run(sockets=[listening])
 
 
@@ -119,25 +107,25 @@ def _warm(first: tuple[str, str]) -> None:
         explore(load(first[1]), most=DRAWN)
 
 
-def _bound(address: Address) -> socket.socket:
-    if not 0 <= address.port <= 65535:
-        raise InputError(f"`--port` must lie in [0, 65535]; got {address.port}")
+def _bound(host: str, port: int) -> socket.socket:
+    if not 0 <= port <= 65535:
+        raise InputError(f"`--port` must lie in [0, 65535]; got {port}")
     try:
-        version = ipaddress.ip_address(address.host).version
+        version = ipaddress.ip_address(host).version
     except ValueError:
         rule = "must be an address of this machine, such as 127.0.0.1"
-        raise InputError(f"`--host` {rule}; got {address.host!r}") from None
+        raise InputError(f"`--host` {rule}; got {host!r}") from None
     family = socket.AF_INET6 if version == 6 else socket.AF_INET
     # With the protocol's number asyncio sends each packet at once; without, TCP waits up to 40 ms.
     listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        listening.bind((address.host, address.port))
+        listening.bind((host, port))
         listening.listen(128)
     except OSError as error:
         listening.close()
         raise OutputError(
-            f"{address.host}:{address.port}: cannot be listened at: {error.strerror or error}; "
+            f"{host}:{port}: cannot be listened at: {error.strerror or error}; "
             "take another --port (0 for any free one)"
         ) from None
     return listening

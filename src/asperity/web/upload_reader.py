@@ -2,7 +2,7 @@
 
 ``python -m asperity.web.upload_reader FROM TO OPTIONS`` with OPTIONS as JSON
 ``{size, unit, channel}``.
-It answers with one JSON object on standard output: ``{"notes": [...], ...}``, or
+It answers with one JSON object on standard output: ``{channel, channels, notes}``, or
 ``{"refusal": "..."}`` where the file cannot be read.
 """
 
@@ -67,13 +67,9 @@ def _read(source: str, target: str, options: dict[str, Any]) -> dict[str, Any]:
         )
     write_topography(reading.topography, target, force=True)
     return {
-        "format": reading.format,
         "channel": reading.channel,
         "channels": list(reading.channels),
         "notes": list(reading.notes),
-        "pixels": list(reading.topography.heights.shape[::-1]),
-        "physical_size": list(reading.topography.physical_size),
-        "rms_height": reading.topography.rms_height,
     }
 
 

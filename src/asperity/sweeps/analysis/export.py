@@ -13,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from asperity.errors import ENDS, InputError, OutputError
-from asperity.sweeps.store.dataset import Results, dataset_of, open_results, reasons
-from asperity.sweeps.study.columns import Column
+from asperity.errors import InputError, OutputError
+from asperity.sweeps.store.dataset import Results, dataset_of, open_results
+from asperity.sweeps.store.variables import FLAGS
+from asperity.sweeps.study.columns import Column, reasons
 
-NOT_COMPUTED = "not_computed"
-"""Outcome of a case that is not computed yet."""
-
-_WORDS = np.array([NOT_COMPUTED, *(outcome.value for outcome in ENDS)], dtype=object)
+_WORDS = np.array(FLAGS["outcome"], dtype=object)
 
 
 def export(
@@ -135,8 +133,7 @@ def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:
             if number in store.done:
                 values = store.read(number, column.name)
             else:
-                wide = (study.width(column.along),) if column.along else ()
-                values = np.full((len(cases), *wide), column.fill, column.dtype)
+                values = study.blank(column, len(cases))
             table |= _in_words(column, values)
         yield table
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asperity.errors import InputError
-from asperity.sweeps.analysis.view import axes_of, is_sample, measure_named
+from asperity.sweeps.analysis.view import axes_of, measure_named
 from asperity.units import shown
 
 if TYPE_CHECKING:
@@ -118,11 +118,8 @@ def front_of(dataset: xarray.Dataset, goals: tuple[Goal, Goal]) -> Front:
 
 def numbers(dataset: xarray.Dataset, name: str) -> np.ndarray:
     """A measure of every case in SI, NaN where it has none, shape (cases,)."""
-    found = dataset[name]
-    along = [size for size in found.dims if size in ("impact", "turn")]
-    if along:
-        found = found.isel({along[0]: 0})
-    values = np.asarray(found.values).ravel()
+    first = dataset[name].isel(impact=0, turn=0, missing_dims="ignore")
+    values = first.values.ravel()
     if values.dtype.kind == "f":
         return values
     return np.where(values >= 0, values.astype(float), np.nan)
@@ -130,17 +127,8 @@ def numbers(dataset: xarray.Dataset, name: str) -> np.ndarray:
 
 def axis_values(dataset: xarray.Dataset, cases: np.ndarray) -> dict[str, np.ndarray]:
     """Values of every axis at some cases, by the axes' keys."""
-    keys = axes_of(dataset)
-    if is_sample(dataset):
-        return {key: dataset[key].values[cases] for key in keys}
-    free = [str(name) for name in dataset["outcome"].dims]
-    places = np.unravel_index(cases, tuple(dataset.sizes[key] for key in free))
-    found = dict(zip(free, places, strict=True))
-    return {
-        key: dataset[key].values[found[key]] if key in found
-        else np.full(cases.size, dataset[key].values, dtype=dataset[key].dtype)
-        for key in keys
-    }  # fmt: skip
+    every = dataset["outcome"]
+    return {key: dataset[key].broadcast_like(every).values.flat[cases] for key in axes_of(dataset)}
 
 
 def table(dataset: xarray.Dataset, front: Front) -> bytes:

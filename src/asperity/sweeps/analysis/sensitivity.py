@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from asperity.config.problems import did_you_mean
-from asperity.errors import ENDS, InputError, Outcome, SimulationError
-from asperity.sweeps.study.columns import MEASURES, Column
+from asperity.errors import InputError, SimulationError
+from asperity.sweeps.study.columns import FAILED, MEASURES, Column
 from asperity.sweeps.study.study import Study
 from asperity.units import shown
 
@@ -28,7 +28,6 @@ CONFIDENCE = 0.95
 _FEWEST, _MOST = 100, 999
 _WORK = 1 << 29
 _ROUNDING = 1e-13
-_FAILED = ENDS.index(Outcome.FAILED)
 
 
 @dataclass(frozen=True)
@@ -134,14 +133,6 @@ class Evaluations(NamedTuple):
         return first, total
 
 
-class _Unit:
-    """The uniform distribution on [0, 1): the axes turn it into their own values."""
-
-    @staticmethod
-    def ppf(u: np.ndarray) -> np.ndarray:
-        return u
-
-
 def sensitivity(study: Study, measure: str, evaluate: Evaluate) -> Sensitivity:
     """Sobol's indices of a measure over the axes of a sampled study.
 
@@ -183,7 +174,7 @@ def sensitivity(study: Study, measure: str, evaluate: Evaluate) -> Sensitivity:
 
 def _evaluated(study: Study, column: Column, evaluate: Evaluate) -> tuple[Any, Evaluations]:
     """SciPy's result, and what it was made from."""
-    from scipy.stats import sobol_indices
+    from scipy.stats import sobol_indices, uniform
 
     assert study.sample is not None
     size, seed = study.sample.size, study.sample.seed
@@ -203,7 +194,7 @@ def _evaluated(study: Study, column: Column, evaluate: Evaluate) -> tuple[Any, E
         kept.append(Evaluations(f_A[0], f_B[0], f_AB[:, 0]))
         return kept[-1].indices()
 
-    dists = [_Unit()] * len(study.axes)
+    dists = [uniform()] * len(study.axes)  # which the axes turn into their own values
     found = sobol_indices(func=function, n=size, dists=dists, method=estimate, rng=seed)
     if max(np.std(part) for part in (kept[0].a, kept[0].b)) <= _ROUNDING * largest:
         raise SimulationError(
@@ -252,7 +243,7 @@ def check(study: Study) -> None:
             key="sample.size",
         )
     for axis in study.axes:
-        if not (axis.numeric and axis.ranged):
+        if axis.listed:
             raise InputError(
                 f"`{axis.key}` must be a range of numbers, from and to, for a sensitivity; got a "
                 "list of values",
@@ -275,7 +266,7 @@ def _measure(column: Column, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         values = values[:, 0]
     absent = values < 0 if values.dtype.kind == "i" else ~np.isfinite(values)
     if absent.any():
-        lost = int(np.count_nonzero(np.asarray(columns["outcome"]) == _FAILED))
+        lost = int(np.count_nonzero(np.asarray(columns["outcome"]) == FAILED))
         others = "" if column.name == "captured" else "; `captured` applies to every case"
         raise SimulationError(
             f"{column.name} must be known in every case for a sensitivity; of {values.size} cases "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -11,28 +10,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.config import Case
-from asperity.config.resolve import resolve
-from asperity.dynamics.problem import Problem
-from asperity.errors import ENDS, InputError, Outcome, SimulationError
+from asperity.errors import ENDS, InputError, SimulationError
 from asperity.integration.clock import Clock
-from asperity.model import build
 from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.result import Result
 from asperity.solver import solve
-from asperity.sweeps.compute.building import Group, Values, built, case_at
+from asperity.sweeps.compute.building import Group, Values, built, case_at, problem_at
 from asperity.sweeps.compute.cases_alone import unfinished, without_jumps
 from asperity.sweeps.compute.critical_velocities import critical_velocities
 from asperity.sweeps.compute.integrate_batch import BatchSolution, compile_ahead, integrate_batch
 from asperity.sweeps.compute.realised import realised
 from asperity.sweeps.compute.study_warnings import Warned, warnings_in
-from asperity.sweeps.study.columns import REASON_SIZE
+from asperity.sweeps.study.columns import FAILED, REASON_SIZE
 
 if TYPE_CHECKING:
     from asperity.sweeps.study.study import Study
 
 Columns = dict[str, np.ndarray]
-
-_FAILED = ENDS.index(Outcome.FAILED)
 
 
 class Effort(NamedTuple):
@@ -119,7 +113,7 @@ def _computed(
     """The columns of cases of which the first has a number, and what is to be known of some."""
     began = time.perf_counter()
     count = next(iter(values.values())).shape[0]
-    out = _blank(study, count)
+    out = {column.name: study.blank(column, count) for column in study.columns}
     whole = without_jumps(study, values, built(study, values))
     looked = [number - first for number in corners]
     lines: dict[int, list[str]] = {}
@@ -130,18 +124,15 @@ def _computed(
         solution = integrate_batch(group, clock)
         again = unfinished(group, solution)
         whole.alone.extend((row, case_at(study, values, row)) for row in again)
-        if (
-            any(column.name == "critical_velocity" for column in study.columns)
-            and solution.measures
-        ):
+        if "critical_velocity" in study.keep and solution.measures:
             solution.measures["critical_velocity"] = critical_velocities(group, solution, clock)
         solution.measures.update(realised(study, values, group, solution, clock))
         _write(study, out, group, solution)
-        sound = out["outcome"][group.rows] != _FAILED
+        sound = out["outcome"][group.rows] != FAILED
         for place in np.flatnonzero(np.isin(group.rows, looked) & sound).tolist():
             row = int(group.rows[place])
             try:
-                alone = group.problems[place] if group.problems else _built(study, first + row)
+                alone = problem_at(study, values, group, place)
             except InputError as error:  # a surface's file that is another one by now
                 _fail(out, row, str(error))
             else:
@@ -156,18 +147,6 @@ def _computed(
     return out, Effort(count, clock.batch_use, compiled, wall, len(lines), tuple(sorted(warned)))
 
 
-def _built(study: Study, number: int) -> Problem:
-    return build(resolve(study.case(number)))
-
-
-def _blank(study: Study, count: int) -> Columns:
-    out = {}
-    for column in study.columns:
-        shape = (count, study.width(column.along)) if column.along else (count,)
-        out[column.name] = np.full(shape, column.fill, column.dtype)
-    return out
-
-
 def _fail(out: Columns, row: int, reason: str) -> None:
     """Write down that a case failed, and why; what it measured is not believed."""
     for name, array in out.items():
@@ -175,37 +154,34 @@ def _fail(out: Columns, row: int, reason: str) -> None:
             array[row] = np.nan
         elif name not in ("reason", "impacts"):
             array[row] = -1
-    out["outcome"][row] = _FAILED
+    out["outcome"][row] = FAILED
     kept = reason.encode()[:REASON_SIZE].decode(errors="ignore").encode()
     out["reason"][row] = 0
     out["reason"][row, : len(kept)] = np.frombuffer(kept, np.uint8)
 
 
+def _put(column: np.ndarray, rows: np.ndarray, values: np.ndarray) -> None:
+    """Write the values of some cases, as many of each as the column has room for."""
+    if values.ndim == 2:
+        values = values[:, : column.shape[1]]
+        column[rows, : values.shape[1]] = values
+    else:
+        column[rows] = values
+
+
 def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) -> None:
     """A solution's measures as columns."""
-    rows, made, past = group.rows, solution.made, solution.history
+    rows, past = group.rows, solution.history
     out["outcome"][rows] = solution.outcome
-    out["impacts"][rows] = made
-    moved = np.flatnonzero(made > 0)
+    out["impacts"][rows] = solution.made
+    moved = np.flatnonzero(solution.made > 0)
     if moved.size:
-        at = rows[moved]
-        energy_balance_error = np.full(made.size, np.nan)
-        energy_balance_error[moved] = (
-            past["energy_balance_error"][moved].max(axis=1) / past["maximum_kinetic"][moved, 0]
-        )
-        found = {
-            **solution.measures,
-            **_totals(group, solution),
-            "energy_balance_error": energy_balance_error,
-        }
-        for column in study.columns:
-            if column.along == "turn":
-                out[column.name][at] = _turns(past, column.name, out[column.name].shape[1])[moved]
-            elif column.along == "impact":
-                known = found[column.name][moved][:, : out[column.name].shape[1]]
-                out[column.name][at, : known.shape[1]] = known
-            elif column.name in found:
-                out[column.name][at] = found[column.name][moved]
+        found = {**solution.measures, **_totals(group, solution)}
+        found |= _turns(past) if study.motions else {}
+        for name in found.keys() & out.keys():
+            _put(out[name], rows[moved], found[name][moved])
+        error = past["energy_balance_error"][moved].max(axis=1)
+        out["energy_balance_error"][rows[moved]] = error / past["maximum_kinetic"][moved, 0]
     for place, failure in solution.failures.items():
         _fail(out, int(rows[place]), str(failure))
     for place, problem in enumerate(group.problems):
@@ -231,20 +207,21 @@ def _totals(group: Group, solution: BatchSolution) -> Columns:
     return out
 
 
-def _turns(past: Columns, name: str, size: int) -> np.ndarray:
-    """Separations or times of the turning points, in order of time."""
-    what = "" if name == "turning_separation" else "_time"
-    both = np.stack([past[f"closest_approach{what}"], past[f"apex{what}"]], axis=2)
-    both = np.where(past["made"][..., None], both, np.nan)
-    flat = both.reshape(both.shape[0], -1)[:, :size]
-    return np.pad(flat, ((0, 0), (0, size - flat.shape[1])), constant_values=np.nan)
+def _turns(past: Columns) -> Columns:
+    """Separations and times of the turning points, in order of time."""
+    out = {}
+    for name, what in (("turning_separation", ""), ("turning_time", "_time")):
+        both = np.stack([past[f"closest_approach{what}"], past[f"apex{what}"]], axis=2)
+        both = np.where(past["made"][..., None], both, np.nan)
+        out[name] = both.reshape(both.shape[0], -1)
+    return out
 
 
 def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> list[str] | None:
     """A case that is solved by itself; its warnings, None where it cannot be."""
     clock.look()
     try:
-        critical = any(column.name == "critical_velocity" for column in study.columns)
+        critical = "critical_velocity" in study.keep
         result = solve(case, stop=clock.stop, critical=critical, beside=False)
     except (InputError, SimulationError) as error:
         clock.look()
@@ -253,15 +230,9 @@ def _solve(study: Study, out: Columns, row: int, case: Case, clock: Clock) -> li
     clock.look()  # a case that was cut short is not one that ended
     found = _read(result)
     out["outcome"][row] = ENDS.index(result.outcome)
-    for column in study.columns:
-        if column.along == "turn":
-            turns = found[column.name][: out[column.name].shape[1]]
-            out[column.name][row, : len(turns)] = turns
-        elif column.along == "impact":
-            values = found[column.name][: study.keep_impacts]
-            out[column.name][row, : len(values)] = [math.nan if v is None else v for v in values]
-        elif found.get(column.name) is not None:
-            out[column.name][row] = found[column.name]
+    for name in found.keys() & out.keys():
+        if found[name] is not None:
+            _put(out[name], np.array([row]), np.array([found[name]], out[name].dtype))
     return result.warnings
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 
@@ -29,11 +27,6 @@ class BatchValues(np.ndarray):
     So the code that builds one case builds many, and finds out itself which are of one kind.
     """
 
-    @classmethod
-    def of(cls, values: np.ndarray) -> BatchValues:
-        """The values as a batch."""
-        return np.asarray(values).view(cls)
-
     def __bool__(self) -> bool:
         holds = np.asarray(self).astype(bool)
         if holds.all():
@@ -45,6 +38,3 @@ class BatchValues(np.ndarray):
     def __format__(self, spec: str) -> str:
         """The first value: a message of many cases is written anew for each."""
         return format(self.ravel()[0].item(), spec)
-
-    def __array_finalize__(self, base: Any) -> None:
-        """Nothing is kept besides the values."""

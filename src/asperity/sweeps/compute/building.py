@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 
 from asperity._jax import jax, jnp
@@ -24,7 +23,7 @@ from asperity.contact.rough import RoughContact
 from asperity.dynamics import Limits
 from asperity.dynamics.problem import Problem
 from asperity.errors import InputError
-from asperity.integration.batch_records import Batch
+from asperity.integration.batch_records import Batch, is_array, taken
 from asperity.model import build
 from asperity.numerics.compilation import Program
 from asperity.sweeps.compute.batch_values import BatchValues, Mixed
@@ -60,6 +59,17 @@ class Group(NamedTuple):
     tolerance: np.ndarray
     problems: tuple[Problem, ...] = ()
     launched: bool = False
+
+    def some(self, places: np.ndarray) -> Group:
+        """Some of the cases, by their places in the group."""
+        problems = tuple(self.problems[place] for place in places) if self.problems else ()
+        return Group(
+            self.rows[places],
+            taken(self.batch, places),
+            self.tolerance[places],
+            problems,
+            self.launched,
+        )
 
 
 class Built(NamedTuple):
@@ -142,7 +152,7 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
     chosen: dict[str, Any] = {}
     for key, array in values.items():
         some = array[rows]
-        chosen[key] = BatchValues.of(some) if some.dtype.kind == "f" else some.tolist()[0]
+        chosen[key] = some.view(BatchValues) if some.dtype.kind == "f" else some.tolist()[0]
     try:
         case = study.case_of(chosen)
         problem = build(resolve(case), _UNRESOLVED)
@@ -150,11 +160,11 @@ def _as_one(study: Study, values: Values, rows: np.ndarray) -> tuple[Group, bool
         raise
     except (TypeError, ValueError, AttributeError) as error:  # what takes one number alone
         raise _Differs from error
-    ends = _batch_of(problem)
-    both = [case_at(study, values, row) for row in (rows[0], rows[-1])]
-    alone = [_batch_of(build(resolve(each), _UNRESOLVED)) for each in both]
-    batch = _spread(ends, alone, rows.size)
     inputs = problem.inputs
+    whole = Batch(problem.contact, problem.body, Limits.of(inputs.tolerance))
+    both = [case_at(study, values, row) for row in (rows[0], rows[-1])]
+    alone = [_batch_of_one(build(resolve(each), _UNRESOLVED)) for each in both]
+    batch = _spread(whole, alone, rows.size)
     tolerance = np.broadcast_to(np.asarray(inputs.tolerance.relative, float), rows.shape)
     group = Group(rows, batch, tolerance, launched=inputs.chosen_release)
     return group, problem.in_time
@@ -168,23 +178,25 @@ def _spread(batch: Batch, alone: list[Batch], count: int) -> Batch:
         raise _Differs
     out = []
     for leaf, one, other in zip(leaves, first[0], last[0], strict=True):
-        if not _is_array(one):
+        if not is_array(one):
             if leaf != one or leaf != other:
                 raise _Differs
             out.append(leaf)
             continue
-        array, shape = np.asarray(leaf), np.shape(one)
+        array, shape = np.asarray(leaf), one.shape[1:]
         if array.shape == shape:
             array = np.broadcast_to(array, (count, *shape))
-        if array.shape != (count, *shape) or not (_near(array[0], one) and _near(array[-1], other)):
+        if array.shape != (count, *shape) or not (
+            _near(array[:1], one) and _near(array[-1:], other)
+        ):
             raise _Differs
         out.append(array)
     spread: Batch = jax.tree_util.tree_unflatten(structure, out)
     return spread
 
 
-def _near(value: np.ndarray, one: Any) -> bool:
-    return np.allclose(value, np.asarray(one), rtol=_ROUNDING, atol=0.0, equal_nan=True)
+def _near(value: np.ndarray, one: np.ndarray) -> bool:
+    return np.allclose(value, one, rtol=_ROUNDING, atol=0.0, equal_nan=True)
 
 
 def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
@@ -199,7 +211,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         if problem.in_time:
             out.alone.append((row, case))
             continue
-        batch = jax.tree_util.tree_map(_raised, _batch_of(problem), is_leaf=_is_array)
+        batch = _batch_of_one(problem)
         tolerance, launched = problem.inputs.tolerance.relative, problem.inputs.chosen_release
         group = Group(np.asarray([row]), batch, np.asarray([tolerance]), (problem,), launched)
         out.groups.append(_coarser(group))
@@ -210,16 +222,15 @@ def case_at(study: Study, values: Values, row: int) -> Case:
     return study.case_of({key: array[row : row + 1].tolist()[0] for key, array in values.items()})
 
 
-def _batch_of(problem: Problem) -> Batch:
-    return Batch(problem.contact, problem.body, Limits.of(problem.inputs.tolerance))
+def problem_at(study: Study, values: Values, group: Group, place: int) -> Problem:
+    """What was built of a case of a group, by its place there; else it is built now."""
+    if group.problems:
+        return group.problems[place]
+    return build(resolve(case_at(study, values, int(group.rows[place]))))
 
 
-def _is_array(leaf: Any) -> bool:
-    return isinstance(leaf, np.ndarray | np.generic) or eqx.is_array(leaf)
-
-
-def _raised(leaf: Any) -> Any:
-    return np.asarray(leaf)[None] if _is_array(leaf) else leaf
+def _batch_of_one(problem: Problem) -> Batch:
+    return Batch.of_one(problem.contact, problem.body, Limits.of(problem.inputs.tolerance))
 
 
 def _by_resolution(group: Group) -> list[Group]:
@@ -229,14 +240,14 @@ def _by_resolution(group: Group) -> list[Group]:
         return [group]
     deforms = isinstance(contact, ElasticContact)
     interface = jax.tree_util.tree_map(
-        lambda leaf: jnp.asarray(leaf) if _is_array(leaf) else leaf, contact.interface
+        lambda leaf: jnp.asarray(leaf) if is_array(leaf) else leaf, contact.interface
     )
     lengths = np.stack([np.asarray(x) for x in _lengths(interface)], axis=1)
     kinds: dict[Resolution, list[int]] = {}
     for row, each in enumerate(lengths.tolist()):
         found = resolution_of(contact.interface, tuple(each), deforms=deforms)
         kinds.setdefault(one_of_few(found, FEW_OF_MANY), []).append(row)
-    return [_taken(group, np.asarray(rows), kind) for kind, rows in kinds.items()]
+    return [_resolved(group.some(np.asarray(rows)), kind) for kind, rows in kinds.items()]
 
 
 def _lengths_of_each(interface: Any) -> Any:
@@ -253,13 +264,6 @@ def _coarser(group: Group) -> Group:
     return _resolved(group, one_of_few(contact.resolved, FEW_OF_MANY))
 
 
-def _taken(group: Group, places: np.ndarray, kind: Resolution) -> Group:
-    take: Callable[[Any], Any] = lambda leaf: leaf[places] if _is_array(leaf) else leaf  # noqa: E731
-    batch = jax.tree_util.tree_map(take, group.batch)
-    part = Group(group.rows[places], batch, group.tolerance[places], launched=group.launched)
-    return _resolved(part, kind)
-
-
 def _resolved(group: Group, kind: Resolution) -> Group:
     contact = group.batch.contact
     assert isinstance(contact, RoughContact)
@@ -272,7 +276,7 @@ def _alike(groups: list[Group]) -> list[list[Group]]:
     kinds: dict[Hashable, list[Group]] = {}
     for group in groups:
         leaves, structure = jax.tree_util.tree_flatten(group.batch)
-        shapes = tuple(leaf.shape[1:] if _is_array(leaf) else (leaf,) for leaf in leaves)
+        shapes = tuple(leaf.shape[1:] if is_array(leaf) else (leaf,) for leaf in leaves)
         kinds.setdefault((structure, shapes, group.launched), []).append(group)
     return list(kinds.values())
 
@@ -283,7 +287,7 @@ def _joined(groups: list[Group]) -> Group:
         return groups[0]
 
     def joined(*leaves: Any) -> Any:
-        return np.concatenate(leaves) if _is_array(leaves[0]) else leaves[0]
+        return np.concatenate(leaves) if is_array(leaves[0]) else leaves[0]
 
     batch = jax.tree_util.tree_map(joined, *(group.batch for group in groups))
     rows = np.concatenate([group.rows for group in groups])

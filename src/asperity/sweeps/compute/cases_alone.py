@@ -8,7 +8,6 @@ import numpy as np
 
 from asperity.contact import ElasticContact, RigidContact
 from asperity.errors import SimulationError
-from asperity.integration.batch_records import taken
 from asperity.integration.jumping import likely_to_jump
 from asperity.integration.panel_cuts import Inaccurate, Unsolved
 from asperity.sweeps.compute.building import Built, Group, Values, case_at
@@ -34,15 +33,8 @@ def without_jumps(study: Study, values: Values, whole: Built) -> Built:
         alone += [(row, case_at(study, values, row)) for row in group.rows[jumps].tolist()]
         stay = np.flatnonzero(~jumps)
         if stay.size:
-            groups.append(group if stay.size == jumps.size else _some(group, stay))
+            groups.append(group if stay.size == jumps.size else group.some(stay))
     return Built(groups, alone, whole.refused)
-
-
-def _some(group: Group, places: np.ndarray) -> Group:
-    """Cases of a group."""
-    problems = tuple(group.problems[place] for place in places.tolist()) if group.problems else ()
-    batch = taken(group.batch, places)
-    return Group(group.rows[places], batch, group.tolerance[places], problems, group.launched)
 
 
 def unfinished(group: Group, solution: BatchSolution) -> list[int]:

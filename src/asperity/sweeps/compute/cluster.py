@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.errors import InputError, OutputError, SimulationError
-from asperity.sweeps.compute.runner import Answer, one_thread
+from asperity.sweeps.compute.runner import Answer, Answers, Runner, one_thread
 
 if TYPE_CHECKING:
     from asperity.sweeps.compute.batch import Effort
@@ -28,9 +28,6 @@ IN_FLIGHT = 3
 
 _LISTEN = 0.1
 _COUNT = 2.0
-
-Function = Callable[[str, int], tuple[dict[str, np.ndarray], "Effort"]]
-"""What a worker calls with a study's text and a task's number."""
 
 
 @functools.lru_cache(maxsize=4)
@@ -67,9 +64,7 @@ def compute_task(text: str, task: int) -> tuple[dict[str, np.ndarray], Effort]:
     return compute(study, task)
 
 
-def on_cluster(
-    client: Any, function: Function = compute_task
-) -> Callable[[Study, Sequence[int], threading.Event], Iterator[Answer]]:
+def on_cluster(client: Any, function: Callable[[str, int], Any] = compute_task) -> Runner:
     """A `Runner` that has a cluster's workers compute.
 
     Parameters
@@ -77,7 +72,7 @@ def on_cluster(
     client : distributed.Client
         The cluster.
     function : callable
-        What a worker calls.
+        What a worker calls with the study's text and a task's number.
 
     Raises
     ------
@@ -87,7 +82,7 @@ def on_cluster(
         When run: where a task ends every worker that computes it.
     """
 
-    def run(study: Study, tasks: Sequence[int], stop: threading.Event) -> Iterator[Answer]:
+    def run(study: Study, tasks: Sequence[int], stop: threading.Event) -> Answers:
         flight = _Flight(client, functools.partial(client.submit, function, study.canonical))
         waiting = iter(tasks)
         try:

@@ -11,12 +11,12 @@ from asperity.contact import YieldingContact
 from asperity.critical_velocity import LAUNCH_ERROR, launch_separation
 from asperity.dynamics import Body, Limits
 from asperity.dynamics.capture_edges import FirstImpacts, capture_edges, speeds_about
-from asperity.errors import ENDS, Outcome
 from asperity.integration.batch_records import Batch, taken
 from asperity.integration.clock import Clock
 from asperity.integration.steps import FEW_CASES, Steps
 from asperity.sweeps.compute.building import Group
 from asperity.sweeps.compute.integrate_batch import BatchSolution, integrate_batch
+from asperity.sweeps.study.columns import FAILED
 
 _TOGETHER = 256  # cases whose impacts are launched in one go
 
@@ -70,9 +70,8 @@ def _of_some(group: Group, solution: BatchSolution, some: np.ndarray, clock: Clo
 
 def _first_impacts(made: BatchSolution, mass: np.ndarray, body: Body) -> FirstImpacts:
     """What became of bodies that were launched; those that were not integrated are not known."""
-    failed = ENDS.index(Outcome.FAILED)
     contact_end = made.measures["contact_end"]
-    known = (made.made > 0) & (made.outcome != failed) & np.isfinite(contact_end)
+    known = (made.made > 0) & (made.outcome != FAILED) & np.isfinite(contact_end)
     speed = np.where(known, made.measures["impact_speed"], np.nan)
     excess = made.history["leaving"][:, 0] - body.plain.load.potential_gain(0.0, contact_end)
     captured = made.measures["captured"].astype(bool)

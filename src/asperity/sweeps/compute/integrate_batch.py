@@ -9,13 +9,14 @@ import numpy as np
 from asperity._jax import jax
 from asperity.contact import ElasticContact
 from asperity.dynamics import Body
-from asperity.errors import ENDS, Outcome, SimulationError
+from asperity.errors import SimulationError
 from asperity.integration.batch_motion import REFINEMENTS, BatchMotion
 from asperity.integration.batch_records import ImpactRows, slices, taken
 from asperity.integration.clock import Clock
 from asperity.integration.panel_cuts import PATIENCE
 from asperity.integration.steps import Steps
 from asperity.sweeps.compute.building import Group
+from asperity.sweeps.study.columns import FAILED
 
 _LEAST = 16
 
@@ -99,9 +100,8 @@ def compile_ahead(groups: list[Group]) -> None:
 def _solution(motions: BatchMotion) -> BatchSolution:
     """What became of all cases."""
     count, made, failures = motions.made.size, motions.made, motions.failures
-    failed = ENDS.index(Outcome.FAILED)
     out = BatchSolution(
-        np.full(count, failed), made, np.full(count, np.nan), np.zeros((count, 0)), {}, {},
+        np.full(count, FAILED), made, np.full(count, np.nan), np.zeros((count, 0)), {}, {},
         np.full((count, 3), np.nan), failures, np.full(count, np.nan),
         motions.batch.body,
     )  # fmt: skip
@@ -111,8 +111,8 @@ def _solution(motions: BatchMotion) -> BatchSolution:
     begun, first = ends
     assert first is not None
     moved, progress = made > 0, begun.progress
-    outcome = np.where(moved, progress.outcome, failed)
-    for place in np.flatnonzero(moved & (outcome == failed)).tolist():
+    outcome = np.where(moved, progress.outcome, FAILED)
+    for place in np.flatnonzero(moved & (outcome == FAILED)).tolist():
         failures[place] = SimulationError("the motion left the tabulated separations")
     history = {name: x for name, x in rows.impacts._asdict().items() if x is not None}
     return out._replace(

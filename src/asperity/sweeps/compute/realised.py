@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asperity.config.resolve import resolve
 from asperity.errors import InputError, SimulationError
 from asperity.integration.batch_records import taken
 from asperity.integration.clock import Clock
-from asperity.model import build
 from asperity.single_bodies import realise
-from asperity.sweeps.compute.building import Group, Values, case_at
+from asperity.sweeps.compute.building import Group, Values, problem_at
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 from asperity.sweeps.study.columns import OF_BODIES
 
@@ -41,10 +39,7 @@ def realised(
         return {}
     found = {column.name: np.full(group.rows.size, np.nan) for column in OF_BODIES}
     for index in np.flatnonzero(solution.made > 0).tolist():
-        if group.problems:
-            problem = group.problems[index]
-        else:
-            problem = build(resolve(case_at(study, values, int(group.rows[index]))))
+        problem = problem_at(study, values, group, index)
         if problem.inputs.placement is None:
             continue
         clock.look()

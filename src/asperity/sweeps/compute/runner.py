@@ -8,7 +8,7 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 Answer = tuple[int, dict[str, np.ndarray], "Effort"]
 """A task's number, its columns, and what they cost."""
 
-Runner = Callable[["Study", Sequence[int], threading.Event], Iterator[Answer]]
+Answers = Generator[Answer, None, None]
+"""Of tasks, as they come; closed where no more are wanted."""
+
+Runner = Callable[["Study", Sequence[int], threading.Event], Answers]
 """Computes tasks of a study in any order, until all are done or it is asked to stop."""
 
 _LISTEN = 0.2
@@ -67,7 +70,7 @@ class Tally:
     ----------
     tasks, cases : int
         Computed in this run.
-    tasks_wanted, cases_wanted : int
+    cases_wanted : int
         To be computed in this run.
     useful : float
         Sum over the cases of the useful share of their batch.
@@ -85,7 +88,6 @@ class Tally:
 
     tasks: int
     cases: int
-    tasks_wanted: int
     cases_wanted: int
     useful: float = 0.0
     compiled: float = 0.0
@@ -136,7 +138,6 @@ class Tally:
         return Tally(
             self.tasks + 1,
             self.cases + effort.cases,
-            self.tasks_wanted,
             self.cases_wanted,
             self.useful + effort.cases * effort.batch_use,
             self.compiled + effort.compiled,
@@ -147,17 +148,13 @@ class Tally:
         )
 
 
-Progress = Callable[[int, "Effort", Tally], None]
-"""Told of each task once it is kept: number, effort, and all until now."""
-
-
 def fill(
     study: Study,
     store: Store,
     runner: Runner,
     *,
     tasks: Sequence[int] | None = None,
-    progress: Progress | None = None,
+    progress: Callable[[int, Effort, Tally], None] | None = None,
     stop: threading.Event | None = None,
 ) -> Tally:
     """Compute the tasks that a store misses.
@@ -173,7 +170,7 @@ def fill(
     tasks : sequence of int, optional
         Tasks wanted; all unless given. Those that are done are not computed again.
     progress : callable, optional
-        Told of each task.
+        Told of each task once it is kept: its number, its effort, and all until now.
     stop : threading.Event, optional
         Ends the run when set; what is finished is kept.
 
@@ -187,11 +184,11 @@ def fill(
     stop = stop or threading.Event()
     wanted = range(study.tasks) if tasks is None else tasks
     missing = [task for task in wanted if task not in store.done]
-    tally = Tally(0, 0, len(missing), sum(len(study.task(task)) for task in missing))
+    tally = Tally(0, 0, sum(len(study.task(task)) for task in missing))
     began = time.monotonic()
     try:
         if missing:
-            with contextlib.closing(generator_of(runner(study, missing, stop))) as answers:
+            with contextlib.closing(runner(study, missing, stop)) as answers:
                 for task, columns, effort in answers:
                     store.write(task, columns | drawn(study, study.task(task)))
                     tally = tally.plus(effort, time.monotonic() - began)
@@ -205,12 +202,7 @@ def fill(
     return tally
 
 
-def generator_of(answers: Iterator[Answer]) -> Generator[Answer, None, None]:
-    """The answers as something that can be closed."""
-    yield from answers
-
-
-def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Iterator[Answer]:
+def in_process(study: Study, tasks: Sequence[int], stop: threading.Event) -> Answers:
     """A `Runner` in this process: a thread for each core, since compiled code runs beside Python.
 
     What is under way when it is asked to stop is given up, within about a second.

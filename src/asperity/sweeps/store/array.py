@@ -162,15 +162,15 @@ def read_group(path: Path) -> Group:
     return Group(str(about["fingerprint"]), str(about["study"]), arrays)
 
 
-def read_array(file: Path, dims: int | None = None) -> Array:
+def read_array(file: Path, dims: int) -> Array:
     """What an array's metadata say.
 
     Parameters
     ----------
     file : Path
         Its metadata.
-    dims : int, optional
-        Number of dimensions of the cases, all of them unless given.
+    dims : int
+        Number of dimensions of the cases.
 
     Raises
     ------
@@ -186,8 +186,7 @@ def read_array(file: Path, dims: int | None = None) -> Array:
         if not shape or len(chunk) != len(shape) or min(*shape, *chunk) < 1:
             raise ValueError(f"shape {shape} in chunks of {chunk}")
         blocks = Blocks(shape[:dims], chunk[:dims])
-        width = () if dims is None else shape[dims:]
-        return Array(blocks, width, dtype, np.nan if fill == "NaN" else fill)
+        return Array(blocks, shape[dims:], dtype, np.nan if fill == "NaN" else fill)
     except (KeyError, TypeError, ValueError) as error:
         raise corrupt(file, str(error)) from None
 

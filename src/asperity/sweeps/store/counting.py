@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.errors import ENDS, Outcome
+from asperity.errors import ENDS
 from asperity.sweeps.store.store import Store
+from asperity.sweeps.study.columns import FAILED, reasons
 
 
 def outcomes(store: Store) -> dict[str, int]:
@@ -36,9 +37,9 @@ def first_failure(store: Store) -> tuple[int, str] | None:
         As `outcomes`.
     """
     for task in sorted(store.done):
-        failed = store.read(task, "outcome") == ENDS.index(Outcome.FAILED)
+        failed = store.read(task, "outcome") == FAILED
         if failed.any():
             row = int(np.argmax(failed))
-            text = store.read(task, "reason")[row].tobytes().rstrip(b"\0")
-            return store.blocks.cases(task)[row], text.decode(errors="replace")
+            (reason,) = reasons(store.read(task, "reason")[[row]])
+            return store.blocks.cases(task)[row], reason
     return None

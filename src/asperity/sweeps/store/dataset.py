@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asperity.config.problems import did_you_mean
-from asperity.errors import ENDS, InputError, Outcome
+from asperity.errors import InputError
 from asperity.sweeps.store.store import REPAIR, Store
 from asperity.sweeps.store.variables import Variable, attributes, coordinates
-from asperity.sweeps.study.columns import Column
+from asperity.sweeps.study.columns import FAILED, Column, reasons
 from asperity.sweeps.study.study import Study, parse
 from asperity.units import shown
 
@@ -167,18 +167,11 @@ def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset
             "axes": [axis.key for axis in study.axes],
             "cases": study.size,
             "computed": int(np.count_nonzero(outcome >= 0)),
-            "failed": int(np.count_nonzero(outcome == ENDS.index(Outcome.FAILED))),
+            "failed": int(np.count_nonzero(outcome == FAILED)),
             "study": study.canonical,
             "fingerprint": study.fingerprint,
         },
     )
-
-
-def reasons(texts: np.ndarray) -> np.ndarray:
-    """Why cases failed, as text, from bytes of shape (cases, width); "" where they did not."""
-    rows = np.ascontiguousarray(texts)
-    joined = rows.view(f"S{rows.shape[1]}")[:, 0]
-    return np.array([text.decode("utf-8", "ignore") for text in joined.tolist()], dtype=object)
 
 
 def _variable(

@@ -11,7 +11,7 @@ import contextlib
 import hashlib
 import math
 import shutil
-from collections.abc import Collection, Iterable, Mapping, Set
+from collections.abc import Collection, Mapping, Set
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -237,24 +237,18 @@ class Store:
         wanted = self.manifest.chunks[task].get(name)
         return found if hashlib.sha256(found).hexdigest() == wanted else None
 
-    def check(self, columns: Iterable[str] | None = None) -> list[tuple[int, str]]:
+    def check(self) -> list[tuple[int, str]]:
         """The chunks of finished tasks that are missing or not what was written.
-
-        Parameters
-        ----------
-        columns : iterable of str, optional
-            Columns to look at; all unless given.
 
         Returns
         -------
         list of tuple
             Task and column of each.
         """
-        names = list(self.arrays if columns is None else columns)
         return [
             (task, name)
             for task in sorted(self.done)
-            for name in names
+            for name in self.arrays
             if self.content(task, name) is None
         ]
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Dimensions, values and attributes."""
 
-_FLAGS = {
+FLAGS = {
     "outcome": ("not_computed", *(outcome.value for outcome in ENDS)),
     "captured": ("undecided", "rebounds", "captured"),
 }
@@ -61,8 +61,8 @@ def attributes(column: Column, axes: tuple[Axis, ...] = ()) -> dict[str, Any]:
     if column.unit:
         about["units"] = column.unit
     codes = {axis.key: axis.listed for axis in axes if not axis.numeric}
-    if column.name in _FLAGS:
-        names = _FLAGS[column.name]
+    if column.name in FLAGS:
+        names = FLAGS[column.name]
         about["flag_values"] = list(range(-1, len(names) - 1))
         about["flag_meanings"] = " ".join(names)
     elif column.name in codes:

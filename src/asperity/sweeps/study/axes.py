@@ -8,30 +8,19 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.sweeps.study.keys import Value, written
-
-_HELD = 1 << 16
-"""Values of a range that are computed once and kept."""
+from asperity.sweeps.study.keys import Key, Value
 
 Scale = Literal["linear", "log"]
 
 
 @dataclass(frozen=True)
-class Axis:
+class Axis(Key):
     """A key of a case and the values that it takes in a study.
 
     Attributes
     ----------
-    key
-        Dotted key, e.g. "roughness.rms_height".
-    unit
-        SI unit of the values; "1" for plain numbers, "" for text and switches.
-    label
-        What it is, in a few words.
-    numeric
-        Whether the values are numbers.
-    whole
-        Whether they are whole numbers.
+    key, unit, label, whole
+        As of a `Key`.
     listed
         The values in SI where the study lists them; () for a range.
     low, high
@@ -42,21 +31,11 @@ class Axis:
         How a range is divided: "linear" or "log".
     """
 
-    key: str
-    unit: str
-    label: str
-    numeric: bool
-    whole: bool
     listed: tuple[Value, ...]
     low: float
     high: float
     steps: int
     scale: Scale
-
-    @property
-    def ranged(self) -> bool:
-        """Whether the axis is a range, not a list."""
-        return not self.listed
 
     @property
     def size(self) -> int:
@@ -82,9 +61,7 @@ class Axis:
             SI floats, whole numbers (int64), switches (bool) or text (object); shape of `index`.
         """
         if self.listed:
-            return _array(self.listed, tuple(map(type, self.listed)))[index]
-        if self.steps <= _HELD:
-            return _held(self)[index]
+            return self._array[index]
         return self._between(index / (self.steps - 1.0), whole_steps=True)
 
     def from_unit(self, u: np.ndarray) -> np.ndarray:
@@ -106,9 +83,13 @@ class Axis:
             return self.at(np.minimum((u * len(self.listed)).astype(np.int64), last))
         return self._between(u, whole_steps=False)
 
-    def written(self, value: Value) -> Value:
-        """A value in SI as it stands in a case file."""
-        return written(value, self.unit)
+    @functools.cached_property
+    def _array(self) -> np.ndarray:
+        """The listed values."""
+        kinds = set(map(type, self.listed))
+        dtypes: dict[type, type] = {float: np.float64, int: np.int64, bool: np.bool_}
+        dtype = dtypes.get(kinds.pop(), object) if len(kinds) == 1 else object
+        return np.array(self.listed, dtype)
 
     def _between(self, part: np.ndarray, *, whole_steps: bool) -> np.ndarray:
         """Values at fractions of the range, both ends exact."""
@@ -124,18 +105,3 @@ class Axis:
             return value
         rounded = np.floor(value + 0.5 if whole_steps else value)
         return np.minimum(rounded, self.high).astype(np.int64)
-
-
-@functools.lru_cache(maxsize=64)
-def _held(axis: Axis) -> np.ndarray:
-    """All values of a range."""
-    part = np.arange(axis.steps) / (axis.steps - 1.0)
-    return axis._between(part, whole_steps=True)
-
-
-@functools.lru_cache(maxsize=64)
-def _array(values: tuple[Value, ...], types: tuple[type, ...]) -> np.ndarray:
-    """Listed values of these types as an array: 1, 1.0 and true are equal, and not the same."""
-    kinds = set(types)
-    dtypes: dict[type, type] = {float: np.float64, int: np.int64, bool: np.bool_}
-    return np.array(values, dtype=dtypes.get(kinds.pop(), object) if len(kinds) == 1 else object)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
 from asperity.config.base_table import Table
 from asperity.config.fields import Number
@@ -39,32 +39,6 @@ class AxisTable(Table):
     steps: Annotated[int, Number(f"[2, {STEPS_LIMIT}]", whole=True)] | None = None
     scale: Scale | None = None
 
-    @model_validator(mode="after")
-    def _values_or_range(self) -> Self:
-        given = self.model_fields_set
-        if "values" in given:
-            beside = [name for name in ("start", "to", "steps", "scale") if name in given]
-            if beside:
-                other = _in_file(beside[0])
-                raise InputError(
-                    f"`{other}` and `values` exclude each other: list the values or give their "
-                    "range; got both",
-                    key=other,
-                )
-            return self
-        for name in ("start", "to"):
-            if name not in given:
-                raise InputError(
-                    f"`{_in_file(name)}` must be given, or `values` in place of `from` and `to`; "
-                    "got nothing",
-                    key=_in_file(name),
-                )
-        return self
-
-
-def _in_file(name: str) -> str:
-    return "from" if name == "start" else name
-
 
 def axis_of(key: Key, written: object, *, sampled: bool) -> Axis:
     """The axis of a key.
@@ -89,8 +63,7 @@ def axis_of(key: Key, written: object, *, sampled: bool) -> Axis:
     if not key.numeric:
         raise InputError(
             f"`values` must be given for `{key.last}`, which is no number and has no range; got "
-            "`from` and `to`",
-            key="values",
+            "`from` and `to`"
         )
     return _range(key, table, sampled=sampled)
 
@@ -102,7 +75,7 @@ def _table(written: object) -> AxisTable:
             "must be a table, {values = [..]} or {from = .., to = .., steps = ..}; got "
             f"{shown(written)}"
         )
-    known = [_in_file(name) for name in AxisTable.model_fields]
+    known = [field.alias or name for name, field in AxisTable.model_fields.items()]
     for name in written:
         if name not in known:
             raise InputError(
@@ -110,24 +83,40 @@ def _table(written: object) -> AxisTable:
                 f"{did_you_mean(name, known)}"
             )
     try:
-        return check(AxisTable, written)
+        table = check(AxisTable, written)
     except InputError as error:
-        raise InputError(str(error).removeprefix(f"{error.key}: "), key=error.key) from None
+        raise InputError(str(error).removeprefix(f"{error.key}: ")) from None
+    _refuse_both_or_neither(written)
+    return table
+
+
+def _refuse_both_or_neither(written: dict[str, Any]) -> None:
+    """Refuse an axis that has both a list of values and a range, or neither."""
+    if "values" in written:
+        for name in ("from", "to", "steps", "scale"):
+            if name in written:
+                raise InputError(
+                    f"`{name}` and `values` exclude each other: list the values or give their "
+                    "range; got both"
+                )
+        return
+    for name in ("from", "to"):
+        if name not in written:
+            raise InputError(
+                f"`{name}` must be given, or `values` in place of `from` and `to`; got nothing"
+            )
 
 
 def _range(key: Key, table: AxisTable, *, sampled: bool) -> Axis:
     low, high = _end(key, "from", table.start), _end(key, "to", table.to)
     if low >= high:
         raise InputError(
-            f"`to` must be larger than `from` ({shown(table.start)}); got {shown(table.to)}",
-            key="to",
+            f"`to` must be larger than `from` ({shown(table.start)}); got {shown(table.to)}"
         )
     if table.scale == "log" and low <= 0.0:
-        raise InputError(
-            f"`from` must be positive with scale = 'log'; got {shown(table.start)}", key="from"
-        )
+        raise InputError(f"`from` must be positive with scale = 'log'; got {shown(table.start)}")
     steps, scale = _steps(table.steps, sampled=sampled), table.scale or "linear"
-    axis = Axis(key.name, key.unit, key.label, True, key.whole, (), low, high, steps, scale)
+    axis = Axis(**vars(key), listed=(), low=low, high=high, steps=steps, scale=scale)
     if key.whole and steps:
         _refuse_meeting(axis)
     return axis
@@ -138,20 +127,18 @@ def _end(key: Key, name: str, value: object) -> float:
     try:
         return float(key.read(value))
     except InputError as error:
-        raise InputError(f"`{name}`: {error}", key=name) from None
+        raise InputError(f"`{name}`: {error}") from None
 
 
 def _steps(steps: int | None, *, sampled: bool) -> int:
     if sampled and steps is not None:
         raise InputError(
             "`steps` must be absent with a [sample] table, which sets how many values are drawn; "
-            f"got {steps}",
-            key="steps",
+            f"got {steps}"
         )
     if not sampled and steps is None:
         raise InputError(
-            "`steps`, the number of values, must be given without a [sample] table; got nothing",
-            key="steps",
+            "`steps`, the number of values, must be given without a [sample] table; got nothing"
         )
     return steps or 0
 
@@ -163,8 +150,7 @@ def _refuse_meeting(axis: Axis) -> None:
         return
     raise InputError(
         f"`steps` must be few enough for each to be a whole number of its own (from {low} to "
-        f"{high}, {axis.scale}); got {axis.steps}",
-        key="steps",
+        f"{high}, {axis.scale}); got {axis.steps}"
     )
 
 
@@ -177,12 +163,10 @@ def _listed(key: Key, values: Sequence[object]) -> Axis:
         if same in found:
             both = dict.fromkeys(map(shown, (found[same], written)))
             raise InputError(
-                f"`values` must differ; got {' and '.join(both)}{' twice' * (len(both) == 1)}",
-                key="values",
+                f"`values` must differ; got {' and '.join(both)}{' twice' * (len(both) == 1)}"
             )
         found[same] = written
     listed = tuple(value for _, value in found)
     numbers = [float(value) for value in listed] if key.numeric else [0.0]
     low, high = min(numbers), max(numbers)
-    numeric, whole = key.numeric, key.whole
-    return Axis(key.name, key.unit, key.label, numeric, whole, listed, low, high, 0, "linear")
+    return Axis(**vars(key), listed=listed, low=low, high=high, steps=0, scale="linear")

@@ -12,15 +12,13 @@ from asperity.sweeps.study.study_file import StudyTable
 from asperity.units import shown
 
 
-def base_of(table: StudyTable, file: str | None, folder: Path) -> tuple[Case, str]:
+def base_of(table: StudyTable, folder: Path) -> tuple[Case, str]:
     """Base case of a study, and its name.
 
     Parameters
     ----------
     table : StudyTable
         The study's keys.
-    file : str or None
-        The study's file, for messages.
     folder : Path
         Where files that it names are looked for.
 
@@ -29,11 +27,7 @@ def base_of(table: StudyTable, file: str | None, folder: Path) -> tuple[Case, st
     InputError
         Where there is no such case, or it cannot be used.
     """
-    try:
-        case, name = _found(table.base, folder)
-    except InputError as error:
-        message = f"{file}: {error}" if file else str(error)
-        raise InputError(message, file=file, key=error.key or "base") from None
+    case, name = _found(table.base, folder)
     # Where a run would write its files is nothing of a study's, whose fingerprint it would change.
     return case.model_copy(update={"output": Output()}), table.name or name
 
@@ -48,7 +42,8 @@ def _found(base: object, folder: Path) -> tuple[Case, str]:
     if not isinstance(base, str) or not base.strip():
         raise InputError(
             "`base` must be a built-in case or a case file beside the study, as text; got "
-            f"{shown(base)}"
+            f"{shown(base)}",
+            key="base",
         )
     path = Path(base)
     if not path.suffix and path.name == base:
@@ -57,13 +52,14 @@ def _found(base: object, folder: Path) -> tuple[Case, str]:
         name = path.stem.encode(errors="replace").decode()
         return load_file(folder / path), name
     except InputError as error:
-        raise InputError(f"base: {error}") from None
+        raise InputError(f"base: {error}", key="base") from None
 
 
 def _builtin(name: str) -> Case:
     if name not in BUILTINS:
         raise InputError(
             f"`base` must be a built-in case ({', '.join(BUILTINS)}) or a case file beside the "
-            f"study, such as 'drop.toml'; got {shown(name)}{did_you_mean(name, BUILTINS)}"
+            f"study, such as 'drop.toml'; got {shown(name)}{did_you_mean(name, BUILTINS)}",
+            key="base",
         )
     return builtin(name)

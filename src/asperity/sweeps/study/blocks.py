@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class Blocks:
@@ -50,11 +52,7 @@ class Blocks:
         """
         if not 0 <= number < self.count:
             raise IndexError(f"of {self.count} tasks there is none with the number {number}")
-        found: list[int] = []
-        for count in reversed(self._along):
-            number, at = divmod(number, count)
-            found.insert(0, at)
-        return tuple(found)
+        return tuple(map(int, np.unravel_index(number, self._along)))
 
     def extent(self, number: int) -> tuple[int, ...]:
         """Sizes of a block; the last along a dimension may be smaller."""

@@ -2,34 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from pydantic import BaseModel
 
 from asperity.config import Case, case_text
 from asperity.config.problems import check
 from asperity.errors import InputError
-from asperity.sweeps.study.keys import Value
-
-
-class Change(NamedTuple):
-    """Another value of a key.
-
-    Attributes
-    ----------
-    place
-        Tables around the key, and the key.
-    value
-        The value in SI, which keeps the rule of its key.
-    written
-        The value as it stands in a case file.
-    """
-
-    place: tuple[str, ...]
-    value: Value
-    written: Value
+from asperity.sweeps.study.keys import Key, Value, place
 
 
 def parts(case: Case) -> dict[str, Any]:
@@ -38,7 +19,7 @@ def parts(case: Case) -> dict[str, Any]:
     return {name: table for name, table in tables.items() if table is not None}
 
 
-def changed(tables: Mapping[str, Any], changes: Sequence[Change]) -> Case:
+def changed(tables: Mapping[str, Any], changes: Sequence[tuple[Key, Value]]) -> Case:
     """A case with other values.
 
     The values are known to keep the rules of their own keys, so that the rules between keys alone
@@ -48,20 +29,20 @@ def changed(tables: Mapping[str, Any], changes: Sequence[Change]) -> Case:
     ----------
     tables : mapping
         The tables of a case, from `parts`.
-    changes : sequence of Change
-        Other values.
+    changes : sequence of tuple
+        Keys with their other values in SI.
 
     Raises
     ------
     InputError
         With the rule between keys that they break, in the words of a case file's.
     """
-    if not all(isinstance(tables.get(change.place[0]), BaseModel) for change in changes):
+    if not all(isinstance(tables.get(place(key.key)[0]), BaseModel) for key, _ in changes):
         return _read_again(tables, changes)
     updates: dict[str, dict[str, Value]] = {}
-    for change in changes:
-        table, key = change.place
-        updates.setdefault(table, {})[key] = change.value
+    for key, value in changes:
+        table, last = place(key.key)
+        updates.setdefault(table, {})[last] = value
     whole = {name: _updated(name, table, updates.get(name)) for name, table in tables.items()}
     return check(Case, whole)
 
@@ -80,21 +61,21 @@ def _updated(name: str, table: Any, update: dict[str, Value] | None) -> Any:
     return result
 
 
-def _read_again(tables: Mapping[str, Any], changes: Sequence[Change]) -> Case:
+def _read_again(tables: Mapping[str, Any], changes: Sequence[tuple[Key, Value]]) -> Case:
     """A case whose changed tables are read as from a file, since one of them is new."""
     whole = dict(tables)
-    for change in changes:
-        *above, last = change.place
+    for key, value in changes:
+        *above, last = place(key.key)
         table = whole
         for part in above:
             table[part] = _opened(table.get(part))
             table = table[part]
-        table[last] = change.written
+        table[last] = key.written(value)
     return check(Case, whole)
 
 
 def _opened(table: object) -> dict[str, Any]:
     """A table as it stands in a file; empty where there is none."""
     if isinstance(table, BaseModel):
-        return tomllib.loads(case_text.toml(table))
+        return case_text.written(table)
     return dict(table) if isinstance(table, dict) else {}

@@ -10,11 +10,14 @@ import numpy as np
 from asperity.config.base_table import Table
 from asperity.config.problems import did_you_mean, tables_of
 from asperity.config.tables import CaseTables
-from asperity.errors import InputError
+from asperity.errors import ENDS, InputError, Outcome
 from asperity.units import shown
 
 REASON_SIZE = 160
 """Bytes kept of the reason why a case failed: UTF-8, ended by zeros."""
+
+FAILED = ENDS.index(Outcome.FAILED)
+"""Code of a case that failed, in the column ``outcome``."""
 
 
 class Column(NamedTuple):
@@ -144,3 +147,10 @@ def columns(keep: Iterable[str], *, motions: bool) -> tuple[Column, ...]:
             raise InputError(twice, key="keep")
         kept[name] = known[name]
     return (*ALWAYS, *kept.values(), *(MOTION if motions else ()))
+
+
+def reasons(texts: np.ndarray) -> np.ndarray:
+    """Why cases failed, as text, from bytes of shape (cases, width); "" where they did not."""
+    rows = np.ascontiguousarray(texts)
+    joined = rows.view(f"S{rows.shape[1]}")[:, 0]
+    return np.array([text.decode("utf-8", "ignore") for text in joined.tolist()], dtype=object)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import functools
 import types
 import typing
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
-from pydantic import BaseModel, ConfigDict, create_model
+from pydantic import BaseModel, create_model
 from pydantic.fields import FieldInfo
 
+from asperity.config.base_table import Table
 from asperity.config.case_text import unit_of
-from asperity.config.fields import Number, Quantity
 from asperity.config.key_labels import label
 from asperity.config.problems import check, did_you_mean, tables_of
 from asperity.config.schema import Case
@@ -29,40 +29,36 @@ Value = float | int | str | bool
 """A value of a key: SI float, whole number, text or switch."""
 
 
-class _Strict(BaseModel):
-    """A table of one key, with the rules of every table of a case."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", strict=True)
-
-
 @dataclass(frozen=True)
 class Key:
     """A key of a case, with the rules of its values.
 
     Attributes
     ----------
-    name
-        Dotted, e.g. "roughness.rms_height".
+    key
+        Dotted key, e.g. "roughness.rms_height".
     unit
-        SI unit of its values; "1" for plain numbers, "" for text and switches.
+        SI unit of the values; "1" for plain numbers, "" for text and switches.
     label
-        What it is, for the axis of a picture.
-    numeric
-        Whether its values are numbers, and a range of them has a meaning.
+        What it is, in a few words.
     whole
-        Whether its values are whole numbers.
+        Whether the values are whole numbers.
     """
 
-    name: str
+    key: str
     unit: str
     label: str
-    numeric: bool
     whole: bool
+
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers, and a range of them has a meaning."""
+        return self.unit != ""
 
     @property
     def last(self) -> str:
         """The key in its table, e.g. "rms_height"."""
-        return self.name.rpartition(".")[2]
+        return self.key.rpartition(".")[2]
 
     def read(self, value: object) -> Value:
         """A value as it stands in a case file, in SI.
@@ -73,19 +69,18 @@ class Key:
             With the rule that it breaks: the same as in a case file.
         """
         try:
-            table = check(_table_of(self.name), {self.last: value})
+            table = check(_table_of(self.key), {self.last: value})
         except InputError as error:
             rule = str(error).removeprefix(f"{self.last}: ")
             if error.key != self.last:  # one kind of value of several
                 rule = f"`{self.last}` must be text or a whole number; got {shown(value)}"
-            raise InputError(rule, key=self.name) from None
+            raise InputError(rule) from None
         result: Value = getattr(table, self.last)
         return result
 
-
-def written(value: Value, unit: str) -> Value:
-    """A value in SI as it stands in a case file; `Key.read` gives the same value back."""
-    return value if unit in ("", "1") else f"{value!r} {unit}"
+    def written(self, value: Value) -> Value:
+        """A value in SI as it stands in a case file; `read` gives the same value back."""
+        return value if self.unit in ("", "1") else f"{value!r} {self.unit}"
 
 
 def find(name: str, materials: Iterable[str] = ()) -> Key:
@@ -105,26 +100,21 @@ def find(name: str, materials: Iterable[str] = ()) -> Key:
     """
     table = name.partition(".")[0]
     if table in _NOT_VARIED:
-        raise InputError(
-            f"must not go over `{name}`: it is {_NOT_VARIED[table]}", key=f"axes.{name}"
-        )
+        raise InputError(f"must not go over `{name}`: it is {_NOT_VARIED[table]}")
     own, field, material = tuple(materials), _field(name), _material(name)
     if field is None:
-        raise InputError(_unknown(name, own), key=f"axes.{name}")
+        raise InputError(_unknown(name, own))
     if material is not None and material not in own:
         raise InputError(
             f"must go over a material of the base case, which has no [materials.{material}]"
-            f"{did_you_mean(material, own)}",
-            key=f"axes.{name}",
+            f"{did_you_mean(material, own)}"
         )
-    kinds = set(_kinds(field))
-    if list in kinds:
+    inside, unit = _types(field.annotation), unit_of(field)
+    if list in inside:
         raise InputError(
-            f"must not go over `{name}`, whose value is a list; write a study for each",
-            key=f"axes.{name}",
+            f"must not go over `{name}`, whose value is a list; write a study for each"
         )
-    numeric = bool(kinds & {Quantity, Number})
-    return Key(name, unit_of(field), label(name), numeric, Number in kinds and int in kinds)
+    return Key(name, unit, label(name), unit != "" and int in inside)
 
 
 def known(materials: Iterable[str] = ()) -> list[str]:
@@ -133,7 +123,7 @@ def known(materials: Iterable[str] = ()) -> list[str]:
         f"{table}.{key}"
         for table, model in _tables().items()
         for key, field in model.model_fields.items()
-        if table not in _NOT_VARIED and table != "materials" and list not in set(_kinds(field))
+        if table not in (*_NOT_VARIED, "materials") and list not in _types(field.annotation)
     ]
     own = _tables()["materials"].model_fields
     return found + [f"materials.{name}.{key}" for name in materials for key in own]
@@ -185,22 +175,15 @@ def _table_of(name: str) -> type[BaseModel]:
     for rule in field.metadata:
         kind = typing.Annotated[kind, rule]
     fields: dict[str, Any] = {name.rpartition(".")[2]: (kind, ...)}
-    return create_model("One", __base__=_Strict, **fields)
+    return create_model("One", __base__=Table, **fields)
 
 
-def _kinds(field: FieldInfo) -> Iterator[type]:
-    """Python's types of a field's values, and its rules' types."""
-    yield from (type(rule) for rule in field.metadata)
-    yield from _inside(field.annotation)
-
-
-def _inside(annotation: Any) -> Iterator[type]:
+def _types(annotation: Any) -> set[type]:
+    """Python's types within that of a field."""
     origin = typing.get_origin(annotation)
     if origin is typing.Annotated:
-        yield from (type(rule) for rule in annotation.__metadata__)
-        yield from _inside(annotation.__origin__)
-    elif origin in (typing.Union, types.UnionType):
-        for part in typing.get_args(annotation):
-            yield from _inside(part)
-    elif isinstance(origin or annotation, type):
-        yield origin or annotation
+        return _types(annotation.__origin__)
+    if origin in (typing.Union, types.UnionType):
+        return {one for part in typing.get_args(annotation) for one in _types(part)}
+    found = origin or annotation
+    return {found} if isinstance(found, type) else set()

@@ -12,8 +12,15 @@ CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""
 
 
-def refuse_unusable(study: StudyDefinition) -> None:
-    """Refuse columns that there are not, cases without a motion, and cases beyond counting.
+def refuse_unusable(study: StudyDefinition, text: str) -> None:
+    """Refuse unknown columns, cases without a motion or beyond counting, a text too long to store.
+
+    Parameters
+    ----------
+    study : StudyDefinition
+        The study.
+    text : str
+        Its canonical text, which a store holds.
 
     Raises
     ------
@@ -43,16 +50,11 @@ def refuse_unusable(study: StudyDefinition) -> None:
         raise InputError(f"[axes] must give at most 2^53 cases; got {got}", key="axes")
     if study.sample is not None:
         study.sample.refuse_axes(len(study.axes))
+    _refuse_unstorable(text)
 
 
-def refuse_unstorable(text: str) -> None:
-    """Refuse a study whose canonical text no store could hold.
-
-    Raises
-    ------
-    InputError
-        With the rule, and the key at fault.
-    """
+def _refuse_unstorable(text: str) -> None:
+    """Refuse a canonical text that no store could hold."""
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pydantic.fields import FieldInfo
 
 from asperity.config.problems import tables_of
@@ -30,10 +32,7 @@ def task_size(study: StudyDefinition) -> int:
 
 def largest_max_impacts(study: StudyDefinition) -> int:
     """Largest number of impacts that a case of the study can have."""
-    for axis in study.axes:
-        if axis.key == "numerics.max_impacts":
-            return int(axis.high)
-    return study.base.numerics.max_impacts
+    return int(max(_values(study, "numerics", "max_impacts")))
 
 
 def _quick(study: StudyDefinition) -> bool:
@@ -71,7 +70,7 @@ def _acts(study: StudyDefinition, table: str, field: FieldInfo) -> bool:
     return not models or bool(_values(study, table, "model") - {"none"})
 
 
-def _values(study: StudyDefinition, table: str, key: str) -> set[object]:
+def _values(study: StudyDefinition, table: str, key: str) -> set[Any]:
     """All values of a key within the study; {"none"} for a model whose table is absent."""
     for axis in study.axes:
         if axis.key == f"{table}.{key}":

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,11 +27,12 @@ from asperity.sweeps.study import (
 from asperity.sweeps.study.axes import Axis
 from asperity.sweeps.study.axis_text import axis_of
 from asperity.sweeps.study.blocks import Blocks
-from asperity.sweeps.study.case_variants import Change, changed, parts
+from asperity.sweeps.study.case_variants import changed, parts
+from asperity.sweeps.study.columns import Column
 from asperity.sweeps.study.corners import corners_of
 from asperity.sweeps.study.definition import StudyDefinition
-from asperity.sweeps.study.keys import Value, find, place, written
-from asperity.sweeps.study.refusing import refuse_unstorable, refuse_unusable
+from asperity.sweeps.study.keys import Value, find, place
+from asperity.sweeps.study.refusing import refuse_unusable
 from asperity.sweeps.study.samples import Sample
 
 __all__ = ["Axis", "Sample", "Study", "parse", "read"]
@@ -53,7 +55,7 @@ class Study(StudyDefinition):
     sample
         How the cases are drawn; None for a grid, every value with every other.
     keep
-        Measures that are kept, names of `layout.MEASURES`.
+        Measures that are kept, names of `columns.MEASURES`.
     keep_impacts
         Number of impacts that are kept of a measure with one value an impact.
     motions
@@ -62,13 +64,17 @@ class Study(StudyDefinition):
 
     def width(self, along: str) -> int:
         """Number of values of a case along a dimension of a column: "impact", "turn", "byte"."""
-        if along == "impact":
-            return self.keep_impacts
-        if along == "turn":
-            return 2 * structure.largest_max_impacts(self)
-        if along == "byte":
-            return columns.REASON_SIZE
-        raise ValueError(f"no column has the dimension {along!r}")
+        sizes = {
+            "impact": self.keep_impacts,
+            "turn": 2 * structure.largest_max_impacts(self),
+            "byte": columns.REASON_SIZE,
+        }
+        return sizes[along]
+
+    def blank(self, column: Column, cases: int) -> np.ndarray:
+        """A column of so many cases of which nothing is known, shape (cases[, width])."""
+        wide = (self.width(column.along),) if column.along else ()
+        return np.full((cases, *wide), column.fill, column.dtype)
 
     @functools.cached_property
     def blocks(self) -> Blocks:
@@ -90,15 +96,6 @@ class Study(StudyDefinition):
         """
         return self.blocks.cases(number)
 
-    def grid_index(self, start: int, stop: int) -> tuple[np.ndarray, ...]:
-        """Number of each axis' value on the grid, for cases `start` to `stop` - 1."""
-        index = np.arange(start, stop, dtype=np.int64)
-        found = []
-        for size in reversed(self.shape):
-            index, number = np.divmod(index, size)
-            found.append(number)
-        return tuple(reversed(found))
-
     def values(self, start: int, stop: int) -> dict[str, np.ndarray]:
         """The axes' values of cases `start` to `stop` - 1.
 
@@ -116,7 +113,7 @@ class Study(StudyDefinition):
         if not 0 <= start <= stop <= self.size:
             raise IndexError(f"a study of {self.size} cases has no cases {start} to {stop}")
         if self.sample is None:
-            indices = self.grid_index(start, stop)
+            indices = np.unravel_index(np.arange(start, stop), self.shape)
             return {a.key: a.at(i) for a, i in zip(self.axes, indices, strict=True)}
         points = self.sample.points(start, stop, len(self.axes))
         columns = np.ascontiguousarray(points.T)
@@ -148,30 +145,21 @@ class Study(StudyDefinition):
         InputError
             Where they break a rule.
         """
-        changes = []
-        for key, value in values.items():
-            plain = value.item() if isinstance(value, np.generic) else value
-            changes.append(Change(self._places[key], plain, written(plain, self._units[key])))
+        axes = {axis.key: axis for axis in self.axes}
+        changes = [
+            (axes[key], value.item() if isinstance(value, np.generic) else value)
+            for key, value in values.items()
+        ]
         return changed(self._parts, changes)
 
     @property
     def in_tables(self) -> bool:
         """Whether all axes vary keys of tables that the base case has."""
-        return all(
-            isinstance(self._parts.get(where[0]), BaseModel) for where in self._places.values()
-        )
+        return all(isinstance(self._parts.get(place(a.key)[0]), BaseModel) for a in self.axes)
 
     @functools.cached_property
     def _parts(self) -> dict[str, Any]:
         return parts(self.base)
-
-    @functools.cached_property
-    def _places(self) -> dict[str, tuple[str, ...]]:
-        return {axis.key: place(axis.key) for axis in self.axes}
-
-    @functools.cached_property
-    def _units(self) -> dict[str, str]:
-        return {axis.key: axis.unit for axis in self.axes}
 
     @functools.cached_property
     def canonical(self) -> str:
@@ -244,20 +232,26 @@ def parse(text: str, *, file: str | None = None, folder: Path | None = None) -> 
         One line that names file, key, rule and value.
     """
     table = study_file.tables(text, file)
-    base, name = base_case.base_of(table, file, folder or Path())
-    axes = []
-    for key, where, found in study_file.axes(table, text, file):
-        try:
-            sampled = table.sample is not None
-            axes.append(axis_of(find(key, base.materials), found, sampled=sampled))
-        except InputError as error:
-            raise InputError(f"{where}: {error}", file=file, key=f"axes.{key}") from None
-    kept, impacts = tuple(table.keep), table.keep_impacts
-    study = Study(base, name, tuple(axes), table.sample, kept, impacts, table.motions)
+    with _named(file):
+        base, name = base_case.base_of(table, folder or Path())
+        axes = []
+        for key, where, found in study_file.axes(table, text):
+            try:
+                sampled = table.sample is not None
+                axes.append(axis_of(find(key, base.materials), found, sampled=sampled))
+            except InputError as error:
+                raise InputError(f"{where}: {error}", key=f"axes.{key}") from None
+        kept, impacts = tuple(table.keep), table.keep_impacts
+        study = Study(base, name, tuple(axes), table.sample, kept, impacts, table.motions)
+        refuse_unusable(study, study.canonical)
+    return study
+
+
+@contextlib.contextmanager
+def _named(file: str | None) -> Iterator[None]:
+    """What is wrong within a study's text, with the name of its file in front."""
     try:
-        refuse_unusable(study)
-        refuse_unstorable(study.canonical)
+        yield
     except InputError as error:
         message = f"{file}: {error}" if file else str(error)
         raise InputError(message, file=file, key=error.key) from None
-    return study

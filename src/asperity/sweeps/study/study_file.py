@@ -74,7 +74,7 @@ def tables(text: str, file: str | None) -> StudyTable:
     return check(StudyTable, found, source=text, file=file)
 
 
-def axes(table: StudyTable, text: str, file: str | None) -> list[tuple[str, str, Any]]:
+def axes(table: StudyTable, text: str) -> list[tuple[str, str, Any]]:
     """The axes: dotted key, the words that name it in a message, and what stands there.
 
     Raises
@@ -84,12 +84,12 @@ def axes(table: StudyTable, text: str, file: str | None) -> list[tuple[str, str,
     """
     found: dict[str, tuple[str, str, Any]] = {}
     for key, value in _flat("", table.axes):
-        where = _where(key, text, file)
+        where = _where(key, text)
         if key in found:
-            raise InputError(f"{where}: must be given once; got two", file=file, key=f"axes.{key}")
+            raise InputError(f"{where}: must be given once; got two", key=f"axes.{key}")
         found[key] = key, where, value
     if not found:
-        raise _unusable(file, "[axes] must have at least one axis; got none", "axes")
+        raise InputError("[axes] must have at least one axis; got none", key="axes")
     return list(found.values())
 
 
@@ -103,15 +103,14 @@ def _flat(above: str, table: dict[str, Any], depth: int = 1) -> Iterator[tuple[s
             yield f"{above}{key}", value
 
 
-def _where(key: str, text: str, file: str | None) -> str:
-    """An axis' place: file, key, and the line on which the key stands."""
+def _where(key: str, text: str) -> str:
+    """An axis' place: its key, and the line on which that stands."""
     short = key if len(key) <= 60 else f"{key[:57]}..."
     stands = re.compile(rf"""\s*(\[\s*axes\s*\.\s*)?["']?{re.escape(key)}["']?\s*[]=]""")
     lines = enumerate(text.split("\n"), start=1)
     line = next((number for number, line in lines if stands.match(line)), None)
-    place = f'axes."{short}"' + (f" (line {line})" if line else "")
-    return f"{file}: {place}" if file else place
+    return f'axes."{short}"' + (f" (line {line})" if line else "")
 
 
-def _unusable(file: str | None, rule: str, key: str | None = None) -> InputError:
+def _unusable(file: str | None, rule: str, key: str) -> InputError:
     return InputError(f"{file}: {rule}" if file else rule, file=file, key=key)
