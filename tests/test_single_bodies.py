@@ -357,6 +357,12 @@ def test_a_map_smaller_than_the_summits_within_range_is_refused(maps: Path):
         asperity.solve(load(text), critical=False)
 
 
+def test_summits_of_a_map_do_not_yield(maps: Path):
+    text = on_map(maps / "wide.nc", "measured").replace('source = "summits"\n', "")
+    with pytest.raises(InputError, match=r"`placement` must be 'random' with \[plasticity\]"):
+        load(f'{text}\n[plasticity]\nmodel = "kogut-etsion"\nhardness = "2 GPa"\n')
+
+
 def test_measured_places_need_a_map():
     with pytest.raises(InputError, match="`placement` must be 'random' without `files`"):
         load(CASE.replace('"random"', '"measured"'))

@@ -184,28 +184,30 @@ class Roughness(Table):
         others = {
             "capillary.model": case.capillary.model == "kelvin-filling",
             "capillary.formation_time": bool(case.capillary.formation_time),
-            "plasticity.model": acts(case.plasticity),
             "waves.model": acts(case.waves),
             "viscoelasticity.model": acts(case.viscoelasticity),
             "gas": case.gas is not None,
             "suspension": case.suspension is not None,
             "publication": case.publication is not None,
         }
-        refuse_all(
+        found = [
             InputError(f"{_BESIDE[key]} with single bodies (`placement`): {_NO_OTHER}", key=key)
-            for key, found in others.items()
-            if found
-        )
+            for key, there in others.items()
+            if there
+        ]
+        if self.placement == "measured" and acts(case.plasticity):
+            rule = "`placement` must be 'random' with [plasticity], whose tips are all alike"
+            found.append(InputError(f"{rule}; got 'measured'", key="roughness.placement"))
+        refuse_all(found)
 
 
 _BESIDE = {
     "capillary.model": "`model` must not be 'kelvin-filling'",
     "capillary.formation_time": "`formation_time` must be absent",
-    "plasticity.model": "`model` must be 'none' in [plasticity]",
     "waves.model": "`model` must be 'none' in [waves]",
     "viscoelasticity.model": "`model` must be 'none' in [viscoelasticity]",
     "gas": "a [gas] table must be absent",
     "suspension": "a [suspension] table must be absent",
     "publication": "a [publication] table must be absent",
 }
-_NO_OTHER = "they have the elastic forces, adhesion and menisci of their summits alone"
+_NO_OTHER = "they have the contact, adhesion and menisci of their summits alone"

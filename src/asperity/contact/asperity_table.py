@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Law, Real, as_float64, terms
+from ..laws.plastic import PlasticContact
 from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.polynomials import points_between
 from .smooth import kinks_of
@@ -23,8 +25,8 @@ _AT_CONTACT = 1e-13  # of the shortest length of a law: a gap at which summits s
 _EMPTY = 1e-9  # y: a segment between two gaps that are one
 _LADDER = -1e-15 * 2.0 ** np.arange(0.0, 80.0)  # m, down to where a gap needs the largest energy
 
-APPROACH = -1
-"""Branch of an asperity that comes from far away."""
+APPROACH, AGAIN = -1, -2
+"""Branches of an asperity that comes from far away: the first time, and where tips yield again."""
 
 
 @kept
@@ -48,7 +50,8 @@ class Asperities(NamedTuple):
     energy, slope
         Energy [J] and its slope with the gap [N], shape (classes, branches, cells, 4): coefficients
         of powers of the share of a cell. There is a branch for each set of laws whose bond is
-        formed, and the last is approach, on which each forms in its turn.
+        formed, and the last is approach, on which each forms in its turn. Where tips yield, all
+        but the last are of the laws beside contact, and the last but one is their approach.
     forming, breaking
         Gaps [m] at which the bond of each hysteretic law forms and breaks, shape (laws, n).
     lost
@@ -177,9 +180,13 @@ def _read(
     return value
 
 
-def _segments(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
+def _segments(
+    law: Law, contact: PlasticContact | None, low: jax.Array
+) -> tuple[jax.Array, jax.Array]:
     """Scale of a table from a gap ``low`` on, and the borders of its segments."""
     every, kinks = terms(law), kinks_of(law)
+    if contact is not None:
+        kinks = jnp.append(kinks, -jnp.stack(contact.kinks))
     sizes = jnp.stack([*jnp.abs(kinks), *(jnp.asarray(one.length, float) for one in every)])
     shortest = jnp.min(jnp.where((sizes > 0.0) & jnp.isfinite(sizes), sizes, jnp.inf))
     scale = jnp.minimum(shortest, -1e-3 * low)
@@ -190,8 +197,11 @@ def _segments(law: Law, low: jax.Array) -> tuple[jax.Array, jax.Array]:
     return scale, _even(gaps / scale)
 
 
-def _table_of(size_class: jax.Array, law: Law, energy: jax.Array) -> Asperities:
-    """The table of a law, down to a gap that needs more energy [J] than a body and others give."""
+Along = Callable[[jax.Array], jax.Array]
+
+
+def _branches(law: Law, contact: PlasticContact | None) -> list[Along]:
+    """Work [J] from far away to a gap [m] on each branch of :class:`Asperities`, in its order."""
     every = terms(law)
     hysteretic = [one for one in every if one.hysteretic]
 
@@ -206,19 +216,37 @@ def _table_of(size_class: jax.Array, law: Law, energy: jax.Array) -> Asperities:
             total = total + jnp.where(on, bonded, 0.0)
         return total
 
+    sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]
+    found: list[Along] = [partial(work, formed=formed) for formed in (*sets, None)]
+    return found if contact is None else [*found, _with_contact(found[-1], contact)]
+
+
+def _with_contact(beside: Along, contact: PlasticContact | None) -> Along:
+    """Work [J] with that of the first loading where tips yield."""
+    if contact is None:
+        return beside
+    return lambda gap: beside(gap) + contact.loading_work(jnp.maximum(-gap, 0.0))
+
+
+def _table_of(
+    size_class: jax.Array, law: Law, contact: PlasticContact | None, energy: jax.Array
+) -> Asperities:
+    """The table of a law, down to a gap that needs more energy [J] than a body and others give.
+
+    The law is beside the ``contact`` where tips yield.
+    """
+    hysteretic, branches = [one for one in terms(law) if one.hysteretic], _branches(law, contact)
     ladder = jnp.asarray(_LADDER)
-    needed = work(ladder, None)
+    needed = branches[APPROACH](ladder)
     low = ladder[jnp.argmax(needed > energy - _OTHERS * jnp.minimum(jnp.min(needed), 0.0))]
-    scale, borders = _segments(law, low)
+    scale, borders = _segments(law, contact, low)
     widths = jnp.diff(borders)
     steps = np.arange(_CELLS)[:, None] + _POINTS
     positions = borders[:-1, None, None] + (widths / _CELLS)[:, None, None] * steps
     gap = scale * _stretched(positions).reshape(-1, _POINTS.size)
-    sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]
 
-    def fitted(formed: tuple[bool, ...] | None) -> jax.Array:
-        both = jax.jvp(lambda x: work(x, formed), (gap,), (jnp.ones_like(gap),))
-        return jnp.stack(both) @ _TO_POWERS
+    def fitted(branch: Along) -> jax.Array:
+        return jnp.stack(jax.jvp(branch, (gap,), (jnp.ones_like(gap),))) @ _TO_POWERS
 
     def each(values: list[Real]) -> jax.Array:
         return jnp.stack([jnp.asarray(x, float) for x in values]) if values else jnp.zeros(0)
@@ -230,8 +258,9 @@ def _table_of(size_class: jax.Array, law: Law, energy: jax.Array) -> Asperities:
         gaps = each([one.forming_gap for one in hysteretic])
         return jnp.max(gaps, initial=scale * _stretched(end))
 
-    tension = jax.grad(lambda x: jnp.sum(work(x, sets[-1])))(gap)
-    energy, slope = jnp.stack([fitted(formed) for formed in (*sets, None)], axis=1)
+    bonded = branches[2 ** len(hysteretic) - 1]
+    tension = jax.grad(lambda x: jnp.sum(_with_contact(bonded, contact)(x)))(gap)
+    energy, slope = jnp.stack([fitted(branch) for branch in branches], axis=1)
     return Asperities(
         size_class,
         scale,
@@ -249,11 +278,13 @@ def _table_of(size_class: jax.Array, law: Law, energy: jax.Array) -> Asperities:
 
 _class_axes: Any = Asperities(*[-1] * len(Asperities._fields))  # type: ignore[arg-type]
 _tables = Program(
-    jax.vmap(_table_of, (0, 0, None), _class_axes._replace(energy=0, slope=0)), AT_ONCE
+    jax.vmap(_table_of, (0, 0, None, None), _class_axes._replace(energy=0, slope=0)), AT_ONCE
 )
 
 
-def asperity_table(laws: Sequence[Law], energy: float) -> Asperities:
+def asperity_table(
+    laws: Sequence[Law], energy: float, contact: PlasticContact | None = None
+) -> Asperities:
     """One asperity of each class, by its laws.
 
     Parameters
@@ -262,6 +293,8 @@ def asperity_table(laws: Sequence[Law], energy: float) -> Asperities:
         The laws of each class, alike but for their values.
     energy
         Energy [J] that no body comes with.
+    contact
+        The contact of tips that yield; the laws are then those beside it.
     """
     together = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *laws)
-    return _tables(jnp.arange(len(laws)), together, as_float64(energy))
+    return _tables(jnp.arange(len(laws)), together, contact, as_float64(energy))

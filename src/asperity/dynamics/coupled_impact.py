@@ -7,6 +7,7 @@ from typing import NamedTuple
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, influence_between
+from ..contact.pressed_summits import PressedSummits
 from ..laws.law import Real
 from ..numerics.compilation import OPTIMISED, Program
 from .coupled_path import follow
@@ -44,7 +45,7 @@ def _coupled_impact(
     summits = table.of(classes)
     top = top_of(summits, launch, offsets)
     # Contacts are about as wide as those of a rigid body that comes with the same energy.
-    rigid = rigid_approach(summits, launch, offsets, top)
+    rigid = rigid_approach(PressedSummits(summits), launch, offsets, top)
     depth = jnp.where(jnp.isfinite(rigid), jnp.maximum(offsets - rigid, 0.0), 0.0)
     influence = influence_between(positions, jnp.sqrt(tips[classes] * depth), modulus)
     coupled = CoupledSummits.on(summits, offsets, influence, depth > 0.0)

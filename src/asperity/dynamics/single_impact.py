@@ -10,7 +10,9 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities
+from ..contact.pressed_summits import PressedSummits
 from ..laws.law import Real
+from ..laws.plastic import PlasticContact
 from ..numerics.compilation import OPTIMISED, Program, kept
 from ..numerics.roots import root_between
 
@@ -41,6 +43,21 @@ class Launch(NamedTuple):
     weight: Real
 
 
+class Yielding(NamedTuple):
+    """Tips that yield, and how deep earlier impacts have pressed them.
+
+    Attributes
+    ----------
+    contact
+        Contact of one tip, all being alike.
+    closest_approach
+        Closest approach [m] of each body on the same summits before; infinite at its first impact.
+    """
+
+    contact: PlasticContact
+    closest_approach: Real
+
+
 @kept
 class SingleImpact(NamedTuple):
     """First impact of a single body.
@@ -52,7 +69,8 @@ class SingleImpact(NamedTuple):
     captured
         Whether it does not leave the interaction range of its summits.
     impact_energy
-        Kinetic energy where forces begin, on approach [J].
+        Kinetic energy on approach [J], at the separation where forces end on retraction; where they
+        begin, but for tips that yield, which are lower then.
     restitution
         Square root of the ratio of that on retraction to it; 0 where the body is captured.
     contacting
@@ -64,7 +82,8 @@ class SingleImpact(NamedTuple):
     bonds
         Bonds of each law there, shape (laws,).
     lost
-        Energy [J] that they take by the time all are broken, shape (laws,).
+        Energy [J] that they take by the time all are broken, shape (laws,). Where tips yield, what
+        these keep follows.
     interaction
         Energy [J] that changes of bonds take besides, as they move other summits through the
         half-space; negative where it is set free. 0 on a rigid bulk.
@@ -94,47 +113,50 @@ class SingleImpact(NamedTuple):
 
 
 def _impact(
-    table: Asperities, wanted: bool, launch: Launch, offsets: jax.Array, classes: jax.Array
+    table: Asperities,
+    wanted: bool,
+    contact: PlasticContact | None,
+    launch: Launch,
+    offsets: jax.Array,
+    classes: jax.Array,
+    pressed_to: Real,
 ) -> SingleImpact:
     """One body, on summits with descending ``offsets`` [m]; its pull-off force where ``wanted``.
 
     Bodies do not deform in bulk, so that all summits move alike: the energy is the sum of theirs.
+    Tips that yield were pressed before, to a separation ``pressed_to`` [m].
     """
     summits = table.of(classes)
-    top = top_of(summits, launch, offsets)
-    external = _external_energy(summits, launch, offsets, top)
-    turning_point = rigid_approach(summits, launch, offsets, top)
+    found = PressedSummits(summits, contact, jnp.maximum(offsets - pressed_to, 0.0))
+    top = top_of(summits, launch, offsets - found.residual)
+    external = _external_energy(found, launch, offsets, top)
+    turning_point = rigid_approach(found, launch, offsets, top)
     gaps = turning_point - offsets
-    branch = summits.branch(gaps)
+    pressed = found.turned(gaps)
+    recovered = offsets - pressed.residual
+    branch = summits.branch(turning_point - recovered)
+    kept_by_tips = found.approach(gaps) - pressed.bonded(gaps, branch)
 
     def energy_on_retraction(separation: jax.Array) -> jax.Array:
-        return external(separation) - jnp.sum(summits.work(separation - offsets, branch))
+        work = pressed.bonded(separation - offsets, branch) + kept_by_tips
+        return external(separation) - jnp.sum(work)
 
     def force(separation: jax.Array) -> jax.Array:
         one = jnp.ones_like(separation)
         return jax.jvp(energy_on_retraction, (separation,), (one,))[1] + launch.weight
 
-    held = gaps <= summits.forming
-    ends = jnp.where(held, offsets + summits.breaking, top).ravel()
-    ends = ends - _CLOSE * jnp.abs(ends)  # just before they break
-    # Closest together at the turning point, and where the first summit has its forces.
-    shares = _SHARES[2::2]
-    near_turn, near_first = (
-        summits.between(turning_point, top, origin, shares)
-        for origin in (turning_point, offsets[0])
-    )
-    even = jnp.sort(jnp.append(near_turn, near_first))
-    separations = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
-    step = jnp.interp(separations, even, jnp.diff(even, prepend=turning_point))
-    left = _least(energy_on_retraction, separations, step, (even[0], top))
-    before = external(top) - jnp.sum(summits.work(top - offsets))
-    after = energy_on_retraction(top)
-    captured = jnp.minimum(left, after) < 0.0
-    each = -jax.jvp(summits.work, (gaps,), (jnp.ones_like(gaps),))[1]
+    held = turning_point - recovered <= summits.forming
+    end = jnp.minimum(top, jnp.max(recovered + summits.interaction_range))
+    ends = jnp.where(held, recovered + summits.breaking, end)
+    looked_at = _on_retraction(summits, offsets[0], turning_point, end, ends)
+    begun = external(top) - jnp.sum(found.approach(top - offsets))
+    before, after = begun + launch.weight * (top - end), energy_on_retraction(end)
+    captured = jnp.minimum(_least(energy_on_retraction, *looked_at), after) < 0.0
+    each = -jax.jvp(found.approach, (gaps,), (jnp.ones_like(gaps),))[1]
     squares = jnp.sum(each**2)
-    pull_off = jnp.asarray(jnp.nan)
-    if wanted:
-        pull_off = _pull_off(summits, force, offsets, separations, step)
+    lost = jnp.sum(held * pressed.flatness * summits.lost, axis=1)
+    yielding = jnp.zeros(0) if contact is None else jnp.sum(kept_by_tips)[None]
+    nothing = jnp.asarray(jnp.nan)
     return SingleImpact(
         closest_approach=turning_point,
         captured=captured,
@@ -144,9 +166,11 @@ def _impact(
         maximum_force=jnp.sum(each),
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
         bonds=jnp.sum(held, axis=1).astype(float),
-        lost=jnp.sum(held * summits.lost, axis=1),
+        lost=jnp.append(lost, yielding),
         interaction=jnp.zeros(()),
-        pull_off=pull_off,
+        pull_off=_pull_off(summits, force, recovered, turning_point, *looked_at)
+        if wanted
+        else nothing,
         unsolved=jnp.zeros(()),
         within_range=jnp.sum(gaps <= summits.approach_range),
     )
@@ -161,57 +185,76 @@ def top_of(summits: Asperities, launch: Launch, offsets: jax.Array) -> jax.Array
 
 
 def _external_energy(
-    summits: Asperities, launch: Launch, offsets: jax.Array, top: jax.Array
+    found: PressedSummits, launch: Launch, offsets: jax.Array, top: jax.Array
 ) -> Along:
     """Kinetic energy and work [J] that a body without summits would have at a separation [m]."""
     begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
-    energy = launch.kinetic + jnp.sum(summits.work(begin - offsets))
+    energy = launch.kinetic + jnp.sum(found.approach(begin - offsets))
     return lambda separation: energy + launch.weight * (begin - separation)
 
 
 def rigid_approach(
-    summits: Asperities, launch: Launch, offsets: jax.Array, top: jax.Array
+    found: PressedSummits, launch: Launch, offsets: jax.Array, top: jax.Array
 ) -> jax.Array:
     """The first separation [m] at which a body that does not deform in bulk has spent its energy.
 
     NaN where there is none in the table.
     """
-    external = _external_energy(summits, launch, offsets, top)
+    external, summits = _external_energy(found, launch, offsets, top), found.summits
 
     def energy(separation: jax.Array) -> jax.Array:
-        return external(separation) - jnp.sum(summits.work(separation - offsets))
+        return external(separation) - jnp.sum(found.approach(separation - offsets))
 
     gaps = summits.gaps_of_first(summits.cells * (1.0 - _SHARES))
     separations = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
-    found = jnp.asarray(True)
+    reached = jnp.asarray(True)
     for _ in range(2):
         spent = jax.vmap(energy)(separations) < 0.0
-        found = found & jnp.any(spent)
+        reached = reached & jnp.any(spent)
         after = jnp.maximum(jnp.argmax(spent), 1)
         inner, outer = separations[after - 1], separations[after]
         separations = inner + (outer - inner) * np.linspace(0.0, 1.0, _FINER + 1)
     turning_point = root_between(
         energy, inner, outer, _CLOSE * (jnp.abs(outer) + summits.interaction_range[0])
     )
-    return jnp.where(found, turning_point, jnp.nan)
+    return jnp.where(reached, turning_point, jnp.nan)
+
+
+def _on_retraction(
+    summits: Asperities, first: jax.Array, start: jax.Array, top: jax.Array, ends: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    """Separations [m] to look at from ``start`` on, those of ``ends`` among them, and their steps.
+
+    Closest together at the start, and where the ``first`` summit has its forces.
+    """
+    shares = _SHARES[2::2]
+    near = [summits.between(start, top, origin, shares) for origin in (start, first)]
+    even, ends = jnp.sort(jnp.concatenate(near)), ends.ravel()
+    ends = ends - _CLOSE * jnp.abs(ends)  # just before they break
+    separations = jnp.clip(jnp.concatenate([even, ends]), even[0], top)
+    return separations, jnp.interp(separations, even, jnp.diff(even, prepend=start))
 
 
 def _pull_off(
-    summits: Asperities, force: Along, offsets: jax.Array, separations: jax.Array, step: jax.Array
+    summits: Asperities,
+    force: Along,
+    offsets: jax.Array,
+    start: jax.Array,
+    separations: jax.Array,
+    step: jax.Array,
 ) -> jax.Array:
     """The largest tension on retraction [N]; it has about as many maxima as there are summits."""
     widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pull_off_gap)))
     about = (offsets[:, None] + widest * _ABOUT).ravel()
-    within = jnp.min(separations), jnp.max(separations)
-    more = jnp.clip(jnp.concatenate([offsets + summits.pull_off_gap, about]), *within)
+    more = jnp.concatenate([offsets + summits.pull_off_gap, about])
+    more = jnp.clip(more, start, jnp.max(separations))
     steps = jnp.minimum(jnp.append(step, jnp.full(more.shape, widest)), widest)
-    return -jnp.minimum(_least(force, jnp.append(separations, more), steps, within), 0.0)
+    return -jnp.minimum(_least(force, jnp.append(separations, more), steps), 0.0)
 
 
-def _least(
-    value: Along, separations: jax.Array, step: jax.Array, within: tuple[jax.Array, jax.Array]
-) -> jax.Array:
+def _least(value: Along, separations: jax.Array, step: jax.Array) -> jax.Array:
     """The least value at some separations that are a ``step`` [m] apart, and about it."""
+    within = jnp.min(separations), jnp.max(separations)
 
     def nearer(_: int, now: tuple[jax.Array, ...]) -> tuple[jax.Array, ...]:
         separation, width, _least = now
@@ -231,15 +274,19 @@ def _impacts(
     offsets: jax.Array,
     classes: jax.Array,
     wanted: bool = True,
+    yielding: Yielding | None = None,
 ) -> SingleImpact:
     bodies, summits = offsets.shape
+    contact, before = yielding or (None, jnp.full(bodies, jnp.inf))
     together = bodies
     while together > 1 and together * 2 * _SEPARATIONS * summits > _AT_ONCE:
         together //= 2
     jobs = jax.tree_util.tree_map(
-        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), (launches, offsets, classes)
+        lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]),
+        (launches, offsets, classes, before),
     )
-    found = jax.lax.map(lambda job: jax.vmap(partial(_impact, table, wanted))(*job), jobs)
+    one = partial(_impact, table, wanted, contact)
+    found = jax.lax.map(lambda job: jax.vmap(one)(*job), jobs)
     return jax.tree_util.tree_map(lambda leaf: leaf.reshape(bodies, *leaf.shape[2:]), found)
 
 
@@ -247,4 +294,5 @@ single_impacts = Program(_impacts, OPTIMISED)
 """First impacts of many bodies, whose number is a power of two.
 
 By their launches of shape (bodies,), the offsets [m] of their summits, descending, and the classes
-of these, of shape (bodies, summits), and whether their pull-off forces are wanted (static)."""
+of these, of shape (bodies, summits), whether their pull-off forces are wanted (static), and what is
+known of tips that yield."""

@@ -11,14 +11,16 @@ from typing import Any
 import numpy as np
 
 from .._jax import jax, jnp
+from ..asperity_laws import plastic_law
 from ..contact.asperity_table import Asperities, asperity_table
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
 from ..dynamics.problem import Problem
-from ..dynamics.single_impact import Launch, SingleImpact, single_impacts
+from ..dynamics.single_impact import Launch, SingleImpact, Yielding, single_impacts
 from ..errors import InputError, SimulationError
 from ..integration.batch_motion import RELEASE_KEY
+from ..interface.plastic_interface import PLASTIC
 from ..interface.rough_planes import RoughPlanes
 from ..interface.summit_field import WIDTH, MeasuredField
 from ..laws.law import as_float64, terms
@@ -73,14 +75,26 @@ class SingleBodies:
         self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
         self._most = MOST_SUMMITS if self._modulus is None else MOST_COUPLED
         self._turning_point, self._count = turning_point, 0
-        every = [one for one in terms(self._laws[0]) if one.hysteretic]
-        self.mechanisms = tuple(one.mechanism for one in every)
+        laws = terms(self._laws[0])
+        names = [one.mechanism for one in laws if one.hysteretic]
+        self._contact = None
+        if inputs.yields:
+            assert all(one.radius_power == 1.0 for one in laws)  # see PressedSummits
+            law = plastic_law(inputs, inputs.structure.plasticity)
+            self._contact = jax.tree_util.tree_map(as_float64, law)
+            names.append(PLASTIC)
+        self.mechanisms = tuple(names)
         self._seed = inputs.placement.seed
         self._table: tuple[float, Asperities] | None = None
         self._felt = self._range
 
     def impacts(
-        self, launches: Launch, stop: threading.Event | None = None, *, with_pull_off: bool = True
+        self,
+        launches: Launch,
+        stop: threading.Event | None = None,
+        *,
+        with_pull_off: bool = True,
+        before: np.ndarray | None = None,
     ) -> SingleImpact:
         """Their first impacts, each on the summits of its number.
 
@@ -92,6 +106,9 @@ class SingleBodies:
             Set from another thread, it ends them early.
         with_pull_off
             Whether their pull-off forces are wanted too, which takes twice as long.
+        before
+            Their closest approach [m] at earlier impacts, shape (bodies,), which tips that yield
+            remember; none without it.
 
         Returns
         -------
@@ -107,8 +124,10 @@ class SingleBodies:
         """
         table = self._tabulated(launches)
         self._count = self._count or self._summits_for(self._turning_point)
+        if before is None:
+            before = np.full(np.shape(launches.kinetic), np.inf)
         while True:
-            found = self._all(table, launches, stop, with_pull_off=with_pull_off)
+            found = self._all(table, launches, before, stop, with_pull_off=with_pull_off)
             lowest = float(np.nanmin(found.closest_approach)) - self._range
             if lowest >= self._lowest or not isinstance(self.field, MeasuredField):
                 return found
@@ -120,6 +139,7 @@ class SingleBodies:
         self,
         table: Asperities,
         launches: Launch,
+        before: np.ndarray,
         stop: threading.Event | None,
         *,
         with_pull_off: bool,
@@ -134,7 +154,8 @@ class SingleBodies:
             some = np.minimum(numbers, bodies - 1)
             chosen = Launch(*(np.asarray(x)[some] for x in launches))
             kinetic = np.where(numbers < bodies, chosen.kinetic, np.nan)
-            return self._block(table, chosen._replace(kinetic=kinetic), number, with_pull_off)
+            chosen = chosen._replace(kinetic=kinetic)
+            return self._block(table, chosen, before[some], number, with_pull_off)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             found = list(pool.map(block, range(-(-bodies // WIDTH))))
@@ -164,21 +185,27 @@ class SingleBodies:
         fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
         energy = _DEEPER * float(np.nanmax(launches.kinetic + launches.weight * np.abs(fall)))
         if self._table is None or self._table[0] < energy:
-            self._table = energy, asperity_table(self._laws, energy)
+            self._table = energy, asperity_table(self._laws, energy, self._contact)
             self._felt = float(np.max(np.asarray(self._table[1].approach_range)))
         return self._table[1]
 
     def _block(
-        self, table: Asperities, launches: Launch, number: int, with_pull_off: bool
+        self,
+        table: Asperities,
+        launches: Launch,
+        before: np.ndarray,
+        number: int,
+        with_pull_off: bool,
     ) -> SingleImpact:
         """WIDTH bodies, each with as many summits as the one that has most within range."""
         count = self._count
+        yielding = None if self._contact is None else Yielding(self._contact, as_float64(before))
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
             _refuse_inside(launches.release, offsets[:, 0])
             summits = launches, as_float64(offsets), jnp.asarray(classes)
             if self._modulus is None:
-                found = single_impacts(table, *summits, with_pull_off)
+                found = single_impacts(table, *summits, with_pull_off, yielding)
             else:
                 found = coupled_impacts(table, *summits, self._bulk(number, count))
             found = jax.tree_util.tree_map(np.asarray, found)

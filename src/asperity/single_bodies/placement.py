@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..asperity_laws import asperity_law
+from ..asperity_laws import asperity_law, laws_beside
 from ..errors import InputError
 from ..inputs import Inputs
 from ..interface.radius_classes import members
 from ..interface.summit_field import GaussianField, MeasuredField, SampledField, SummitField
-from ..laws.law import Law
+from ..laws.law import Law, Sum
 
 
 def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law], list[float]]:
     """The summits of a case, and by class of tip radius their laws and that radius [m].
+
+    Of tips that yield, the laws beside their contact.
 
     Parameters
     ----------
@@ -32,9 +34,10 @@ def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law]
     assert placed is not None
     radius, density = inputs.radius, rough.asperity_density
     if rough.summits is None or not (placed.measured or inputs.structure.heights == "summits"):
-        law = asperity_law(inputs, rough.asperity_radius)
+        tip = rough.asperity_radius
+        law = Sum(laws_beside(inputs, tip)) if inputs.yields else asperity_law(inputs, tip)
         field = GaussianField(radius, density, rough.rms_height, rough.mean_height)
-        return field, [law], [rough.asperity_radius]
+        return field, [law], [tip]
     found = rough.summits
     order = np.argsort(-found.heights, kind="stable")
     classes = np.zeros(found.count, np.int32)

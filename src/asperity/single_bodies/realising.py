@@ -86,10 +86,11 @@ def _until_captured(
 
     Infinite where that takes more than ``most`` rebounds, and without weight where it leaves. A
     rigid body falls on the same summits each time, and all their bonds are broken while it flies.
+    Tips that yielded stay as the first impact left them: none that follows goes deeper.
     """
     rebounds = np.where(first.captured, 0.0, np.inf)
     flight = np.zeros(rebounds.shape)
-    weight, found = float(body.weight), first
+    weight, found, deepest = float(body.weight), first, np.asarray(first.closest_approach)
     for made in range(1, most + 1 if weight > 0.0 else 1):
         flying = np.isinf(rebounds)
         if not np.any(flying):
@@ -99,6 +100,6 @@ def _until_captured(
         flight += np.where(flying, 2.0 * speed * float(body.mass) / weight, 0.0)
         kinetic = np.where(flying, kinetic, np.nan)
         launches = Launch(kinetic, np.full(kinetic.shape, np.inf), np.full(kinetic.shape, weight))
-        found = bodies.impacts(launches, stop, with_pull_off=False)
+        found = bodies.impacts(launches, stop, with_pull_off=False, before=deepest)
         rebounds[flying & np.asarray(found.captured)] = made
     return rebounds, np.where(np.isinf(rebounds), np.inf, flight)

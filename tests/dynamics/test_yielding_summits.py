@@ -1,0 +1,166 @@
+"""First impacts of single bodies whose asperities yield: against forces summed finely."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity._jax import jax, jnp
+from asperity.config import load
+from asperity.contact.asperity_table import asperity_table
+from asperity.dynamics.single_impact import Launch, Yielding, single_impacts
+from asperity.interface.summit_field import GaussianField
+from asperity.laws import Dmt, Meniscus
+from asperity.laws.law import Sum, as_float64
+from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
+from chosen import long_but
+
+TIP, MODULUS = 450e-9, 6.6e10  # m, Pa
+CONTACTS = {
+    "kogut-etsion": KogutEtsion(TIP, MODULUS, 1.5e9, 0.3),
+    "jackson-green": JacksonGreen(TIP, MODULUS, 0.5e9, 0.3),
+    "thornton-ning": ThorntonNing(TIP, MODULUS, 1.5e9),
+}
+ADHESIVE = Sum([Dmt(TIP, 0.05), Meniscus(TIP, 0.072, 0.2, 5e-10)])
+HARDLY = Sum([Dmt(TIP, 1e-12), Meniscus(TIP, 1e-12, 0.2, 5e-10)])
+RADIUS = 25e-6  # m
+MASS = 4.0 / 3.0 * pi * RADIUS**3 * 2200.0  # kg
+BODIES, SUMMITS = 16, 16
+
+
+def impacts(contact, law, speeds, offsets, before=np.inf):
+    """First impacts, or later ones of bodies that came as close before."""
+    count = len(offsets)
+    offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - offsets.shape[1])), constant_values=-1.0)
+    some = np.minimum(np.arange(BODIES), count - 1)
+    speeds, before = (np.broadcast_to(x, count)[some] for x in (speeds, before))
+    launches = Launch(0.5 * MASS * speeds**2, np.full(BODIES, np.inf), np.zeros(BODIES))
+    contact = jax.tree_util.tree_map(as_float64, contact)
+    kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
+    found = single_impacts(
+        asperity_table([law], 1e-11, contact), launches, jnp.asarray(offsets[some]), kinds, True,
+        Yielding(contact, jnp.asarray(before)),
+    )  # fmt: skip
+    return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[:count], found)
+
+
+def summed(contact, law, speed, offsets):
+    """Capture, restitution and pull-off from the forces of all at 60,000 separations."""
+    dmt, meniscus = law.parts
+    top = offsets.max() + float(asperity_table([law], 1e-11, contact).interaction_range[0])
+
+    def beside(gap, bonded):
+        pull = np.where(bonded, np.asarray(meniscus.bonded_force(gap)), 0.0)
+        return np.asarray(dmt.force(gap)) + pull
+
+    gaps = np.linspace(top, offsets.max() - 8e-9, 60_001)[:, None] - offsets
+    force = np.asarray(contact.loading_force(jnp.maximum(-gaps, 0.0)))
+    force = (force + beside(jnp.asarray(gaps), gaps <= 0.0)).sum(axis=1)
+    work = np.append(0.0, np.cumsum(0.5 * (force[1:] + force[:-1]))) * -np.diff(gaps[:2, 0])
+    kinetic = 0.5 * MASS * speed**2
+    turn = int(np.argmax(work > kinetic))
+    deepest = jnp.maximum(-gaps[turn], 0.0)
+    left = contact.residual(deepest)
+    flat = np.where(deepest > 0.0, deepest / np.where(deepest > left, deepest - left, 1.0), 1.0)
+    from_tip = jnp.asarray(gaps[: turn + 1]) + left
+    held = (np.asarray(from_tip) < float(meniscus.breaking_gap)) & np.asarray(deepest > 0.0)
+    out = np.asarray(contact.force(jnp.asarray(-gaps[: turn + 1]), deepest))
+    out = (out + np.where(deepest > 0.0, flat, 1.0) * beside(from_tip, held)).sum(axis=1)[::-1]
+    gained = np.append(0.0, np.cumsum(0.5 * (out[1:] + out[:-1]))) * -np.diff(gaps[:2, 0])
+    captured = gained[5:].min() < 0.0
+    return captured, 0.0 if captured else np.sqrt(gained[-1] / kinetic), -out.min()
+
+
+@pytest.mark.parametrize("name", long_but(CONTACTS, "kogut-etsion"))
+def test_one_hardly_adhesive_summit_keeps_what_its_contact_gives_back(name):
+    contact = CONTACTS[name]
+    deepest = jnp.geomspace(1e-9, 2e-8, 8)
+    speeds = np.sqrt(2.0 * np.asarray(contact.loading_work(deepest)) / MASS)
+    found = impacts(contact, HARDLY, speeds, np.zeros((8, 1)))
+    kept = np.asarray(contact.returned(deepest) / contact.loading_work(deepest))
+    assert kept[0] > kept[-1]
+    assert kept[-1] < 0.9
+    np.testing.assert_allclose(-found.closest_approach, deepest, rtol=1e-7)
+    np.testing.assert_allclose(found.restitution**2, kept, rtol=1e-7)
+
+
+@pytest.mark.parametrize("name", long_but(CONTACTS, "kogut-etsion"))
+@pytest.mark.parametrize("speed", [4e-3, 12e-3])
+def test_many_summits_are_the_sum_of_all(name, speed):
+    contact = CONTACTS[name]
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:16]
+    found = impacts(contact, ADHESIVE, speed, offsets)
+    for k, row in enumerate(offsets[:6]):
+        captured, restitution, pull = summed(contact, ADHESIVE, speed, row)
+        assert bool(found.captured[k]) == captured
+        assert float(found.restitution[k]) == pytest.approx(restitution, abs=3e-4)
+        assert float(found.pull_off[k]) == pytest.approx(pull, rel=2e-2)
+
+
+def test_losses_and_restitution_are_one_balance():
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(3, 0, 16)[0][:16]
+    found = impacts(CONTACTS["kogut-etsion"], ADHESIVE, 12e-3, offsets)
+    free = ~found.captured
+    assert np.sum(free) > 8
+    lost = found.lost[free] / found.impact_energy[free, None]
+    np.testing.assert_allclose(1.0 - found.restitution[free] ** 2, lost.sum(axis=1), atol=1e-8)
+    assert lost[:, 1].min() > 0.02  # by yielding, and by menisci that flatter tips make larger:
+    each = found.lost[free, 0] / found.bonds[free, 0]
+    assert np.all(each > float(sum(ADHESIVE.parts[1].losses)))
+
+
+def test_what_was_pressed_flat_yields_no_more():
+    """A body that falls on the same summits again loses what its menisci take, and no more."""
+    contact = CONTACTS["kogut-etsion"]
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(5, 0, 16)[0][:16]
+    first = impacts(contact, HARDLY, 12e-3, offsets)
+    assert np.all(first.restitution < 0.995)
+    again = impacts(contact, HARDLY, 12e-3 * first.restitution, offsets, first.closest_approach)
+    np.testing.assert_allclose(again.restitution, 1.0, rtol=1e-7)
+    np.testing.assert_allclose(again.closest_approach, first.closest_approach, rtol=0, atol=1e-16)
+    wet = impacts(contact, ADHESIVE, 12e-3, offsets)
+    free = ~wet.captured
+    speeds = 12e-3 * wet.restitution[free]
+    later = impacts(contact, ADHESIVE, speeds, offsets[free], wet.closest_approach[free])
+    free = ~later.captured
+    assert np.sum(free) > 4
+    np.testing.assert_allclose(later.lost[free, 1] / later.impact_energy[free], 0.0, atol=1e-8)
+    kept = 1.0 - later.lost[free, 0] / later.impact_energy[free]
+    np.testing.assert_allclose(later.restitution[free] ** 2, kept, rtol=1e-7)
+
+
+CASE = """
+[body]
+material = "silica"
+radius = "25 um"
+[counterface]
+material = "silicon carbide"
+deformation = "rigid"
+[roughness]
+asperity_density = "6.3e13 1/m^2"
+asperity_radius = "450 nm"
+rms_height = "1.64 nm"
+placement = "random"
+realisations = 64
+[adhesion]
+model = "dmt"
+work = "5 mJ/m^2"
+equilibrium_spacing = "0.3 nm"
+[plasticity]
+model = "kogut-etsion"
+hardness = "2 GPa"
+[impact]
+speed = "0.1 m/s"
+[numerics]
+max_impacts = 1
+"""
+
+
+def test_many_asperities_yield_as_the_mean_field_says():
+    result = asperity.solve(load(CASE), critical=False)
+    bodies, mean = result.realisations, result.measures["restitution"][0]
+    assert result.regime["contacting_asperities"] > 10.0
+    assert mean < 0.96
+    assert np.mean(bodies.values["restitution"]) == pytest.approx(mean, rel=5e-3)
+    assert set(bodies.lost) == {"plastic"}
