@@ -96,7 +96,7 @@ def test_ledger_closes_and_creep_is_booked_apart(viscoelastic):
     lost = trajectory.lost
     assert np.all(np.diff(lost, axis=0) >= -1e-12 * lost[-1])
     assert lost[-1, 1] > 10.0 * lost[-1, 0] > 0.0
-    assert np.all(np.diff(trajectory.series.time) >= 0.0)
+    assert np.all(np.diff(trajectory.time) >= 0.0)
 
 
 def test_the_ledger_closes_where_attraction_has_no_end():
@@ -110,9 +110,9 @@ def test_the_ledger_closes_where_attraction_has_no_end():
 def test_rings_bind_and_break_as_the_elastic_ones_do(viscoelastic, elastic):
     """As many menisci, within the change of depth that creep makes; none are left in flight."""
     motion, trajectory, _ = viscoelastic
-    bonds = trajectory.series.rows[:, 6]
+    bonds = trajectory.rows[:, 6]
     assert float(np.max(bonds)) == pytest.approx(float(elastic[1.0].impacts.bonds[0, 0]), rel=0.3)
-    tops = np.searchsorted(trajectory.series.time, motion.impacts.apex_time)
+    tops = np.searchsorted(trajectory.time, motion.impacts.apex_time)
     np.testing.assert_allclose(bonds[np.minimum(tops, bonds.size - 1)], 0.0, atol=1e-12)
 
 

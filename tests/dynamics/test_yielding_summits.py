@@ -91,11 +91,11 @@ def test_many_summits_are_the_sum_of_all(name, speed):
     contact = CONTACTS[name]
     offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:16]
     found = impacts(contact, ADHESIVE, speed, offsets)
-    for k, row in enumerate(offsets[:6]):
+    for k, row in enumerate(offsets[:12]):
         captured, restitution, pull = summed(contact, ADHESIVE, speed, row)
         assert bool(found.captured[k]) == captured
         assert float(found.restitution[k]) == pytest.approx(restitution, abs=3e-4)
-        assert float(found.pull_off[k]) == pytest.approx(pull, rel=2e-2)
+        assert float(found.pull_off[k]) == pytest.approx(pull, rel=5e-3)
 
 
 def test_losses_and_restitution_are_one_balance():

@@ -234,7 +234,7 @@ def test_a_sphere_bounces_to_rest_with_a_ledger_that_closes():
     assert outcome is Outcome.REST
     assert float(np.max(rows.energy_balance_error)) < 1e-8 * float(rows.maximum_kinetic[0])
     assert np.all(np.diff(rows.apex) < 0.0)
-    series, lost = trajectory.series, trajectory.lost[:, 0]
+    series, lost = trajectory, trajectory.lost[:, 0]
     energy = (
         0.5 * MASS * series.speed**2
         + float(body.weight) * series.separation
@@ -252,8 +252,8 @@ def test_units_do_not_matter():
     assert outcome is Outcome.ESCAPED
     length = (15.0 * MASS * 0.05**2 / (16.0 * MODULUS * math.sqrt(RADIUS))) ** 0.4
     expected, _ = impact(0.5, 1e-7 / (length / 0.05))
-    assert -trajectory.series.speed[-1] == pytest.approx(-0.05 * expected, rel=1e-8)
-    peak = np.max(trajectory.series.rows[:, FORCE])
+    assert -trajectory.speed[-1] == pytest.approx(-0.05 * expected, rel=1e-8)
+    peak = np.max(trajectory.rows[:, FORCE])
     assert float(motion.impacts.force[0]) == pytest.approx(peak, rel=0.2)
 
 

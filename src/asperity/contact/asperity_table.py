@@ -123,7 +123,7 @@ class Asperities(NamedTuple):
 
         What DMT's attraction pulls with; 0 of laws whose force goes on beyond contact.
         """
-        bonded = jnp.asarray(self.slope.shape[1] - 2)
+        bonded = jnp.asarray(2 ** self.forming.shape[0] - 1)
         touching = -_AT_CONTACT * self.scale
         apart = jnp.zeros_like(touching)
         return self.response(touching, bonded)[1] - self.response(apart, bonded)[1]

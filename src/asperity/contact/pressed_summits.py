@@ -24,25 +24,28 @@ class PressedSummits(NamedTuple):
         Their energies. The laws beside contact are proportional to the tip radius where it yields.
     contact
         The contact of a tip that yields; None of elastic ones.
-    deepest
-        Deepest overlap of each [m], 0 of a tip that never touched. Not of elastic ones.
+    deepest, residual
+        Deepest overlap of each [m], 0 of a tip that never touched, and the overlap at which it
+        parts. 0 of elastic ones.
+    flatness
+        Tip radius of each over that before [-].
     """
 
     summits: Asperities
     contact: PlasticContact | None = None
     deepest: Real = 0.0
+    residual: Real = 0.0
+    flatness: Real = 1.0
 
-    @property
-    def residual(self) -> Real:
-        """Residual overlap of each [m]."""
-        return 0.0 if self.contact is None else self.contact.residual(self.deepest)
-
-    @property
-    def flatness(self) -> Real:
-        """Tip radius of each over that before [-]."""
-        if self.contact is None:
-            return 1.0
-        return flatness(self.deepest, self.deepest - self.residual)
+    @classmethod
+    def of(
+        cls, summits: Asperities, contact: PlasticContact | None, deepest: jax.Array
+    ) -> PressedSummits:
+        """Summits that were pressed to some overlaps [m], if their tips yield."""
+        if contact is None:
+            return cls(summits)
+        residual = contact.residual(deepest)
+        return cls(summits, contact, deepest, residual, flatness(deepest, deepest - residual))
 
     def approach(self, gap: jax.Array) -> jax.Array:
         """Work [J] of each from far away to a gap [m]; a pressed one no deeper than before."""
@@ -54,7 +57,7 @@ class PressedSummits(NamedTuple):
     def turned(self, gap: jax.Array) -> PressedSummits:
         """The same once a body has turned at a gap [m] of each: none is pressed deeper again."""
         deepest = jnp.where(self.deepest > 0.0, self.deepest, jnp.maximum(-gap, 0.0))
-        return self if self.contact is None else self._replace(deepest=deepest)
+        return self.of(self.summits, self.contact, deepest)
 
     def bonded(self, gap: jax.Array, branch: jax.Array | int) -> jax.Array:
         """Work [J] of each to a gap [m] on a branch, less what its contact has lost before."""

@@ -69,10 +69,10 @@ class SingleImpact(NamedTuple):
     captured
         Whether it does not leave the interaction range of its summits.
     impact_energy
-        Kinetic energy on approach [J], at the separation where forces end on retraction; where they
-        begin, but for tips that yield, which are lower then.
+        Kinetic energy [J] that it brings to where forces end on retraction, had none acted before.
+        That is where they begin, but for tips that yield, which are lower then.
     restitution
-        Square root of the ratio of that on retraction to it; 0 where the body is captured.
+        Square root of the ratio of what it takes from there to it; 0 where the body is captured.
     contacting
         Summits in contact at the turning point.
     maximum_force
@@ -127,7 +127,7 @@ def _impact(
     Tips that yield were pressed before, to a separation ``pressed_to`` [m].
     """
     summits = table.of(classes)
-    found = PressedSummits(summits, contact, jnp.maximum(offsets - pressed_to, 0.0))
+    found = PressedSummits.of(summits, contact, jnp.maximum(offsets - pressed_to, 0.0))
     top = top_of(summits, launch, offsets - found.residual)
     external = _external_energy(found, launch, offsets, top)
     turning_point = rigid_approach(found, launch, offsets, top)
@@ -148,7 +148,7 @@ def _impact(
     held = turning_point - recovered <= summits.forming
     end = jnp.minimum(top, jnp.max(recovered + summits.interaction_range))
     ends = jnp.where(held, recovered + summits.breaking, end)
-    looked_at = _on_retraction(summits, offsets[0], turning_point, end, ends)
+    looked_at = _on_retraction(summits, jnp.max(recovered), turning_point, end, ends)
     begun = external(top) - jnp.sum(found.approach(top - offsets))
     before, after = begun + launch.weight * (top - end), energy_on_retraction(end)
     captured = jnp.minimum(_least(energy_on_retraction, *looked_at), after) < 0.0
@@ -206,7 +206,8 @@ def rigid_approach(
         return external(separation) - jnp.sum(found.approach(separation - offsets))
 
     gaps = summits.gaps_of_first(summits.cells * (1.0 - _SHARES))
-    separations = jnp.append(top, jnp.minimum(offsets[0] + gaps, top))
+    first = jnp.max(offsets - found.residual)
+    separations = jnp.append(top, jnp.minimum(first + gaps, top))
     reached = jnp.asarray(True)
     for _ in range(2):
         spent = jax.vmap(energy)(separations) < 0.0

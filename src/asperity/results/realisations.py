@@ -38,7 +38,7 @@ class Realisations:
     values : dict of str to numpy.ndarray
         What is known of each, by the names of `KINDS`; as long as ``captured``.
     lost : dict of str to numpy.ndarray
-        Energy [J] that its bonds take, once all are broken, by mechanism; likewise.
+        Energy [J] that it has lost once all bonds are broken, by mechanism; likewise.
     first : dict of str to numpy.ndarray
         The summits within range of the first body at its turning point: "x" and "y", their
         coordinates from its axis, and their "gap" [m].

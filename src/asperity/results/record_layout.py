@@ -227,7 +227,7 @@ def _bodies(found: Realisations) -> list[Variable]:
         units, meaning = KINDS[name]
         rows.append(Variable(f"{BODY}{name}", along, values, units, f"{meaning}, of a single body"))
     for name, values in found.lost.items():
-        meaning = f"energy that bonds take from a single body, {name}"
+        meaning = f"energy that a single body loses, {name}"
         rows.append(Variable(f"{BODY}lost_{name}", along, values, "J", meaning))
     summits = {"x": "coordinate from the axis", "y": "other coordinate", "gap": "gap"}
     for name, meaning in summits.items():
