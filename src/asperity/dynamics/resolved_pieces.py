@@ -20,6 +20,7 @@ _SPAN = 1e-6  # of the widest gap: the narrowest that is cut, of a film that thi
 _EQUILIBRIA = 2  # to which a body may creep in one phase: the first of them
 _LOOKS = np.linspace(0.0, 1.0, 9)  # on a piece for them
 _CLOSE = 1e-15  # of a look: a move that is lost in rounding
+_NARROW = 1e-10  # of a separation: the places on so narrow a piece differ by rounding alone
 _LIGHT = 0.5  # of the largest momentum: a drag that takes less over a phase turns no body slowly
 _NEARER = 4.0 ** -np.arange(1.0, 11.0)  # of the distance: cuts about its start and about them
 
@@ -40,7 +41,7 @@ def resolved(
     spent
         Where drag has taken the body's momentum, if it goes on from there [m]; else NaN.
     """
-    count = pieces.low.shape[0]
+    pieces, count = _without_narrow(pieces), pieces.low.shape[0]
     ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
     ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
     cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, kinetic, ahead)]
@@ -54,6 +55,19 @@ def resolved(
     part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
     low, high, _, _, values = (leaf[part] for leaf in pieces)
     return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
+
+
+def _without_narrow(pieces: Pieces) -> Pieces:
+    """The pieces with those empty that are too narrow for drag, of which the next are a part then.
+
+    The first of a fall, until what its laws remember is forgotten, is so narrow where the body
+    turned far above contact.
+    """
+    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
+    wide = jnp.abs(jnp.diff(ends)) > _NARROW * jnp.abs(ends[:-1])
+    last = jax.lax.cummax(jnp.where(wide, np.arange(1, ends.shape[0]), 0))
+    enter = jnp.append(ends[0], ends[last[:-1]])
+    return pieces._replace(enter=enter, leave=ends[last])
 
 
 def _about(spent: jax.Array, ends: jax.Array, ahead: jax.Array) -> jax.Array:

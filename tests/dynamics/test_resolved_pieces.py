@@ -1,0 +1,41 @@
+"""Pieces of a phase with drag."""
+
+import numpy as np
+
+from asperity._jax import jnp
+from asperity.dynamics import Body
+from asperity.dynamics.curve_table import CENTRAL, NODES, Pieces
+from asperity.dynamics.damped_phase import integrate_phase
+from asperity.dynamics.resolved_pieces import resolved
+from asperity.dynamics.suspension import Dashpot
+
+APEX, LANDING = 40.0, 1e-3  # m
+MASS, GRAVITY, DAMPING = 1e-9, 9.81, 1e-12  # kg, m/s^2, N s/m
+
+
+def fall(*ends):
+    """A fall from rest through pieces without a force of contact."""
+    enter, leave = jnp.asarray(ends[:-1]), jnp.asarray(ends[1:])
+    values = np.zeros((len(ends) - 1, NODES, CENTRAL + 1))
+    low, high = (np.full(len(ends) - 1, end) for end in (0.0, 2.0 * APEX))
+    pieces = Pieces(jnp.asarray(low), jnp.asarray(high), enter, leave, jnp.asarray(values))
+    body = Body(MASS, GRAVITY, APEX, drags=(Dashpot(DAMPING),))
+    zero = jnp.asarray(0.0)
+    return integrate_phase(body, resolved(body, pieces, zero, jnp.asarray(jnp.nan))[0], zero)
+
+
+def test_a_piece_as_narrow_as_rounding_stops_no_body():
+    """The body starts from rest on it, and its energies there differ by rounding alone."""
+    one, two = fall(APEX, LANDING), fall(APEX, APEX * (1.0 - 1e-13), LANDING)
+    assert not bool(two.turn.found)
+    fallen = MASS * GRAVITY * (APEX - LANDING)
+    assert 0.9 * fallen < float(two.turn.kinetic) < fallen
+    np.testing.assert_allclose(two.turn.kinetic, one.turn.kinetic, rtol=1e-12)
+    np.testing.assert_allclose(two.duration, one.duration, rtol=1e-12)
+    np.testing.assert_allclose(two.turn.kinetic + jnp.sum(two.lost), fallen, rtol=1e-12)
+
+
+def test_two_narrow_pieces_are_both_parts_of_the_next():
+    one = fall(APEX, LANDING)
+    three = fall(APEX, APEX * (1.0 - 1e-13), APEX * (1.0 - 2e-13), LANDING)
+    np.testing.assert_allclose(three.turn.kinetic, one.turn.kinetic, rtol=1e-12)
