@@ -62,7 +62,16 @@ def test_no_more_cuts_than_there_may_be_the_worst_panels_first():
     assert np.max(errors) > GOAL
 
 
-def test_nothing_is_cut_beyond_the_reach():
-    panels, _, _ = cut_until_fine(lambda x: np.tanh(40.0 * (x - 0.31)), 50, reach=0.25)
+def test_a_panel_across_the_end_of_forces_is_cut_before_it():
+    first = np.array([-1.0, 0.0, 1.0])
+    panels, _, _ = cut_until_fine(lambda x: np.tanh(40.0 * (x - 0.31)), 50, first, reach=0.25)
     assert panels.cuts.size > 0
     assert np.all(panels.cuts < 0.25)
+
+
+def test_a_panel_beyond_the_end_of_forces_is_cut_as_any_other():
+    """Where a body turns so far out that the tail of its forces counts."""
+    first = np.array([0.0, 0.25, 1.0])
+    panels, errors, _ = cut_until_fine(lambda x: np.exp(-80.0 * x**2), 50, first, reach=0.25)
+    assert np.max(errors) <= GOAL
+    assert np.any(panels.cuts > 0.25)

@@ -77,7 +77,7 @@ class CutPanels(NamedTuple):
         errors
             Relative error on each panel [-], shape (panels,).
         reach
-            Separation [m] from which on no panel is cut.
+            Separation [m] at which forces have nearly ended: a panel across it is cut before it.
         allowed
             Relative error allowed [-].
         most
@@ -85,7 +85,8 @@ class CutPanels(NamedTuple):
         solved
             Whether the contact has an equilibrium everywhere.
         """
-        width = np.minimum(ends[1:], reach) - ends[:-1]
+        low, high = ends[:-1], ends[1:]
+        width = np.where(low < reach, np.minimum(high, reach), high) - low
         bad = np.flatnonzero((errors > _SAFE * allowed) & (width > 0.0))
         bad = bad[np.argsort(-errors[bad])]
         parts = np.ceil((errors[bad] / (_SAFE * allowed)) ** (1.0 / _ORDER))
