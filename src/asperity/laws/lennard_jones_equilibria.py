@@ -6,6 +6,7 @@ R the radius and eps the spacing. ``tools/lennard_jones.py`` solves them and mak
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -45,8 +46,9 @@ MEASURES = np.concatenate(
 
 GAP, _FORCE, _PRESSED, _ENERGY = range(4)
 _SAMPLES = 10  # on a panel, between which folds are sought and equilibria are bracketed
-_STEPS = 10  # of Newton's method within a bracket
-_MARGIN = 1e-4  # of a bracket, that a step of Newton's method stays within it
+_STEPS = 7  # of Newton's method within a bracket
+_BEYOND = 1e-9  # of a measure: a step that leaves its bracket by less does so by rounding
+_STEEPEST = 3.0  # times the mean: a cubic with steeper ends may not be monotone
 _BISECTIONS = 34  # for a fold
 _ROUNDING = 4e-15  # of a gap
 _FLAT = 1e-7  # slope of the gap with the measure that counts as none, over 1 + |gap|
@@ -65,22 +67,40 @@ class Equilibria(NamedTuple):
 
     def read(self, measure: jax.Array) -> tuple[jax.Array, jax.Array]:
         """All rows at measures, and their slopes, rows first; outside the table at its ends."""
-        found = _summed(self.coefficients, measure)
-        return found[:4], found[4:]
+        at = self._rows(measure, range(8))(measure)
+        return jnp.stack(at[:4]), jnp.stack(at[4:])
 
     def gap(self, measure: jax.Array) -> tuple[jax.Array, jax.Array]:
         """The gap at measures, and its slope."""
-        value, slope = _summed(self.coefficients[..., [GAP, 4 + GAP]], measure)
-        return value, slope
+        return self.gap_within(measure)(measure)
 
+    def gap_within(self, near: jax.Array) -> Callable[[jax.Array], tuple[jax.Array, jax.Array]]:
+        """The same at measures that are each on the panel of one ``near``."""
+        rows = self._rows(near, (GAP, 4 + GAP))
 
-@jax.jit
-def _summed(coefficients: jax.Array, measure: jax.Array) -> jax.Array:
-    """Polynomials in pieces at measures, rows first."""
-    ends = jnp.asarray(MEASURES)
-    panel = jnp.clip(jnp.searchsorted(ends, measure) - 1, 0, len(MEASURES) - 2)
-    x = jnp.clip(local(ends[panel], ends[panel + 1], measure), -1.0, 1.0)
-    return jnp.moveaxis(chebyshev_sum(coefficients[:, panel], x[..., None]), -1, 0)
+        def at(measure: jax.Array) -> tuple[jax.Array, jax.Array]:
+            value, slope = rows(measure)
+            return value, slope
+
+        return at
+
+    def _rows(
+        self, near: jax.Array, numbers: Iterable[int]
+    ) -> Callable[[jax.Array], list[jax.Array]]:
+        """Some rows at measures that are each on the panel of one ``near``.
+
+        Each by itself: that takes half the time of all in one array.
+        """
+        ends = jnp.asarray(MEASURES)
+        panel = jnp.clip(jnp.searchsorted(ends, near) - 1, 0, len(MEASURES) - 2)
+        low, high = ends[panel], ends[panel + 1]
+        chosen = [self.coefficients[:, panel, number] for number in numbers]
+
+        def at(measure: jax.Array) -> list[jax.Array]:
+            x = jnp.clip(local(low, high, measure), -1.0, 1.0)
+            return [chebyshev_sum(row, x) for row in chosen]
+
+        return at
 
 
 _SLOPE = np.array([np.polynomial.chebyshev.chebder(row) for row in np.eye(NODES)]).T
@@ -105,6 +125,13 @@ class Folds(NamedTuple):
     inwards: jax.Array
     outwards: jax.Array
     some: jax.Array
+
+    def on_branches(self, dimensions: int) -> tuple[jax.Array, jax.Array]:
+        """Measure and gap at the folds that end the outer and the inner branch, (2, 1, ...)."""
+        shape = (2,) + (1,) * (dimensions - 1)
+        measures = jnp.stack([self.first, self.last]).reshape(shape)
+        gaps = jnp.stack([self.inwards[GAP], self.outwards[GAP]]).reshape(shape)
+        return measures, gaps
 
 
 _BETWEEN = np.unique(
@@ -170,46 +197,71 @@ def _folds_of(path: Equilibria) -> Folds:
     return Folds(at[0], at[1], rows[:, 0], rows[:, 1], some)
 
 
+class _Brackets(NamedTuple):
+    """Where equilibria lie on both branches, outer and inner, each array of shape (2, ...)."""
+
+    start: jax.Array
+    end: jax.Array
+    guess: jax.Array
+
+
+def _brackets_of(gap: jax.Array, path: Equilibria, folds: Folds) -> _Brackets:
+    """Those of equilibria at gaps within the outer and the inner branch."""
+    places = jnp.asarray(_BETWEEN)
+    gaps, slopes = path.gap(places)
+    # Along a branch the gap falls; what is not of it counts as too large a measure, or too small.
+    outer = jnp.where(places < folds.first, -gaps, jnp.inf)
+    inner = jnp.where(places > folds.last, -gaps, -jnp.inf)
+    index = jnp.stack([jnp.searchsorted(outer, -gap[0]), jnp.searchsorted(inner, -gap[1])])
+    fold, there = folds.on_branches(gap.ndim)
+    low = jnp.stack([places[0], folds.last]).reshape(fold.shape)
+    high = jnp.stack([folds.first, places[-1]]).reshape(fold.shape)
+
+    def end_at(number: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
+        within = jnp.clip(places[number], low, high)
+        own = within == places[number]
+        return within, jnp.where(own, gaps[number], there), jnp.where(own, slopes[number], 0.0)
+
+    start, before, falls_first = end_at(jnp.maximum(index - 1, 0))
+    end, after, falls_last = end_at(jnp.minimum(index, len(_BETWEEN) - 1))
+    whole = before - after
+    share = jnp.clip((before - gap) / jnp.where(whole > 0.0, whole, 1.0), 0.0, 1.0)
+    # Next to a fold the gap changes with the square of the measure, else nearly as a cubic of it.
+    mean = whole / jnp.where(end > start, start - end, -1.0)
+    first, last = (
+        jnp.clip(mean / jnp.where(slope < 0.0, slope, -1.0), 0.0, _STEEPEST)
+        for slope in (falls_first, falls_last)
+    )
+    curved = share * (1.0 - share) * ((1.0 - share) * (first - 1.0) + share * (1.0 - last))
+    at_first, at_last = folds.some & (start == fold), folds.some & (end == fold)
+    cubic = jnp.where(at_last, 1.0 - jnp.sqrt(1.0 - share), share + curved)
+    guess = start + (end - start) * jnp.where(at_first, jnp.sqrt(share), cubic)
+    return _Brackets(start, end, guess)
+
+
 @jax.jit
 def _measures_at(gap: jax.Array, path: Equilibria, folds: Folds) -> jax.Array:
     """The measures of equilibria at gaps within the outer and the inner branch, shape (2, ...)."""
-    places = jnp.asarray(_BETWEEN)
-    falling = -path.gap(places)[0]
-    # Along a branch the gap falls; what is not of it counts as too large a measure, or too small.
-    outer = jnp.where(places < folds.first, falling, jnp.inf)
-    inner = jnp.where(places > folds.last, falling, -jnp.inf)
-    index = jnp.stack([jnp.searchsorted(outer, -gap[0]), jnp.searchsorted(inner, -gap[1])])
-    each = (2,) + (1,) * (gap.ndim - 1)
-    low = jnp.stack([places[0], folds.last]).reshape(each)
-    high = jnp.stack([folds.first, places[-1]]).reshape(each)
-    fold = jnp.stack([folds.first, folds.last]).reshape(each)
-    start = jnp.clip(places[jnp.maximum(index - 1, 0)], low, high)
-    end = jnp.clip(places[jnp.minimum(index, len(_BETWEEN) - 1)], low, high)
-    before, after = path.gap(start)[0], path.gap(end)[0]
-    whole = before - after
-    share = jnp.clip((before - gap) / jnp.where(whole > 0.0, whole, 1.0), 0.0, 1.0)
-    # Next to a fold the gap changes with the square of the measure.
-    share = jnp.where(folds.some & (start == fold), jnp.sqrt(share), share)
-    share = jnp.where(folds.some & (end == fold), 1.0 - jnp.sqrt(1.0 - share), share)
-    guess = start + (end - start) * share
+    start, end, guess = _brackets_of(gap, path, folds)
+    gap_at = path.gap_within(0.5 * (start + end))
 
     def closer(
         _: int, now: tuple[jax.Array, jax.Array, jax.Array]
     ) -> tuple[jax.Array, jax.Array, jax.Array]:
         place, start, end = now
-        value, slope = path.gap(place)
+        value, slope = gap_at(place)
         over = value - gap
         start, end = jnp.where(over > 0.0, place, start), jnp.where(over > 0.0, end, place)
         falls = slope < 0.0
         newton = place - over / jnp.where(falls, slope, 1.0)
-        # It may leave the bracket by the rounding of a root at its end: there the next is close.
-        margin = _MARGIN * (end - start)
-        newton = jnp.clip(newton, start + margin, end - margin)
-        return jnp.where(falls, newton, 0.5 * (start + end)), start, end
+        # It may leave the bracket by the rounding of a root at its end.
+        within = jnp.clip(newton, start, end)
+        sound = falls & (jnp.abs(newton - within) <= _BEYOND * (1.0 + jnp.abs(within)))
+        return jnp.where(sound, within, 0.5 * (start + end)), start, end
 
     found = jax.lax.fori_loop(0, _STEPS, closer, (guess, start, end))[0]
     # At a fold rounding of the gap alone would move the measure by its square root.
-    there = jnp.stack([folds.inwards[GAP], folds.outwards[GAP]]).reshape(each)
+    fold, there = folds.on_branches(gap.ndim)
     return jnp.where(jnp.abs(gap - there) <= _ROUNDING * jnp.abs(gap), fold, found)
 
 
