@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 import measured
+import measured_bodies
 import measured_impacts
 from measured import Comparison, wet_work
 
 
 def comparisons() -> list[Comparison]:
-    return [*measured.statics(), *measured_impacts.impacts()]
+    return [*measured.statics(), *measured_bodies.bodies(), *measured_impacts.impacts()]
 
 
 def figures():
@@ -35,6 +36,22 @@ def test_mean_pull_off_of_alumina_falls_far_more_than_measured():
     assert max(contacting) * 10e-6 < 0.1
     assert wet.low > mean.low
     assert one.factor == 1.0
+
+
+def test_pull_off_of_single_alumina_probes_falls_as_measured():
+    """About 5 times, between summits of 30 nm whose forces reach 0.2 and 0.4 nm."""
+    row = measured_bodies.alumina()
+    assert row.factor == 1.0
+    near, far = measured_bodies.alumina_falls()[30e-9]
+    assert near < row.published < far < 6.0
+    assert max(measured_bodies.alumina_falls()[1e-6]) < 1.5
+
+
+def test_pull_off_of_nominally_similar_spheres_scatters_as_measured():
+    row = measured_bodies.pairs()
+    assert row.factor == 1.0
+    assert 1.9 < row.low < 2.1
+    assert 7.0 < row.high < 8.0
 
 
 def test_ruby_on_diamond_asks_for_rms_heights_of_nanometres():
