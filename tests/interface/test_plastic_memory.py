@@ -157,15 +157,19 @@ def checks(path):
             for m, s in zip(chosen, along, strict=True)]  # fmt: skip
 
 
+@eqx.filter_jit
+def remember(interface, memory, separation):
+    return interface.remember(memory, separation)
+
+
 @every_yield
-@every_law
+@pytest.mark.parametrize("beside", ["alone", "dmt + meniscus"])
 def test_memory_is_that_of_all_asperities_over_random_reversals(beside, overlap):
     """Every asperity remembers how deep it was and whether it is bonded; two numbers suffice."""
     interface, path = asperities(beside, overlap), random_walk()
     memories, memory = [], interface.initial_memory()
-    step = eqx.filter_jit(interface.remember)
     for h in path:
-        memory = step(memory, jnp.asarray(h))
+        memory = remember(interface, memory, jnp.asarray(h))
         memories.append([float(b) for b in memory])
     places = checks(path)
     rows = np.asarray([memories[move - 1] for move, _ in places]).T

@@ -16,6 +16,10 @@ from vendor_files import gwyddion, x3p
 HEAD = "# size[um] 4 3\n# unit nm\n"
 PLAIN = "1 2 3\n4 5 6\n7 8 9\n"
 SURFACE = Topography(np.arange(30.0).reshape(5, 6) ** 1.5 * 1e-9, (1e-6, 2e-6))
+WHOLE = {
+    ".x3p": x3p(SURFACE.heights, SURFACE.pixel_size),
+    ".gwy": gwyddion({"z": (SURFACE.heights, "m")}, SURFACE.physical_size),
+}
 
 
 def refused(path, **asked):
@@ -154,12 +158,8 @@ def test_a_unit_is_a_length(tmp_path, unit):
 @pytest.mark.parametrize("suffix", [".csv", ".xyz", ".nc", ".x3p", ".gwy"])
 def test_file_and_caller_may_not_contradict(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
-    foreign = {
-        ".x3p": x3p(SURFACE.heights, SURFACE.pixel_size),
-        ".gwy": gwyddion({"z": (SURFACE.heights, "m")}, SURFACE.physical_size),
-    }
-    if suffix in foreign:
-        path.write_bytes(foreign[suffix])
+    if suffix in WHOLE:
+        path.write_bytes(WHOLE[suffix])
     else:
         write_topography(SURFACE, path)
     assert "the unit must be the one in the file" in refused(path, unit="nm")
@@ -168,10 +168,6 @@ def test_file_and_caller_may_not_contradict(tmp_path, suffix):
     np.testing.assert_array_equal(agreed.heights, read_topography(path).heights)
 
 
-WHOLE = {
-    ".x3p": x3p(SURFACE.heights, SURFACE.pixel_size),
-    ".gwy": gwyddion({"z": (SURFACE.heights, "m")}, SURFACE.physical_size),
-}
 SUFFIXES = [".npy", ".csv", ".txt", ".xyz", ".nc", ".csv.gz", ".npy.gz", *WHOLE, "4.nc"]
 
 

@@ -80,8 +80,7 @@ def test_cases_that_break_a_rule_between_keys_fail_alone_and_say_why(tmp_path):
 
 
 def test_impacts_of_each_case_lie_along_a_dimension_where_they_are_asked_for():
-    heavy = load(DMT).replace({"impact.gravity": 9.81, "adhesion.model": "none"})
-    heavy = heavy.replace({"numerics.max_impacts": 2})
+    heavy = load(DMT).replace({"impact.gravity": 9.81, "numerics.max_impacts": 2})
     found = asperity.sweep(heavy, {"impact.speed": [0.5, 1.0]}, keep=["restitution"], impacts=3)
     assert found["restitution"].dims == ("impact.speed", "impact")
     np.testing.assert_allclose(found["restitution"].values[:, 0], 1.0, rtol=1e-9)
