@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from asperity import plots
 from asperity.cli import app
 from asperity.config import load_file
 from asperity.config.case_file import builtin_text
@@ -39,6 +40,17 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "asperity.solver", solver())
     return tmp_path
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures that cost nothing to draw, for tests of what is done with the files."""
+
+    def pictures(result: Result | Curve) -> dict[str, bytes]:
+        own = results_folder.RUN_FILES if isinstance(result, Result) else results_folder.CURVE_FILES
+        return {name: b"drawn" for name in own if name.endswith((".png", ".svg"))}
+
+    monkeypatch.setattr(plots, "pictures", pictures)
 
 
 def call(*arguments: str) -> Any:
@@ -117,6 +129,7 @@ def test_json_is_one_strict_object_and_writes_nothing(place: Path):
     assert names(place) == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_json_with_a_folder_writes_files_too(place: Path):
     ran = call("run", CASE, "--json", "-o", "out")
     assert strict(ran.stdout)["outcome"] == "rest"
@@ -135,6 +148,7 @@ def test_curve_writes_its_own_files_and_prints_its_own_json(place: Path):
     assert isinstance(read(f"{CASE}-out/curve.nc"), Curve)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_quiet_prints_nothing(place: Path):
     ran = call("run", CASE, "-q")
     assert (ran.exit_code, ran.output) == (0, "")
@@ -148,6 +162,7 @@ def test_a_record_repeats_its_run_byte_by_byte(place: Path):
         assert (place / "first" / name).read_bytes() == (place / "second" / name).read_bytes()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_record_holds_the_hash_of_the_file_as_it_was_written(place: Path):
     import hashlib
 
@@ -247,6 +262,7 @@ def test_works_of_adhesion_are_listed_for_either_solid_of_the_pair_and_never_ass
     assert "Solids" not in only
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Path):
     folder = place / f"{CASE}-out"
     folder.mkdir()
@@ -260,6 +276,7 @@ def test_a_folder_in_use_is_refused_and_force_leaves_what_is_not_ours(place: Pat
 
 
 @pytest.mark.parametrize("command", ["run", "curve"])
+@pytest.mark.usefixtures("undrawn")
 def test_an_earlier_answer_for_the_same_case_is_replaced(place: Path, command: str):
     assert "in place of" not in call(command, CASE).stdout
     folder = place / f"{CASE}-out"
@@ -275,6 +292,7 @@ def test_an_earlier_answer_for_the_same_case_is_replaced(place: Path, command: s
     assert not any(path.read_bytes() == b"old" for path in folder.iterdir())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_results_of_an_edited_case_are_replaced_and_those_of_another_are_refused(place: Path):
     text = builtin_text(CASE)
     (place / "drop.toml").write_text(text)
@@ -292,6 +310,7 @@ def test_results_of_an_edited_case_are_replaced_and_those_of_another_are_refused
 
 
 @pytest.mark.parametrize("spoiled", ["a note", "a record cut short", "a folder"])
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_not_known_as_the_cases_own_results_is_refused(place: Path, spoiled: str):
     assert call("run", CASE).exit_code == 0
     folder = place / f"{CASE}-out"
@@ -430,6 +449,7 @@ def test_a_home_that_cannot_be_written_to_costs_no_message(place: Path):
     assert "motion.png" in names(place / f"{CASE}-out")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_full_disk_keeps_an_earlier_result(place: Path):
     assert call("run", CASE).exit_code == 0
     folder = place / f"{CASE}-out"
@@ -542,7 +562,6 @@ def test_the_systems_request_to_end_is_heard_too(place: Path):
 
 def test_ctrl_c_while_drawing_keeps_the_record(monkeypatch: pytest.MonkeyPatch, place: Path):
     """A signal while a picture takes longer than an interrupted program may wait."""
-    from asperity import plots
     from asperity.cli import working
 
     monkeypatch.setattr(working, "PATIENCE", 0.05)
@@ -560,9 +579,9 @@ def test_ctrl_c_while_drawing_keeps_the_record(monkeypatch: pytest.MonkeyPatch, 
 def test_a_log_has_no_progress_bar_and_a_terminal_has_one():
     import pty
 
-    assert program("quick", "run", CASE, "-o", "log").stderr == ""
+    assert program("quick", "curve", CASE, "-o", "log").stderr == ""
     ours, theirs = pty.openpty()
-    command = [sys.executable, str(PROGRAM), "quick", "run", CASE, "-o", "terminal"]
+    command = [sys.executable, str(PROGRAM), "quick", "curve", CASE, "-o", "terminal"]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs) as running:
         os.close(theirs)
         shown = b""

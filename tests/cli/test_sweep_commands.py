@@ -14,11 +14,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
+import fake_study
+from asperity.cli import app
 from asperity.errors import ENDS
+from asperity.sweeps.compute import batch
 from asperity.sweeps.compute.runner import fill
 from asperity.sweeps.store.store import Store
 from asperity.sweeps.store.whole_files import beside
+from asperity.sweeps.study import study as studies
 from fake_study import FakeStudy, expected, in_order
 from store_files import contents, flip
 
@@ -28,6 +33,9 @@ STUDY = FakeStudy()
 
 @pytest.fixture(name="place", autouse=True)
 def _place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a study of numbers that cost nothing, which the commands compute."""
+    monkeypatch.setattr(studies, "read", fake_study.read)
+    monkeypatch.setattr(batch, "compute", fake_study.compute)
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(STUDY.canonical)
     return tmp_path
@@ -40,7 +48,12 @@ def _undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return contents(path)
 
 
+def call(*arguments: str) -> Any:
+    return CliRunner().invoke(app, list(arguments))
+
+
 def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """The whole program in a process of its own."""
     command = [sys.executable, str(PROGRAM), *arguments]
     options = {"capture_output": True, "text": True, "timeout": 60, **options}
     return subprocess.run(command, check=False, **options)
@@ -64,7 +77,7 @@ def test_a_sweep_says_what_came_out(place: Path, undisturbed: dict[str, bytes]):
 
 
 def test_json_is_one_object_with_the_counts():
-    ran = program("sweep", "study.toml", "--json")
+    ran = call("sweep", "study.toml", "--json")
     (line,) = ran.stdout.splitlines()
     said = json.loads(line)
     codes = list(expected(STUDY, range(STUDY.size))["outcome"])
@@ -79,21 +92,21 @@ def test_json_is_one_object_with_the_counts():
 
 
 def test_quiet_is_quiet():
-    ran = program("sweep", "study.toml", "--quiet")
-    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+    ran = call("sweep", "study.toml", "--quiet")
+    assert (ran.exit_code, ran.stdout, ran.stderr) == (0, "", "")
 
 
 def test_a_store_that_is_there_is_refused_resumed_or_replaced(
     place: Path, undisturbed: dict[str, bytes]
 ):
     fill(STUDY, Store.create("study.zarr", STUDY), in_order, tasks=[2])
-    ran = program("sweep", "study.toml")
-    assert ran.returncode == 2
+    ran = call("sweep", "study.toml")
+    assert ran.exit_code == 2
     assert_one_line(ran.stderr, "study.zarr", "--resume", "--force")
-    ran = program("sweep", "study.toml", "--resume", "--json")
+    ran = call("sweep", "study.toml", "--resume", "--json")
     assert json.loads(ran.stdout)["computed"] == 50 - 8
     assert contents(place / "study.zarr") == undisturbed
-    ran = program("sweep", "study.toml", "--force", "--json")
+    ran = call("sweep", "study.toml", "--force", "--json")
     assert json.loads(ran.stdout)["computed"] == 50
     assert contents(place / "study.zarr") == undisturbed
 
@@ -102,8 +115,8 @@ def test_the_store_of_another_study_is_exit_2(place: Path):
     other = FakeStudy(salt=1)
     fill(other, Store.create("study.zarr", other), in_order, tasks=[])
     for option in ("--resume", "--repair"):
-        ran = program("sweep", "study.toml", option)
-        assert ran.returncode == 2
+        ran = call("sweep", "study.toml", option)
+        assert ran.exit_code == 2
         assert_one_line(ran.stderr, "study.zarr: must be the store of this study")
 
 
@@ -115,11 +128,11 @@ def test_repair_names_corrupt_chunks_and_computes_them_again(
     flip(path / "energy_balance_error" / "c.3")
     (path / "impacts" / "c.5").unlink()
     (path / "impacts" / "zarr.json").write_text("{")
-    ran = program("sweep", "study.toml", "--resume")
-    assert ran.returncode == 2
+    ran = call("sweep", "study.toml", "--resume")
+    assert ran.exit_code == 2
     assert_one_line(ran.stderr, "impacts/zarr.json", "--repair")
-    ran = program("sweep", "study.toml", "--repair", "--json")
-    assert ran.returncode == 0
+    ran = call("sweep", "study.toml", "--repair", "--json")
+    assert ran.exit_code == 0
     assert json.loads(ran.stdout)["computed"] == 16
     written, *corrupt = ran.stderr.splitlines()
     assert "impacts/zarr.json: written again" in written
@@ -134,20 +147,20 @@ def test_options_that_exclude_each_other_are_exit_2(place: Path):
         (("--force",), ("--repair",)),
         (("--workers", "2"), ("--scheduler", "tcp://127.0.0.1:1")),
     ):
-        ran = program("sweep", "study.toml", *one, *other)
-        assert ran.returncode == 2
+        ran = call("sweep", "study.toml", *one, *other)
+        assert ran.exit_code == 2
         assert_one_line(ran.stderr, one[0], other[0])
     for options in (("--workers", "0"), ("--shard", "3/2")):
-        ran = program("sweep", "study.toml", *options)
-        assert ran.returncode == 2
+        ran = call("sweep", "study.toml", *options)
+        assert ran.exit_code == 2
         assert_one_line(ran.stderr, *options)
     assert [path.name for path in place.iterdir()] == ["study.toml"]
 
 
 def test_a_billion_cases_by_mistake_need_yes(place: Path):
     Path("study.toml").write_text(FakeStudy(size=10**9, task_size=8192).canonical)
-    ran = program("sweep", "study.toml")
-    assert ran.returncode == 2
+    ran = call("sweep", "study.toml")
+    assert ran.exit_code == 2
     assert_one_line(ran.stderr, "--yes", "1,000,000,000 cases")
     assert [path.name for path in place.iterdir()] == ["study.toml"]
 
@@ -156,26 +169,26 @@ def test_a_scheduler_that_cannot_be_reached_is_exit_4(place: Path):
     ran = program("sweep", "study.toml", "--scheduler", "tcp://127.0.0.1:1")
     assert ran.returncode == 4
     assert_one_line(ran.stderr, "tcp://127.0.0.1:1: the scheduler cannot be reached")
-    ran = program("sweep", "study.toml")
-    assert (ran.returncode, ran.stderr) == (0, "")
+    ran = call("sweep", "study.toml")
+    assert (ran.exit_code, ran.stderr) == (0, "")
 
 
 def test_shards_are_merged_into_the_store_of_one_run(place: Path, undisturbed: dict[str, bytes]):
     for number in (1, 2, 3):
-        assert program("sweep", "study.toml", "--shard", f"{number}/3", "-q").returncode == 0
+        assert call("sweep", "study.toml", "--shard", f"{number}/3", "-q").exit_code == 0
     stores = [f"study.{number}-of-3.zarr" for number in (1, 2, 3)]
-    ran = program("merge", *stores[:2])
-    assert ran.returncode == 0
+    ran = call("merge", *stores[:2])
+    assert ran.exit_code == 0
     assert "tasks 2, 5 are missing" in ran.stderr
-    ran = program("merge", *stores)
-    assert ran.returncode == 2
+    ran = call("merge", *stores)
+    assert ran.exit_code == 2
     assert_one_line(ran.stderr, "study.zarr", "--force")
-    ran = program("merge", *stores, "--force", "--json")
-    assert (ran.returncode, ran.stderr) == (0, "")
+    ran = call("merge", *stores, "--force", "--json")
+    assert (ran.exit_code, ran.stderr) == (0, "")
     assert json.loads(ran.stdout)["done"] == 50
     assert contents(place / "study.zarr") == undisturbed
-    ran = program("merge", *stores, "-o", stores[0], "--force")
-    assert ran.returncode == 2
+    ran = call("merge", *stores, "-o", stores[0], "--force")
+    assert ran.exit_code == 2
     assert_one_line(ran.stderr, "--output", stores[0])
 
 
@@ -197,13 +210,13 @@ def test_a_full_disk_is_exit_4_and_the_store_goes_on(place: Path, size: int):
         store = Store.open("study.zarr", study)
         assert 0 < len(store.done) < study.tasks
         assert store.check() == []
-    assert program("sweep", "study.toml", "--resume", "--quiet").returncode == 0
+    assert call("sweep", "study.toml", "--resume", "--quiet").exit_code == 0
     assert contents(place / "study.zarr") == contents(place / "whole" / "study.zarr")
 
 
 def test_a_place_that_cannot_be_written_is_exit_4(place: Path):
-    ran = program("sweep", "study.toml", "-o", "study.toml/study.zarr")
-    assert ran.returncode == 4
+    ran = call("sweep", "study.toml", "-o", "study.toml/study.zarr")
+    assert ran.exit_code == 4
     assert_one_line(ran.stderr, "study.toml/study.zarr", os.strerror(errno.ENOTDIR))
 
 

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from asperity.cli import app
 from asperity.errors import InputError
 from asperity.plots import published_figures
-from asperity.publication import report
+from asperity.publication import parameter_estimation, report
 from asperity.publication.comparison import problems_of
 from asperity.publication.parameter_estimation import Refit, Unknowns
 from asperity.publication.published_tables import Entry, read_tables
@@ -282,6 +282,12 @@ def test_bad_tables_are_refused_before_anything_is_computed(tmp_path: Path, monk
     assert "t.csv (line 1): the column `table` is missing" in ran.stderr
 
 
+@pytest.fixture
+def coarse(monkeypatch):
+    """A refit from one end of the conjunction, for tests of what is told of it."""
+    monkeypatch.setattr(parameter_estimation, "_EDGES", (3.0,))
+
+
 @pytest.mark.long
 def test_refit_without_a_value_says_which_and_keeps_the_rest(tmp_path: Path, monkeypatch):
     """The stiction time of one row: 3, and inputs as good as with it."""
@@ -304,7 +310,7 @@ def test_refit_without_a_value_says_which_and_keeps_the_rest(tmp_path: Path, mon
     assert [r["relative_difference"] for r in missing] == [None]
 
 
-def test_refit_of_tables_that_cannot_be_met_says_which(tmp_path: Path, monkeypatch):
+def test_refit_of_tables_that_cannot_be_met_says_which(tmp_path: Path, monkeypatch, coarse):
     """A decrement that falls with the asperities' radius: 3, and the least bad is kept."""
     monkeypatch.chdir(tmp_path)
     Path("t.csv").write_text(HEADER + TABLES.replace("0.5856", "0.30"))
@@ -357,14 +363,16 @@ def test_an_audit_of_refitted_inputs_has_numbers_too():
     assert max(off) < 0.02
 
 
-def test_a_body_that_never_leaves_contact_has_figures_too(tmp_path: Path, monkeypatch):
-    """Numbers that no motion has: 3, with files."""
+def test_a_body_that_never_leaves_contact_has_figures_too(tmp_path: Path, monkeypatch, coarse):
+    """Numbers that no motion has: 3, with files; on five surfaces, as those of other tests."""
     monkeypatch.chdir(tmp_path)
     rows = "2,0.2,10.5,3,2,5\n2,0.25,10.5,3,2,5\n2,0.3,10.5,100000,2,0.001\n"
+    rows += "3,0.25,9,3,2,5\n3,0.25,10,3,2,5\n"
     Path("t.csv").write_text(HEADER + rows)
     ran = run("--refit", "--tables", "t.csv", "-o", "out", "-q")
     assert ran.exit_code == 3
     assert "no inputs meet" in ran.stderr
+    assert "off by no rest" in ran.stderr
     assert Path("out/figure-7b.png").is_file()
     assert "NaN" not in Path("out/reproduction.json").read_text()
 
