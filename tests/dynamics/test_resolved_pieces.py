@@ -13,15 +13,15 @@ APEX, LANDING = 40.0, 1e-3  # m
 MASS, GRAVITY, DAMPING = 1e-9, 9.81, 1e-12  # kg, m/s^2, N s/m
 
 
-def fall(*ends):
-    """A fall from rest through pieces without a force of contact."""
+def fall(*ends, spent=np.nan):
+    """A fall from rest through pieces without a force of contact, cut about a place."""
     enter, leave = jnp.asarray(ends[:-1]), jnp.asarray(ends[1:])
     values = np.zeros((len(ends) - 1, NODES, CENTRAL + 1))
     low, high = (np.full(len(ends) - 1, end) for end in (0.0, 2.0 * APEX))
     pieces = Pieces(jnp.asarray(low), jnp.asarray(high), enter, leave, jnp.asarray(values))
     body = Body(MASS, GRAVITY, APEX, drags=(Dashpot(DAMPING),))
     zero = jnp.asarray(0.0)
-    return integrate_phase(body, resolved(body, pieces, zero, jnp.asarray(jnp.nan))[0], zero)
+    return integrate_phase(body, resolved(body, pieces, zero, jnp.asarray(spent))[0], zero)
 
 
 def test_a_piece_as_narrow_as_rounding_stops_no_body():
@@ -35,7 +35,14 @@ def test_a_piece_as_narrow_as_rounding_stops_no_body():
     np.testing.assert_allclose(two.turn.kinetic + jnp.sum(two.lost), fallen, rtol=1e-12)
 
 
-def test_two_narrow_pieces_are_both_parts_of_the_next():
+def test_narrow_pieces_are_parts_of_those_beside_them():
     one = fall(APEX, LANDING)
-    three = fall(APEX, APEX * (1.0 - 1e-13), APEX * (1.0 - 2e-13), LANDING)
-    np.testing.assert_allclose(three.turn.kinetic, one.turn.kinetic, rtol=1e-12)
+    first, second = APEX * (1.0 - 1e-13), APEX * (1.0 - 2e-13)
+    for more in (
+        fall(APEX, first, second, LANDING),
+        fall(APEX, LANDING * (1.0 + 1e-12), LANDING),
+        fall(APEX, LANDING, spent=first),
+        fall(APEX, LANDING, spent=LANDING * (1.0 + 1e-12)),
+    ):
+        assert not bool(more.turn.found)
+        np.testing.assert_allclose(more.turn.kinetic, one.turn.kinetic, rtol=1e-12)

@@ -30,6 +30,9 @@ def resolved(
 ) -> tuple[Pieces, jax.Array]:
     """Pieces cut where drags ask for it, and which one each is a part of.
 
+    Those as narrow as rounding are parts of the ones beside them: such is the way back to the
+    branch of a law that remembers, where a body turned far above contact.
+
     Parameters
     ----------
     body
@@ -41,33 +44,28 @@ def resolved(
     spent
         Where drag has taken the body's momentum, if it goes on from there [m]; else NaN.
     """
-    pieces, count = _without_narrow(pieces), pieces.low.shape[0]
+    count = pieces.low.shape[0]
     ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
     ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
     cuts = [*_in_film(body, pieces, ends, ahead), *_to_rest(body, pieces, kinetic, ahead)]
-    goes_on = body.damped_apart and not body.forces
-    if not cuts and not goes_on:
-        return pieces, jnp.arange(count)
-    if goes_on:
+    if body.damped_apart and not body.forces:
         cuts = [*cuts, _about(spent, jnp.sort(ahead * jnp.concatenate([ends, *cuts])), ahead)]
-    places = jnp.sort(ahead * jnp.concatenate([ends, *cuts]))
+    places = _without_narrow(jnp.sort(ahead * jnp.concatenate([ends, *cuts])))
     middles = 0.5 * (places[1:] + places[:-1])
     part = jnp.clip(jnp.searchsorted(ahead * pieces.leave, middles), 0, count - 1)
     low, high, _, _, values = (leaf[part] for leaf in pieces)
     return Pieces(low, high, ahead * places[:-1], ahead * places[1:], values), part
 
 
-def _without_narrow(pieces: Pieces) -> Pieces:
-    """The pieces with those empty that are too narrow for drag, of which the next are a part then.
+def _without_narrow(ends: jax.Array) -> jax.Array:
+    """The ends of pieces, ascending, with those empty that are too narrow for drag.
 
-    The first of a fall, until what its laws remember is forgotten, is so narrow where the body
-    turned far above contact.
+    Each is a part of the next wide one, those behind the last of that.
     """
-    ends = jnp.concatenate([pieces.enter[:1], pieces.leave])
-    wide = jnp.abs(jnp.diff(ends)) > _NARROW * jnp.abs(ends[:-1])
-    last = jax.lax.cummax(jnp.where(wide, np.arange(1, ends.shape[0]), 0))
-    enter = jnp.append(ends[0], ends[last[:-1]])
-    return pieces._replace(enter=enter, leave=ends[last])
+    last = ends.shape[0] - 1
+    wide = jnp.diff(ends) > _NARROW * jnp.abs(ends[:-1])
+    kept = jax.lax.cummax(jnp.where(wide, np.arange(1, last + 1), 0))
+    return jnp.append(ends[0], ends[jnp.where(kept == kept[-1], last, kept)])
 
 
 def _about(spent: jax.Array, ends: jax.Array, ahead: jax.Array) -> jax.Array:
