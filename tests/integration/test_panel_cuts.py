@@ -62,16 +62,17 @@ def test_no_more_cuts_than_there_may_be_the_worst_panels_first():
     assert np.max(errors) > GOAL
 
 
-def test_a_panel_across_the_end_of_forces_is_cut_before_it():
+def test_a_panel_across_the_end_of_forces_is_cut_there_and_before():
     first = np.array([-1.0, 0.0, 1.0])
-    panels, _, _ = cut_until_fine(lambda x: np.tanh(40.0 * (x - 0.31)), 50, first, reach=0.25)
-    assert panels.cuts.size > 0
-    assert np.all(panels.cuts < 0.25)
+    panels = CutPanels().finer(first, np.array([0.0, 1.0]), 0.25, GOAL, 50)
+    assert np.max(panels.cuts) == pytest.approx(0.25, rel=1e-15)
+    assert np.min(panels.cuts) < 0.05
 
 
-def test_a_panel_beyond_the_end_of_forces_is_cut_as_any_other():
-    """Where a body turns so far out that the tail of its forces counts."""
-    first = np.array([0.0, 0.25, 1.0])
-    panels, errors, _ = cut_until_fine(lambda x: np.exp(-80.0 * x**2), 50, first, reach=0.25)
+@pytest.mark.parametrize("first", [[0.0, 1.0], [0.0, 0.25, 1.0], [0.0, 0.25 - 1e-16, 1.0]])
+def test_the_tail_beyond_the_end_of_forces_is_cut_where_it_counts(first):
+    """A light body turns in it."""
+    tail = lambda x: np.exp(-80.0 * x**2)  # noqa: E731
+    panels, errors, _ = cut_until_fine(tail, 50, np.array(first), reach=0.25)
     assert np.max(errors) <= GOAL
-    assert np.any(panels.cuts > 0.25)
+    assert np.any(panels.cuts > 0.26)

@@ -13,6 +13,7 @@ RESIDUAL = 1e-6
 
 _ORDER = 6.0  # power of a panel's width with which its error falls, at least, where it is smooth
 _PARTS = 6  # into which a panel is cut at once: its error may lie at one place of it
+_SHORT = 1e-9  # of a panel before the end of forces: it begins there
 _SAFE = 0.3  # of the error allowed: panels with more are cut
 _GAIN = 0.9  # of the error is left by several more cuts: where more is, no more would help
 _TRIES = 4  # that are looked back for it
@@ -77,7 +78,8 @@ class CutPanels(NamedTuple):
         errors
             Relative error on each panel [-], shape (panels,).
         reach
-            Separation [m] at which forces have nearly ended: a panel across it is cut before it.
+            Separation [m] at which forces have nearly ended: a panel across it is cut there, and
+            before it, until its error lies beyond.
         allowed
             Relative error allowed [-].
         most
@@ -86,11 +88,17 @@ class CutPanels(NamedTuple):
             Whether the contact has an equilibrium everywhere.
         """
         low, high = ends[:-1], ends[1:]
-        width = np.where(low < reach, np.minimum(high, reach), high) - low
+        before = reach - low
+        across = (before > _SHORT * (high - low)) & (high > reach)
+        width = np.where(across, before, high - low)
         bad = np.flatnonzero((errors > _SAFE * allowed) & (width > 0.0))
         bad = bad[np.argsort(-errors[bad])]
         parts = np.ceil((errors[bad] / (_SAFE * allowed)) ** (1.0 / _ORDER))
-        shares = [np.arange(1.0, n) / n for n in np.clip(parts, 2, _PARTS)]
+        parts = np.clip(parts, 2, _PARTS)
+        shares = [
+            np.arange(1.0, n + cut_there) / n
+            for n, cut_there in zip(parts, across[bad], strict=True)
+        ]
         new = [ends[k] + width[k] * share for k, share in zip(bad, shares, strict=True)]
         cuts = np.concatenate([self.cuts, *new])[:most]
         return CutPanels(cuts, (*self.errors, float(np.max(errors))), self.unsolved + (not solved))
