@@ -20,7 +20,7 @@ _SEPARATIONS = 48  # separations on approach, and on retraction besides the ends
 _FINER = 16  # between two of them on approach
 _ROUNDS, _NEAR = 3, 7  # about the least energy on retraction
 _ABOUT = np.linspace(-1.0, 1.0, 9)  # times the range of bonds, about each of the highest summits
-_APART = 32  # of these; those below stand closer together than the range of their forces
+_HIGHEST = 32  # of these, which decide; at those below one separation each is looked at
 _CLOSE = 1e-14  # of a separation: less is lost in rounding
 _AT_ONCE = 1 << 14  # gaps that are held in memory together: more leave the cache
 _SHARES = np.linspace(0.0, 1.0, _SEPARATIONS + 1)
@@ -247,7 +247,8 @@ def _pull_off(
 ) -> jax.Array:
     """The largest tension on retraction [N]; it has about as many maxima as there are summits."""
     widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pull_off_gap)))
-    highest = jax.lax.top_k(offsets, min(_APART, offsets.size))[0]
+    widest = jnp.where(widest > 0.0, widest, jnp.max(summits.scale))  # largest at touch, no bonds
+    highest = jax.lax.top_k(offsets, min(_HIGHEST, offsets.size))[0]
     about = (highest[:, None] + widest * _ABOUT).ravel()
     more = jnp.concatenate([offsets + summits.pull_off_gap, about])
     more = jnp.clip(more, start, jnp.max(separations))

@@ -75,7 +75,7 @@ class Equilibria(NamedTuple):
         return self.gap_within(measure)(measure)
 
     def gap_within(self, near: jax.Array) -> Callable[[jax.Array], tuple[jax.Array, jax.Array]]:
-        """The same at measures that are each on the panel of one ``near``."""
+        """The same at measures, each of the panel that the one of ``near`` beside it is on."""
         rows = self._rows(near, (GAP, 4 + GAP))
 
         def at(measure: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -87,7 +87,7 @@ class Equilibria(NamedTuple):
     def _rows(
         self, near: jax.Array, numbers: Iterable[int]
     ) -> Callable[[jax.Array], list[jax.Array]]:
-        """Some rows at measures that are each on the panel of one ``near``.
+        """Some rows at measures, each of the panel that the one of ``near`` beside it is on.
 
         Each by itself: that takes half the time of all in one array.
         """
