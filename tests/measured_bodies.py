@@ -18,7 +18,7 @@ from asperity.materials.solids import SOLIDS, contact_modulus
 from measured import PRODUCT, SPACINGS, Comparison
 
 BODIES = 64
-_PRESSED = 40.0  # times the energy of adhesion of one summit, w tip spacing
+_PRESSED = 40.0  # times w tip spacing: on how many summits bonds form; nothing without bonds
 _WORK = 0.1  # J/m^2
 
 
@@ -60,8 +60,8 @@ def alumina() -> Comparison:
         "alumina probe on alumina: fall of the pull-off from 1.5 to 12.0 nm rms; single bodies",
         min(falls),
         max(falls),
-        "median of 64 probes of 10 um, summit radius 30 nm to 1 um with rms x radius x density = "
-        "0.05, w 0.1 J/m^2, spacing 0.2 to 0.4 nm",
+        "median of 64 probes of 10 um (assumed), summit radius 30 nm to 1 um with rms x radius x "
+        "density = 0.05, w 0.1 J/m^2, spacing 0.2 to 0.4 nm",
         "each probe is carried by summits of its own, and those beside them pull across the gap",
     )
 
