@@ -246,8 +246,8 @@ def _pull_off(
     step: jax.Array,
 ) -> jax.Array:
     """The largest tension on retraction [N]; it has about as many maxima as there are summits."""
-    widest = jnp.max(jnp.append(summits.breaking, jnp.abs(summits.pull_off_gap)))
-    widest = jnp.where(widest > 0.0, widest, jnp.max(summits.scale))  # largest at touch, no bonds
+    lengths = summits.breaking, jnp.abs(summits.pull_off_gap), summits.scale
+    widest = jnp.max(jnp.vstack(lengths))
     highest = jax.lax.top_k(offsets, min(_HIGHEST, offsets.size))[0]
     about = (highest[:, None] + widest * _ABOUT).ravel()
     more = jnp.concatenate([offsets + summits.pull_off_gap, about])

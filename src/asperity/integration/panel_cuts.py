@@ -78,8 +78,8 @@ class CutPanels(NamedTuple):
         errors
             Relative error on each panel [-], shape (panels,).
         reach
-            Separation [m] at which forces have nearly ended: a panel across it is cut there, and
-            before it, until its error lies beyond.
+            Separation [m] at which forces have nearly ended: a panel across it is cut there and
+            before it.
         allowed
             Relative error allowed [-].
         most
@@ -95,10 +95,8 @@ class CutPanels(NamedTuple):
         bad = bad[np.argsort(-errors[bad])]
         parts = np.ceil((errors[bad] / (_SAFE * allowed)) ** (1.0 / _ORDER))
         parts = np.clip(parts, 2, _PARTS)
-        shares = [
-            np.arange(1.0, n + cut_there) / n
-            for n, cut_there in zip(parts, across[bad], strict=True)
-        ]
+        last = parts - np.where(across[bad], 0, 1)
+        shares = [np.arange(1.0, k + 1.0) / n for k, n in zip(last, parts, strict=True)]
         new = [ends[k] + width[k] * share for k, share in zip(bad, shares, strict=True)]
         cuts = np.concatenate([self.cuts, *new])[:most]
         return CutPanels(cuts, (*self.errors, float(np.max(errors))), self.unsolved + (not solved))

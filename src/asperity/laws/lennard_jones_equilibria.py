@@ -70,23 +70,17 @@ class Equilibria(NamedTuple):
         at = self._rows(measure, range(8))(measure)
         return jnp.stack(at[:4]), jnp.stack(at[4:])
 
-    def gap(self, measure: jax.Array) -> tuple[jax.Array, jax.Array]:
+    def gap(self, measure: jax.Array) -> tuple[jax.Array, ...]:
         """The gap at measures, and its slope."""
         return self.gap_within(measure)(measure)
 
-    def gap_within(self, near: jax.Array) -> Callable[[jax.Array], tuple[jax.Array, jax.Array]]:
+    def gap_within(self, near: jax.Array) -> Callable[[jax.Array], tuple[jax.Array, ...]]:
         """The same at measures, each of the panel that the one of ``near`` beside it is on."""
-        rows = self._rows(near, (GAP, 4 + GAP))
-
-        def at(measure: jax.Array) -> tuple[jax.Array, jax.Array]:
-            value, slope = rows(measure)
-            return value, slope
-
-        return at
+        return self._rows(near, (GAP, 4 + GAP))
 
     def _rows(
         self, near: jax.Array, numbers: Iterable[int]
-    ) -> Callable[[jax.Array], list[jax.Array]]:
+    ) -> Callable[[jax.Array], tuple[jax.Array, ...]]:
         """Some rows at measures, each of the panel that the one of ``near`` beside it is on.
 
         Each by itself: that takes half the time of all in one array.
@@ -96,9 +90,9 @@ class Equilibria(NamedTuple):
         low, high = ends[panel], ends[panel + 1]
         chosen = [self.coefficients[:, panel, number] for number in numbers]
 
-        def at(measure: jax.Array) -> list[jax.Array]:
+        def at(measure: jax.Array) -> tuple[jax.Array, ...]:
             x = jnp.clip(local(low, high, measure), -1.0, 1.0)
-            return [chebyshev_sum(row, x) for row in chosen]
+            return tuple(chebyshev_sum(row, x) for row in chosen)
 
         return at
 
