@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 from typer.testing import CliRunner
 
@@ -321,7 +322,10 @@ def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place: Pa
     ):
         command = [sys.executable, "-m", "asperity", *arguments]
         running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        time.sleep(2.5)
+        working = psutil.Process(running.pid)
+        while working.cpu_times().user < 2.5:  # it has begun, however busy the machine is
+            assert running.poll() is None
+            time.sleep(0.05)
         running.send_signal(signal.SIGINT)
         start = time.monotonic()
         _, said = running.communicate(timeout=20)
