@@ -12,7 +12,7 @@ import numpy as np
 
 import asperity
 from asperity.config.resolve import resolve
-from asperity.dynamics.single_impact import Launch
+from asperity.dynamics.summit_path import Launch
 from asperity.model import build
 from asperity.single_bodies import SingleBodies
 
@@ -55,8 +55,7 @@ class _Bodies:
         problem = build(resolve(asperity.config.load(_case(bulk))))
         count = BODIES[bulk]
         kinetic = np.full(count, 0.5 * float(problem.body.mass) * speed**2)
-        weight = np.full(count, float(problem.body.weight))
-        self._launches = Launch(kinetic, np.full(count, np.inf), weight)
+        self._launches = Launch(kinetic, np.full(count, np.inf))
         self._bodies = SingleBodies(problem, 0.0)
         found = self._bodies.impacts(self._launches, with_pull_off=False)
         self.contacting = float(np.mean(found.contacting))

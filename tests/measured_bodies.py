@@ -10,7 +10,9 @@ import numpy as np
 
 from asperity._jax import jnp
 from asperity.contact.asperity_table import asperity_table
-from asperity.dynamics.single_impact import Launch, single_impacts
+from asperity.dynamics import Body
+from asperity.dynamics.single_impact import single_impacts
+from asperity.dynamics.summit_path import Launch
 from asperity.interface.summit_field import GaussianField
 from asperity.laws import Bradley, Hertz, Maugis
 from asperity.laws.law import Law, Sum
@@ -27,10 +29,10 @@ def pull_offs(law: Law, tip: float, radius: float, rms: float, summits: int) -> 
     field = GaussianField(radius, PRODUCT / (rms * tip), rms)
     offsets = field.summits(0, 0, summits)[0][:BODIES]
     energy = _PRESSED * pi * _WORK * tip * SPACINGS[0]
-    launches = Launch(np.full(BODIES, energy), np.full(BODIES, np.inf), np.zeros(BODIES))
+    launches = Launch(np.full(BODIES, energy), np.full(BODIES, np.inf))
     classes = jnp.zeros(offsets.shape, jnp.int32)
     table = asperity_table([law], 4.0 * energy)
-    found = single_impacts(table, launches, jnp.asarray(offsets), classes)
+    found = single_impacts(table, Body(1.0, 0.0, 0.0), launches, jnp.asarray(offsets), classes)
     assert np.all(np.isfinite(found.closest_approach))
     return np.asarray(found.pull_off)
 

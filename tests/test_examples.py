@@ -67,9 +67,7 @@ SUBJECTS = {
     "drop-in-air": (
         "Knudsen number of the gas film",
         "pressure in the gas film",
-        "single bodies differ",
     ),
-    "switch": ("single bodies differ",),
     "yielding-drop": ("beyond yield", "without yielding"),
 }
 """What an example warns of because that is what it is about, or by what it is about."""

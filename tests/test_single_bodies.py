@@ -13,7 +13,7 @@ import asperity
 from asperity.cli import app
 from asperity.config import load
 from asperity.config.resolve import resolve
-from asperity.dynamics.single_impact import Launch
+from asperity.dynamics.summit_path import Launch
 from asperity.errors import InputError
 from asperity.model import build
 from asperity.single_bodies import SingleBodies, launching
@@ -63,9 +63,8 @@ def bodies_of(text=CASE):
 
 
 def launches(problem, count, speed=3e-3):
-    mass, weight = float(problem.body.mass), float(problem.body.weight)
-    return Launch(np.full(count, 0.5 * mass * speed**2), np.full(count, np.inf),
-                  np.full(count, weight))  # fmt: skip
+    energy = 0.5 * float(problem.body.mass) * speed**2
+    return Launch(np.full(count, energy), np.full(count, np.inf))
 
 
 def test_a_run_answers_with_the_probability_of_capture(result):
@@ -191,9 +190,9 @@ def test_they_do_not_where_it_is_off_by_less_than_five_per_cent(times, speed):
             "`model` must not be 'kelvin-filling'",
         ),
         (
-            "[impact]",
-            '[suspension]\nstiffness = "1 N/m"\nrest_gap = "10 nm"\n[impact]',
-            "a [suspension] table must be absent",
+            '"rigid"',
+            '"half-space"\n[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"',
+            "`deformation` must be 'rigid' with single bodies (`placement`) that [gas] slows",
         ),
         ('"random"', '"strewn"', "`placement` must be"),
         (

@@ -10,11 +10,13 @@ from asperity._jax import jax, jnp
 from asperity.contact.asperity_table import asperity_table
 from asperity.contact.coupled_summits import influence_between
 from asperity.dynamics.coupled_impact import Bulk, coupled_impacts
-from asperity.dynamics.single_impact import Launch
+from asperity.dynamics.summit_path import Launch
 from asperity.interface.summit_field import GaussianField
 from asperity.laws.law import terms
 from dynamics.test_single_impact import (
+    BODY,
     FAST,
+    HEAVY,
     LAWS,
     MASS,
     MODULUS,
@@ -28,7 +30,7 @@ SUMMITS, BODIES = 16, 256  # of every test: a program is compiled for each numbe
 FIELD = GaussianField(RADIUS, 2e13, 1.2e-9)
 
 
-def impacts(law, launches, offsets, positions, modulus=MODULUS):
+def impacts(law, launches, offsets, positions, modulus=MODULUS, body=BODY):
     """First impacts of up to so many bodies with up to so many summits, others far away."""
     count, summits = offsets.shape
     offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - summits)), constant_values=-1.0)
@@ -39,7 +41,7 @@ def impacts(law, launches, offsets, positions, modulus=MODULUS):
     bulk = Bulk(jnp.asarray(positions)[some], jnp.asarray([TIP]), jnp.asarray(modulus))
     kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
     table = asperity_table([law], 1e-11)
-    found = coupled_impacts(table, launches, jnp.asarray(offsets)[some], kinds, bulk)
+    found = coupled_impacts(table, body, launches, jnp.asarray(offsets)[some], kinds, bulk)
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)
 
 
@@ -74,9 +76,9 @@ def test_two_summits_share_a_load():
 @pytest.mark.parametrize("name", ["dry", "jkr, wet"])
 def test_a_stiff_bulk_is_a_rigid_one(name):
     offsets, positions = drawn(3)
-    launches = launched(np.full(BODIES, FAST), 9.81 * MASS)
-    rigid = all_impacts(LAWS[name], launches, offsets)
-    found = impacts(LAWS[name], launches, offsets, positions, 1e20)
+    launches = launched(np.full(BODIES, FAST))
+    rigid = all_impacts(LAWS[name], launches, offsets, HEAVY)
+    found = impacts(LAWS[name], launches, offsets, positions, 1e20, HEAVY)
     np.testing.assert_array_equal(found.captured, rigid.captured)
     np.testing.assert_array_equal(found.bonds, rigid.bonds)
     np.testing.assert_allclose(found.closest_approach, rigid.closest_approach, rtol=1e-8)
@@ -88,7 +90,7 @@ def test_a_stiff_bulk_is_a_rigid_one(name):
 @pytest.mark.parametrize("name", ["dry", "hertz"])
 def test_elastic_summits_lose_nothing(name):
     """DMT's attraction rises over the depth by which summits move one another."""
-    found = impacts(LAWS[name], launched(np.full(BODIES, FAST), 9.81 * MASS), *drawn(3))
+    found = impacts(LAWS[name], launched(np.full(BODIES, FAST)), *drawn(3), body=HEAVY)
     np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
     assert not np.any(found.captured)
     assert not np.any(found.interaction)

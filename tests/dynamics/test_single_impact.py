@@ -9,7 +9,8 @@ from asperity._jax import jax, jnp
 from asperity.contact import SmoothContact
 from asperity.contact.asperity_table import asperity_table
 from asperity.dynamics import Body, simulate
-from asperity.dynamics.single_impact import Launch, single_impacts
+from asperity.dynamics.single_impact import single_impacts
+from asperity.dynamics.summit_path import Launch
 from asperity.errors import Tolerance
 from asperity.interface.summit_field import GaussianField
 from asperity.laws import Bradley, Dmt, Hertz, Jkr, Maugis, Meniscus
@@ -30,29 +31,30 @@ MASS = 4.0 / 3.0 * pi * RADIUS**3 * 2200.0  # kg
 GAP = 60e-9  # m
 
 
-def launched(speeds, weight=0.0, release=GAP, mass=MASS):
+BODY, HEAVY = Body(MASS, 0.0, 0.0), Body(MASS, 9.81, 0.0)
+
+
+def launched(speeds, release=GAP, mass=MASS):
     speeds = np.asarray(speeds, float)
-    return Launch(
-        0.5 * mass * speeds**2, np.full(speeds.shape, release), np.full(speeds.shape, weight)
-    )
+    return Launch(0.5 * mass * speeds**2, np.full(speeds.shape, release))
 
 
 BODIES, SUMMITS = 256, 16  # of every test: one program is compiled for each number of laws
 
 
-def impacts(law, launches, offsets):
+def impacts(law, launches, offsets, body=BODY):
     """First impacts of up to so many bodies with up to so many summits, others far away."""
     count = len(offsets)
     offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - offsets.shape[1])), constant_values=-1.0)
     some = np.minimum(np.arange(BODIES), count - 1)
     launches, offsets = Launch(*(values[some] for values in launches)), offsets[some]
-    found = all_impacts(law, launches, offsets)
+    found = all_impacts(law, launches, offsets, body)
     return jax.tree_util.tree_map(lambda leaf: leaf[:count], found)
 
 
-def all_impacts(law, launches, offsets):
-    kinds = jnp.zeros(offsets.shape, jnp.int32)
-    return single_impacts(asperity_table([law], 1e-11), launches, jnp.asarray(offsets), kinds)
+def all_impacts(law, launches, offsets, body=BODY):
+    kinds, table = jnp.zeros(offsets.shape, jnp.int32), asperity_table([law], 1e-11)
+    return single_impacts(table, body, launches, jnp.asarray(offsets), kinds)
 
 
 @pytest.mark.parametrize("name", long_but(LAWS, "jkr, wet"))
@@ -72,8 +74,11 @@ def test_one_summit_is_a_smooth_body(name):
         )
 
 
-def summed(law, offsets, speed, weight):
-    """Capture and restitution from energies of every summit at 20,000 separations."""
+def summed(law, offsets, speed, weight, end):
+    """Capture and restitution from energies of every summit at 20,000 separations.
+
+    The restitution at the ``end`` of forces [m].
+    """
     gaps = np.linspace(-12e-9, 4e-9, 400_001)
     free = np.asarray(sum(one.energy(jnp.asarray(gaps)) for one in terms(law)))
     top = offsets[0] + float(asperity_table([law], 1e-11).interaction_range[0])
@@ -93,20 +98,22 @@ def summed(law, offsets, speed, weight):
     outward = left - sum(
         held[:, each[turn] <= float(one.forming_gap)].sum(axis=1) for one, held in bonds
     )
-    captured = outward[: turn - 5].min() < 0.0
-    return captured, 0.0 if captured else np.sqrt(max(outward[0], 0.0) / inward[0]), places[turn]
+    at = int(np.argmin(np.abs(places - end)))
+    captured = outward[at : turn - 5].min() < 0.0
+    kept = 0.0 if captured else np.sqrt(max(outward[at], 0.0) / inward[at])
+    return captured, kept, places[turn]
 
 
 @pytest.mark.parametrize("name", long_but([*LAWS][2:], "jkr, wet"))
 @pytest.mark.parametrize("speed", [SLOW, FAST])
 def test_many_summits_are_the_sum_of_all(name, speed):
     """Some captured and some not; a bond more or less would be a hundred times what is allowed."""
-    law, weight = LAWS[name], 9.81 * MASS
+    law, weight = LAWS[name], float(HEAVY.weight)
     offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(1, 0, 16)[0][:16]
-    found = impacts(law, launched(np.full(16, speed), weight), offsets)
+    found = impacts(law, launched(np.full(16, speed)), offsets, HEAVY)
     assert np.all(np.asarray(found.within_range) < 16)
     for k, row in enumerate(offsets):
-        captured, restitution, turn = summed(law, row, speed, weight)
+        captured, restitution, turn = summed(law, row, speed, weight, float(found.end[k]))
         assert bool(found.captured[k]) == captured
         assert float(found.restitution[k]) == pytest.approx(restitution, abs=1e-6)
         assert float(found.closest_approach[k]) == pytest.approx(turn, abs=8e-13)
@@ -114,7 +121,7 @@ def test_many_summits_are_the_sum_of_all(name, speed):
 
 def test_dry_elastic_summits_lose_nothing():
     offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(2, 0, 16)[0]
-    found = impacts(LAWS["dry"], launched(np.full(256, FAST), 9.81 * MASS), offsets)
+    found = impacts(LAWS["dry"], launched(np.full(256, FAST)), offsets, HEAVY)
     np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
     assert not np.any(found.captured)
     assert found.lost.shape == (256, 0)
@@ -164,15 +171,15 @@ def test_a_body_with_as_many_summits_as_were_given_says_so():
 
 def test_twice_as_many_separations_find_the_same(monkeypatch):
     """Neither a turning point nor the least energy is missed."""
-    from asperity.dynamics import single_impact
+    from asperity.dynamics import single_impact, summit_path
 
     law, table = LAWS["jkr, wet"], asperity_table([LAWS["jkr, wet"]], 1e-11)
     offsets = jnp.asarray(GaussianField(RADIUS, 2e13, 1.2e-9).summits(4, 0, 16)[0])
-    launches = launched(np.full(256, SLOW), 9.81 * MASS)
-    found = impacts(law, launches, offsets)
-    monkeypatch.setattr(single_impact, "_SHARES", np.linspace(0.0, 1.0, 257))
+    launches = launched(np.full(256, SLOW))
+    found = impacts(law, launches, offsets, HEAVY)
+    monkeypatch.setattr(summit_path, "_SHARES", np.linspace(0.0, 1.0, 257))
     finer = single_impact.Program(single_impact._impacts, {"xla_cpu_use_fusion_emitters": True})
-    again = finer(table, launches, offsets, jnp.zeros(offsets.shape, jnp.int32))
+    again = finer(table, HEAVY, launches, offsets, jnp.zeros(offsets.shape, jnp.int32))
     assert 0.05 < np.mean(found.captured) < 0.95
     np.testing.assert_array_equal(found.captured, again.captured)
     np.testing.assert_allclose(found.restitution, again.restitution, rtol=1e-12)

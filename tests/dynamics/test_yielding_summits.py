@@ -9,7 +9,9 @@ import asperity
 from asperity._jax import jax, jnp
 from asperity.config import load
 from asperity.contact.asperity_table import asperity_table
-from asperity.dynamics.single_impact import Launch, Yielding, single_impacts
+from asperity.dynamics import Body
+from asperity.dynamics.single_impact import Yielding, single_impacts
+from asperity.dynamics.summit_path import Launch
 from asperity.interface.summit_field import GaussianField
 from asperity.laws import Dmt, Meniscus
 from asperity.laws.law import Sum, as_float64
@@ -35,12 +37,12 @@ def impacts(contact, law, speeds, offsets, before=np.inf):
     offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - offsets.shape[1])), constant_values=-1.0)
     some = np.minimum(np.arange(BODIES), count - 1)
     speeds, before = (np.broadcast_to(x, count)[some] for x in (speeds, before))
-    launches = Launch(0.5 * MASS * speeds**2, np.full(BODIES, np.inf), np.zeros(BODIES))
+    launches = Launch(0.5 * MASS * speeds**2, np.full(BODIES, np.inf))
     contact = jax.tree_util.tree_map(as_float64, contact)
     kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
     found = single_impacts(
-        asperity_table([law], 1e-11, contact), launches, jnp.asarray(offsets[some]), kinds, True,
-        Yielding(contact, jnp.asarray(before)),
+        asperity_table([law], 1e-11, contact), Body(MASS, 0.0, 0.0), launches,
+        jnp.asarray(offsets[some]), kinds, True, Yielding(contact, jnp.asarray(before)),
     )  # fmt: skip
     return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[:count], found)
 

@@ -1,15 +1,21 @@
 """Single bodies and the mean field: they differ as one over the number of summits that touch."""
 
 import dataclasses
+from functools import partial
 
 import numpy as np
 import pytest
 
 import asperity
+from asperity._jax import jax, jnp
 from asperity.config import load
 from asperity.config.resolve import resolve
-from asperity.dynamics.single_impact import Launch
+from asperity.dynamics.damped_summits import damped_kinetic_apart
+from asperity.dynamics.gas_film import SqueezeFilm
+from asperity.dynamics.summit_path import Launch
+from asperity.integration import integrate, silently
 from asperity.model import build
+from asperity.results.conversion import measured
 from asperity.single_bodies import SingleBodies
 from chosen import long_but
 from test_single_bodies import CASE, PLACED
@@ -31,7 +37,7 @@ def launched(density, count, text=FAST):
     bodies = SingleBodies(problem, 0.0)
     bodies.field = dataclasses.replace(bodies.field, density=density * bodies.field.density)
     energy = density * 0.5 * float(problem.body.mass) * SPEED**2
-    launches = Launch(np.full(count, energy), np.full(count, np.inf), np.zeros(count))
+    launches = Launch(np.full(count, energy), np.full(count, np.inf))
     return bodies.impacts(launches, with_pull_off=False)
 
 
@@ -94,3 +100,34 @@ def test_on_a_half_space_summits_feel_one_another(on_half_space):
     assert np.mean(coupled.closest_approach) < np.mean(alone.closest_approach)
     assert -0.01 < np.sum(coupled.interaction) / np.sum(coupled.lost) < -1e-5
     assert not np.any(alone.interaction)
+
+
+GAS = FAST.replace("[impact]", '[impact]\nrelease_separation = "30 nm"') + (
+    '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"\n'
+)
+
+
+def test_a_mean_in_air_is_that_of_many_summits():
+    """With ten times the summits, mass and drag, where the forces of the mean field end.
+
+    The film takes a quarter of what is lost. Beyond their last forces bodies coast there and back.
+    """
+    solution = integrate(build(resolve(load(GAS.replace(PLACED, "")))), silently)
+    mean = measured(solution)
+    problem = build(resolve(load(GAS)))
+    body, (film,) = problem.body, problem.body.drags
+    dense = SqueezeFilm(film.radius, 10.0 * film.viscosity, film.slip_length, film.closest)
+    heavy = dataclasses.replace(body, mass=10.0 * body.mass, drags=(dense,))
+    bodies = SingleBodies(problem._replace(body=heavy), 0.0)
+    bodies.field = dataclasses.replace(bodies.field, density=10.0 * bodies.field.density)
+    energy = 0.5 * float(heavy.mass) * SPEED**2
+    found = bodies.impacts(Launch(np.full(512, energy), np.full(512, 30e-9)), with_pull_off=False)
+    one = partial(damped_kinetic_apart, dataclasses.replace(heavy, release=0.0, speed=0.0))
+    left = jnp.asarray(found.impact_energy * found.restitution**2)
+    out = jax.jit(jax.vmap(one, (0, 0, None)))(left, jnp.asarray(found.end), mean.contact_end)
+    squares = np.asarray(out) / float(one(energy, jnp.asarray(30e-9), mean.contact_end))
+    touching = np.mean(found.contacting)
+    apart = touching * (np.mean(squares) - float(mean.restitution[0]) ** 2)
+    scatter = touching * np.std(squares) / np.sqrt(512)
+    assert touching > 70.0
+    assert apart == pytest.approx(-0.35, abs=0.05 + 3.0 * scatter)

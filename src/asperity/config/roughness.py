@@ -184,10 +184,7 @@ class Roughness(Table):
         others = {
             "capillary.model": case.capillary.model == "kelvin-filling",
             "capillary.formation_time": bool(case.capillary.formation_time),
-            "waves.model": acts(case.waves),
             "viscoelasticity.model": acts(case.viscoelasticity),
-            "gas": case.gas is not None,
-            "suspension": case.suspension is not None,
             "publication": case.publication is not None,
         }
         found = [
@@ -195,6 +192,16 @@ class Roughness(Table):
             for key, there in others.items()
             if there
         ]
+        slowing = {
+            "[gas]": case.gas is not None,
+            "[waves]": acts(case.waves),
+            "`damping`": case.suspension is not None and bool(case.suspension.damping),
+        }
+        if case.counterface.deformation == "half-space" and any(slowing.values()):
+            named = next(name for name, there in slowing.items() if there)
+            rule = f"must be 'rigid' with single bodies (`placement`) that {named} slows"
+            key = "counterface.deformation"
+            found.append(InputError(f"`deformation` {rule}; got 'half-space'", key=key))
         if self.placement == "measured" and acts(case.plasticity):
             rule = "`placement` must be 'random' with [plasticity], whose tips are all alike"
             found.append(InputError(f"{rule}; got 'measured'", key="roughness.placement"))
@@ -204,10 +211,7 @@ class Roughness(Table):
 _BESIDE = {
     "capillary.model": "`model` must not be 'kelvin-filling'",
     "capillary.formation_time": "`formation_time` must be absent",
-    "waves.model": "`model` must be 'none' in [waves]",
     "viscoelasticity.model": "`model` must be 'none' in [viscoelasticity]",
-    "gas": "a [gas] table must be absent",
-    "suspension": "a [suspension] table must be absent",
     "publication": "a [publication] table must be absent",
 }
-_NO_OTHER = "they have the contact, adhesion and menisci of their summits alone"
+_NO_OTHER = "they are not solved with it"

@@ -10,8 +10,8 @@
 `time_stepping`, `time_collocation`) and on `viscoelastic` half-spaces.
 `stepped_record`: the records of such motions.
 `curve_table`, `scanning_table`: force curves as Chebyshev polynomials.
-`single_impact`, `coupled_impact`, `coupled_path`: first impacts of single bodies, on a rigid bulk
-and on a half-space.
+`single_impact` (by `summit_path`, with drag `damped_summits`), `coupled_impact`, `coupled_path`:
+first impacts of single bodies, on a rigid bulk and on a half-space.
 `static_equilibrium`, `release`, `unloading`, `quasi_static`, `jumps`, `capture_edges`: single
 questions to the curves.
 """

@@ -9,9 +9,11 @@ from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, influence_between
 from ..contact.pressed_summits import PressedSummits
 from ..laws.law import Real
-from ..numerics.compilation import OPTIMISED, Program
+from ..numerics.compilation import Program
 from .coupled_path import follow
-from .single_impact import Launch, SingleImpact, rigid_approach, top_of
+from .record import Body
+from .single_impact import SingleImpact
+from .summit_path import Launch, SummitPath, arrive, end_of, kinetic_apart, top_of
 
 
 class Bulk(NamedTuple):
@@ -34,6 +36,7 @@ class Bulk(NamedTuple):
 
 def _coupled_impact(
     table: Asperities,
+    body: Body,
     launch: Launch,
     offsets: jax.Array,
     classes: jax.Array,
@@ -45,36 +48,44 @@ def _coupled_impact(
     summits = table.of(classes)
     top = top_of(summits, launch, offsets)
     # Contacts are about as wide as those of a rigid body that comes with the same energy.
-    rigid = rigid_approach(PressedSummits(summits), launch, offsets, top)
-    depth = jnp.where(jnp.isfinite(rigid), jnp.maximum(offsets - rigid, 0.0), 0.0)
+    rigid = arrive(body, SummitPath(PressedSummits(summits), offsets), launch, top)
+    deepest = rigid.turning_point
+    depth = jnp.where(jnp.isfinite(deepest), jnp.maximum(offsets - deepest, 0.0), 0.0)
     influence = influence_between(positions, jnp.sqrt(tips[classes] * depth), modulus)
     coupled = CoupledSummits.on(summits, offsets, influence, depth > 0.0)
-    begin = jnp.where(jnp.isfinite(launch.release), launch.release, top)
-    before = launch.kinetic + launch.weight * (begin - top)
-    end = follow(coupled, launch.weight, top, before, depth[0])
-    after, turn = end.last.kinetic, end.at_turn
-    captured = jnp.minimum(end.least, after) < 0.0
+    path = follow(coupled, body.load, top, jnp.where(rigid.met, rigid.before, jnp.nan), depth[0])
+    turn, end = path.at_turn, end_of(summits, offsets, path.bonded_at_turn, top)
+    begin = end_of(summits, offsets, jnp.zeros_like(path.bonded_at_turn), top)
+    met = rigid.met & (deepest < begin)
+    before, after = (
+        kinetic_apart(body, each, top, end) for each in (rigid.before, path.last.kinetic)
+    )
+    captured = (jnp.minimum(path.least, after) < 0.0) & met
+    kept = jnp.where(met, jnp.sqrt(jnp.maximum(after, 0.0) / before), 1.0)
     squares = jnp.sum(turn.forces**2)
     tabulated = jnp.min(turn.gaps - summits.gap_of_border(0)) >= 0.0
+    turning_point = jnp.where(path.arrived & tabulated, path.turning_point, jnp.nan)
     return SingleImpact(
-        closest_approach=jnp.where(end.arrived & tabulated, end.turning_point, jnp.nan),
+        closest_approach=jnp.where(rigid.met, turning_point, top),
         captured=captured,
-        impact_energy=before,
-        restitution=jnp.where(captured, 0.0, jnp.sqrt(jnp.maximum(after, 0.0) / before)),
+        impact_energy=jnp.where(met, before, 0.0),
+        restitution=jnp.where(captured, 0.0, kept),
         contacting=jnp.sum(turn.gaps < 0.0).astype(float),
         maximum_force=turn.force,
         loaded=turn.force**2 / jnp.where(squares > 0.0, squares, 1.0),
-        bonds=jnp.sum(end.bonded_at_turn, axis=1).astype(float),
-        lost=end.lost,
-        interaction=end.freed - jnp.sum(end.lost),
-        pull_off=end.tension,
-        unsolved=(~end.sound).astype(float),
+        bonds=jnp.sum(path.bonded_at_turn, axis=1).astype(float),
+        lost=path.lost,
+        interaction=path.freed - jnp.sum(path.lost),
+        pull_off=path.tension,
+        end=end,
+        unsolved=(~path.sound).astype(float),
         within_range=jnp.sum(turn.gaps <= summits.approach_range),
     )
 
 
 def _impacts(
     table: Asperities,
+    body: Body,
     launches: Launch,
     offsets: jax.Array,
     classes: jax.Array,
@@ -83,13 +94,13 @@ def _impacts(
     def one(job: tuple[Launch, jax.Array, jax.Array, jax.Array]) -> SingleImpact:
         launch, offsets, classes, positions = job
         return _coupled_impact(
-            table, launch, offsets, classes, positions, bulk.tip_radii, bulk.modulus
+            table, body, launch, offsets, classes, positions, bulk.tip_radii, bulk.modulus
         )
 
     return jax.lax.map(one, (launches, offsets, classes, bulk.positions))
 
 
-coupled_impacts = Program(_impacts, OPTIMISED)
+coupled_impacts = Program(_impacts)
 """First impacts of many bodies on a half-space.
 
 By the arguments of :data:`~asperity.dynamics.single_impact.single_impacts`, and the

@@ -13,7 +13,7 @@ import numpy as np
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, SummitEquilibrium
-from ..laws.law import Real
+from .external_forces import Load
 
 _CLOSE = 1e-10  # of the shortest length of a law: how near a bond is to its change
 _LENGTH = 0.1  # of the depth of the first summit: over which forces change
@@ -82,7 +82,7 @@ class _Motion(NamedTuple):
     """A body that comes by ``top`` with an ``energy``, and goes by steps of about a ``length``."""
 
     coupled: CoupledSummits
-    weight: Real
+    load: Load
     top: jax.Array
     energy: jax.Array
     stored: jax.Array
@@ -95,14 +95,14 @@ class _Motion(NamedTuple):
 
     def point(self, separation: jax.Array, state: SummitEquilibrium, freed: jax.Array) -> _Point:
         done = state.energy + freed - self.stored
-        kinetic = self.energy + self.weight * (self.top - separation) - done
+        kinetic = self.energy - self.load.potential_gain(self.top, separation - self.top) - done
         return _Point(separation, kinetic, state.force)
 
     def choose(self, path: Path, here: _Point) -> _Choice:
         """By the separations left to each change of a bond, to the turning point, to the end."""
         ahead, close = _ahead(path), self.close
         bonds = _left_to_bonds(self.coupled.summits, path.state, path.bonded, ahead)
-        slope = here.force - self.weight
+        slope = here.force - self.load.force(path.separation)
         spent = jnp.where(here.kinetic > 0.0, jnp.inf, -jnp.inf)
         to_turn = jnp.where(slope > 0.0, here.kinetic / jnp.where(slope > 0.0, slope, 1.0), spent)
         to_end = jnp.maximum(self.top - path.separation, 0.0)
@@ -176,7 +176,7 @@ class _Motion(NamedTuple):
         missed = jnp.where(choice.good, path.missed, path.separation)
         begun = jnp.where(outward, jnp.inf, -jnp.inf)
         counted = choice.good & path.outward & (here.separation > path.last.separation)
-        least = _least_between(path.last, here, self.weight)
+        least = _least_between(path.last, here, self.load)
         tension = -jnp.minimum(path.last.force, here.force)
         summits = self.coupled.summits
         return Path(
@@ -225,17 +225,19 @@ def _left_to_bonds(
     return jnp.where(rate > 0.0, left / jnp.where(rate > 0.0, rate, 1.0), missed)
 
 
-def _least_between(start: _Point, end: _Point, weight: Real) -> jax.Array:
+def _least_between(start: _Point, end: _Point, load: Load) -> jax.Array:
     """The least kinetic energy [J] between two points, by the cubic through both."""
     t, width = _BETWEEN, end.separation - start.separation
-    slope, end_slope = (width * (point.force - weight) for point in (start, end))
+    slope, end_slope = (
+        width * (point.force - load.force(point.separation)) for point in (start, end)
+    )
     ends = start.kinetic * (1.0 + 2.0 * t) * (1.0 - t) ** 2
     ends = ends + end.kinetic * t**2 * (3.0 - 2.0 * t)
     return jnp.min(ends + slope * t * (1.0 - t) ** 2 - end_slope * t**2 * (1.0 - t))
 
 
 def follow(
-    coupled: CoupledSummits, weight: Real, top: jax.Array, energy: jax.Array, depth: jax.Array
+    coupled: CoupledSummits, load: Load, top: jax.Array, energy: jax.Array, depth: jax.Array
 ) -> Path:
     """A body down to its turning point and out again.
 
@@ -243,8 +245,8 @@ def follow(
     ----------
     coupled
         Its summits.
-    weight
-        Its weight [N].
+    load
+        What presses it towards the surface.
     top
         Separation at which it comes, and beyond which nothing is felt [m].
     energy
@@ -257,7 +259,7 @@ def follow(
     The end of its path; without ``arrived`` where that was not found.
     """
     length = jnp.maximum(coupled.summits.scale[0], _LENGTH * depth)
-    motion = _Motion(coupled, weight, top, energy, jnp.zeros(()), length)
+    motion = _Motion(coupled, load, top, energy, jnp.zeros(()), length)
     start = motion.start()
     motion = motion._replace(stored=start.state.energy)
     return jax.lax.while_loop(lambda path: ~path.arrived & (path.steps < _MOST), motion.step, start)

@@ -8,7 +8,7 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..numerics.roots import fixed_point, root_between
-from .drag import DampedPiece, move_on
+from .drag import Piece, PieceMotion, move_on
 from .record import Body
 
 _MEAN = 0.75  # of the speed, on the way to nothing: 2/3 by a constant force
@@ -17,8 +17,13 @@ _SEARCH = 80  # steps towards a turning point, at most
 
 
 @eqx.filter_custom_jvp
-def turning_place(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Array:
-    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m].
+def turning_place(body: Body, piece: Piece, kinetic: jax.Array) -> jax.Array:
+    """Where on a piece, entered with a kinetic energy [J], that energy is spent [m]."""
+    return turn_on(body, piece, kinetic)[0]
+
+
+def turn_on(body: Body, piece: Piece, kinetic: jax.Array) -> tuple[jax.Array, PieceMotion]:
+    """The same, and the motion until there.
 
     From a place before it, where the body still moves, by the forces' energy, which is known
     beyond, and the drag's, as it would be if the speed fell to nothing by a constant force, and
@@ -28,7 +33,7 @@ def turning_place(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Arr
     close = 4e-15 * jnp.maximum(jnp.abs(piece.enter), jnp.abs(piece.leave))
 
     def step(carry: Any) -> Any:
-        inside, outside, place = carry
+        inside, outside, place, until = carry
         moved = move_on(body, piece, kinetic, place)
         alive = moved.passed
         inside, outside = jnp.where(alive, place, inside), jnp.where(alive, outside, place)
@@ -46,11 +51,13 @@ def turning_place(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Arr
         part = jnp.where(alive, _NEARLY, 0.5)  # it moves on nearly to the end, or there by halves
         target = jnp.where(turns, target, inside + part * (outside - inside))
         outside = jnp.where(there, inside, outside)
-        return (inside, outside, target), jnp.abs(outside - inside)
+        until = jax.tree_util.tree_map(lambda a, b: jnp.where(alive, a, b), moved, until)
+        return (inside, outside, target, until), jnp.abs(outside - inside)
 
     middle = 0.5 * (piece.enter + piece.leave)
-    (inside, _, _), _ = fixed_point(step, (piece.enter, piece.leave, middle), close, _SEARCH)
-    return inside
+    start = piece.enter, piece.leave, middle, PieceMotion.none(body, kinetic)
+    (inside, _, _, until), _ = fixed_point(step, start, close, _SEARCH)
+    return inside, until
 
 
 @turning_place.def_jvp
@@ -59,7 +66,7 @@ def _turning_place_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Arra
     body, piece, _ = primals
     place = turning_place(*primals)
 
-    def spent(body: Body, piece: DampedPiece, kinetic: jax.Array) -> jax.Array:
+    def spent(body: Body, piece: Piece, kinetic: jax.Array) -> jax.Array:
         return move_on(body, piece, kinetic, place).kinetic
 
     _, change = eqx.filter_jvp(spent, primals, tangents)

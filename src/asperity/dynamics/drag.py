@@ -8,7 +8,7 @@ piece, by Newton's method, one piece after the other.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -94,6 +94,31 @@ class PieceMotion(NamedTuple):
         return cls(still, still, taken, jnp.zeros(()), drags, kinetic, jnp.asarray(True), kinetic)
 
 
+class Piece(Protocol):
+    """A piece of a way, whose forces are known at every place of it."""
+
+    @property
+    def enter(self) -> jax.Array:
+        """Where the body enters it [m]."""
+
+    @property
+    def leave(self) -> jax.Array:
+        """Where it leaves it [m]."""
+
+    @property
+    def ahead(self) -> jax.Array:
+        """1 outwards, -1 inwards, 0 for an empty piece."""
+
+    def energy(self, places: jax.Array, load: Load) -> jax.Array:
+        """What contact and load add to the kinetic energy from the entry to there [J]."""
+
+    def push(self, place: jax.Array, load: Load) -> jax.Array:
+        """Force of contact and load at a place [N], positive apart."""
+
+    def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
+        """Each drag [N s/m] at places [m] and about these speeds [m/s], (drags, places)."""
+
+
 class DampedPiece(NamedTuple):
     """One of :class:`Pieces`, with the integral of its force, and that up to its entry [J]."""
 
@@ -118,16 +143,13 @@ class DampedPiece(NamedTuple):
         )  # fmt: skip
 
     def energy(self, places: jax.Array, load: Load) -> jax.Array:
-        """What contact and load add to the kinetic energy from the entry to there [J]."""
         gain = chebyshev_sum(self.integral, local(self.low, self.high, places)) - self.entry
         return gain - load.potential_gain(self.enter, places - self.enter)
 
     def push(self, place: jax.Array, load: Load) -> jax.Array:
-        """Force of contact and load at a place [N], positive apart."""
         return chebyshev_sum(self.force, local(self.low, self.high, place)) - load.force(place)
 
     def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
-        """Each drag [N s/m] at places [m] and about these speeds [m/s], (drags, places)."""
         x = local(self.low, self.high, places)
         width = self.high - self.low
         rate = jnp.where(width > 0.0, 2.0 / jnp.where(width > 0.0, width, 1.0), 0.0)
@@ -138,11 +160,10 @@ class DampedPiece(NamedTuple):
 
     @property
     def ahead(self) -> jax.Array:
-        """1 outwards, -1 inwards, 0 for an empty piece."""
         return jnp.sign(self.leave - self.enter)
 
 
-def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array) -> PieceMotion:
+def move_on(body: Body, piece: Piece, kinetic: jax.Array, stop: jax.Array) -> PieceMotion:
     """From where a piece is entered with a kinetic energy [J] to ``stop`` [m]."""
     span = stop - piece.enter
     places = piece.enter + span * SHARES
@@ -183,7 +204,7 @@ def move_on(body: Body, piece: DampedPiece, kinetic: jax.Array, stop: jax.Array)
 
 def _missed_time(
     body: Body,
-    piece: DampedPiece,
+    piece: Piece,
     ends: tuple[jax.Array, jax.Array],
     energies: jax.Array,
     stop: jax.Array,

@@ -71,7 +71,8 @@ class Body(eqx.Module):
 
     def resistances(self, along: Along) -> jax.Array:
         """Each drag's force over speed [N s/m] along a way, shape (drags, ...)."""
-        return jnp.stack([drag.resistance(along) for drag in self.drags])
+        each = [drag.resistance(along) for drag in self.drags]
+        return jnp.stack(each) if each else jnp.zeros((0, *along.central.shape))
 
     @property
     def weight(self) -> jax.Array:

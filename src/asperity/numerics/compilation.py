@@ -61,10 +61,6 @@ AT_ONCE: Options = {**QUICKLY, "xla_backend_optimization_level": 0}
 """Options for a third less still, for what takes longer to compile than to run many times."""
 
 
-OPTIMISED: Options = {"xla_backend_optimization_level": 3}
-"""Options for what runs far longer than it compiles; they hold whatever ``XLA_FLAGS`` says."""
-
-
 def kept(record: type[Record]) -> type[Record]:
     """Register a named tuple that the answers of kept programs are made of."""
     name = f"{record.__module__}.{record.__qualname__}"
@@ -84,7 +80,7 @@ class Program(Generic[P, Answer]):
         A function that JAX can trace. Its answer is made of arrays, tuples and records that
         :func:`kept` knows.
     options
-        XLA's options, but for those that ``XLA_FLAGS`` names in the environment; see `OPTIMISED`.
+        XLA's options, but for those that ``XLA_FLAGS`` names in the environment.
     """
 
     def __init__(
@@ -94,7 +90,7 @@ class Program(Generic[P, Answer]):
     ) -> None:
         self._function = function
         flags = os.environ.get("XLA_FLAGS", "").split()
-        asked = {flag.lstrip("-").partition("=")[0] for flag in flags if options is not OPTIMISED}
+        asked = {flag.lstrip("-").partition("=")[0] for flag in flags}
         self._options = {name: value for name, value in options.items() if name not in asked}
         self._held: OrderedDict[Any, _Held] = OrderedDict()
         self._lock = threading.Lock()

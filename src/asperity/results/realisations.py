@@ -14,7 +14,7 @@ QUANTILES = (0.1, 0.5, 0.9)
 """Shares of the bodies below the quantiles that are given."""
 
 KINDS = {
-    "restitution": ("1", "coefficient of restitution, 0 where captured"),
+    "restitution": ("1", "coefficient of restitution, 0 where captured, 1 where no summit is met"),
     "contacting": ("1", "summits in contact at the turning point"),
     "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2"),
     "maximum_force": ("N", "contact force there"),
@@ -38,7 +38,8 @@ class Realisations:
     values : dict of str to numpy.ndarray
         What is known of each, by the names of `KINDS`; as long as ``captured``.
     lost : dict of str to numpy.ndarray
-        Energy [J] that it has lost once all bonds are broken, by mechanism; likewise.
+        Energy [J] that it has lost once all bonds are broken and its forces end, by mechanism;
+        likewise.
     first : dict of str to numpy.ndarray
         The summits within range of the first body at its turning point: "x" and "y", their
         coordinates from its axis, and their "gap" [m].

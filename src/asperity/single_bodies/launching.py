@@ -16,8 +16,11 @@ from ..contact.asperity_table import Asperities, asperity_table
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
+from ..dynamics.damped_summits import flights
 from ..dynamics.problem import Problem
-from ..dynamics.single_impact import Launch, SingleImpact, Yielding, single_impacts
+from ..dynamics.record import Body
+from ..dynamics.single_impact import SingleImpact, Yielding, single_impacts
+from ..dynamics.summit_path import Launch
 from ..errors import InputError, SimulationError
 from ..integration.batch_motion import RELEASE_KEY
 from ..interface.plastic_interface import PLASTIC
@@ -37,7 +40,8 @@ _BELOW = 5.0  # rms heights that the turning point of a body may lie below that 
 _FIRST = 16  # summits of each body, at least
 _SCATTER = 4.0  # standard deviations that their number may lie above the expected one
 _FEWER = 8  # times as few are within range where fewer are taken from then on
-_DEEPER = 2.0  # times the energy at the release, to which an asperity is tabulated
+_SHARES = np.linspace(0.0, 1.0, 33)  # of a fall: where a spring may have given most
+_DEEPER = 2.0  # times the energy that a body brings, to which an asperity is tabulated
 
 
 def _lengths_of(interface: RoughPlanes) -> tuple[jax.Array, jax.Array]:
@@ -83,7 +87,10 @@ class SingleBodies:
             law = plastic_law(inputs, inputs.structure.plasticity)
             self._contact = jax.tree_util.tree_map(as_float64, law)
             names.append(PLASTIC)
-        self.mechanisms = tuple(names)
+        body = problem.body
+        # Without what a motion of the mean starts from, and where: one program serves all.
+        self._body = Body(body.mass, body.gravity, 0.0, drags=body.drags, forces=body.forces)
+        self.mechanisms = (*names, *self._body.mechanisms)
         self._seed = inputs.placement.seed
         self._table: tuple[float, Asperities] | None = None
         self._felt = self._range
@@ -169,6 +176,29 @@ class SingleBodies:
         )
         return joined
 
+    def flights(self, starts: np.ndarray, kinetic: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bodies that leave their summits, until they come back.
+
+        Parameters
+        ----------
+        starts
+            Where forces end [m], shape (bodies,).
+        kinetic
+            Kinetic energies there [J].
+
+        Returns
+        -------
+        Kinetic energies [J] with which they are there again, and times [s]: NaN and infinite for
+        those that do not come back.
+        """
+        body = self._body.plain
+        if self._body.damped or self._body.forces:
+            back, time = flights(self._body, as_float64(starts), as_float64(kinetic))
+            return np.asarray(back), np.asarray(time)
+        if not body.weight > 0.0:
+            return np.full(kinetic.shape, np.nan), np.full(kinetic.shape, np.inf)
+        return kinetic, 2.0 * np.sqrt(2.0 * kinetic * body.mass) / body.weight
+
     def first(self, found: SingleImpact) -> dict[str, np.ndarray]:
         """The first body on its summits, as in :class:`Realisations`; ``found`` for all."""
         turning_point, count = float(np.asarray(found.closest_approach)[0]), self._count
@@ -182,8 +212,12 @@ class SingleBodies:
 
     def _tabulated(self, launches: Launch) -> Asperities:
         """The table of an asperity, deep enough for the energy of such bodies."""
-        fall = np.where(np.isfinite(launches.release), launches.release, 0.0)
-        energy = _DEEPER * float(np.nanmax(launches.kinetic + launches.weight * np.abs(fall)))
+        lowest = min(self._turning_point, 0.0) - _BELOW * self._rms
+        above = self._turning_point + self._range + _BELOW * self._rms
+        begin = np.where(np.isfinite(launches.release), launches.release, above)
+        falls = (lowest - begin) * _SHARES[:, None]
+        gained = np.max(-self._body.plain.load.potential_gain(begin, falls), axis=0)
+        energy = _DEEPER * float(np.nanmax(launches.kinetic + gained))
         if self._table is None or self._table[0] < energy:
             self._table = energy, asperity_table(self._laws, energy, self._contact)
             self._felt = float(np.max(np.asarray(self._table[1].approach_range)))
@@ -202,12 +236,13 @@ class SingleBodies:
         yielding = None if self._contact is None else Yielding(self._contact, as_float64(before))
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
-            _refuse_inside(launches.release, offsets[:, 0])
+            if np.all(np.isinf(before)):
+                _refuse_inside(launches.release, offsets[:, 0])
             summits = launches, as_float64(offsets), jnp.asarray(classes)
             if self._modulus is None:
-                found = single_impacts(table, *summits, with_pull_off, yielding)
+                found = single_impacts(table, self._body, *summits, with_pull_off, yielding)
             else:
-                found = coupled_impacts(table, *summits, self._bulk(number, count))
+                found = coupled_impacts(table, self._body, *summits, self._bulk(number, count))
             found = jax.tree_util.tree_map(np.asarray, found)
             most = int(np.max(found.within_range))
             if most < count:

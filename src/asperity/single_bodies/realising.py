@@ -8,7 +8,8 @@ import numpy as np
 
 from ..dynamics import Body
 from ..dynamics.problem import Problem
-from ..dynamics.single_impact import Launch, SingleImpact
+from ..dynamics.single_impact import SingleImpact
+from ..dynamics.summit_path import Launch
 from ..integration import Report, silently
 from ..results.realisations import KINDS, Realisations
 from .launching import SingleBodies
@@ -39,7 +40,7 @@ def realise(
     problem
         What was built from a case with single bodies.
     body
-        How each is launched.
+        Where each is released, and how fast; it moves as the problem's does.
     turning_point
         Separation [m] of the first turning point of the mean over all.
     report, stop
@@ -58,7 +59,7 @@ def realise(
     report(0.9, f"{placed.realisations} single bodies")
     bodies = SingleBodies(problem, turning_point)
     plain = body.plain
-    launch = (np.ravel(x)[0] for x in (plain.kinetic, plain.release, plain.weight))
+    launch = (np.ravel(x)[0] for x in (plain.kinetic, plain.release))
     launches = Launch(*(np.full(placed.realisations, value) for value in launch))
     first = bodies.impacts(launches, stop)
     lost: dict[str, np.ndarray] = {}
@@ -70,36 +71,36 @@ def realise(
     if rebounds and placed.realisations <= FOLLOWED:
         report(0.9, "rebounds of single bodies")
         most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)
-        followed = _until_captured(bodies, body, first, most, stop)
+        followed = _until_captured(bodies, first, most, stop)
         values |= dict(zip(("rebounds", "flight_time"), followed, strict=True))
     return Realisations(np.asarray(first.captured), values, lost, bodies.first(first))
 
 
 def _until_captured(
     bodies: SingleBodies,
-    body: Body,
     first: SingleImpact,
     most: int,
     stop: threading.Event | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rebounds of each body before it is captured, and the time [s] that they take in flight.
 
-    Infinite where that takes more than ``most`` rebounds, and without weight where it leaves. A
+    Infinite where that takes more than ``most`` rebounds, and where it leaves for good. A
     rigid body falls on the same summits each time, and all their bonds are broken while it flies.
     Tips that yielded stay as the first impact left them: none that follows goes deeper.
     """
     rebounds = np.where(first.captured, 0.0, np.inf)
     flight = np.zeros(rebounds.shape)
-    weight, found, deepest = float(body.weight), first, np.asarray(first.closest_approach)
-    for made in range(1, most + 1 if weight > 0.0 else 1):
-        flying = np.isinf(rebounds)
+    found, deepest = first, np.asarray(first.closest_approach)
+    for made in range(1, most + 1):
+        kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
+        end = np.asarray(found.end)
+        kinetic, time = bodies.flights(end, kinetic)
+        kinetic = np.where(np.isinf(rebounds), kinetic, np.nan)
+        flying = np.isfinite(kinetic)
         if not np.any(flying):
             break
-        kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
-        speed = np.sqrt(2.0 * kinetic / float(body.mass))
-        flight += np.where(flying, 2.0 * speed * float(body.mass) / weight, 0.0)
-        kinetic = np.where(flying, kinetic, np.nan)
-        launches = Launch(kinetic, np.full(kinetic.shape, np.inf), np.full(kinetic.shape, weight))
+        flight += np.where(flying, time, 0.0)
+        launches = Launch(kinetic, end)
         found = bodies.impacts(launches, stop, with_pull_off=False, before=deepest)
         rebounds[flying & np.asarray(found.captured)] = made
     return rebounds, np.where(np.isinf(rebounds), np.inf, flight)

@@ -14,7 +14,8 @@ from ..config import Case
 from ..config.resolve import resolve
 from ..contact import RigidContact
 from ..dynamics.problem import Problem
-from ..dynamics.single_impact import Launch, SingleImpact
+from ..dynamics.single_impact import SingleImpact
+from ..dynamics.summit_path import Launch
 from ..integration import Report, silently
 from ..model import build
 from ..results.realisations import QUANTILES, clopper_pearson, quantiles_of
@@ -105,11 +106,11 @@ def capture_probability(
         return None
     bodies = SingleBodies(problem, turning_point)
     count = placed.realisations if most is None else min(placed.realisations, most)
-    mass, weight = float(body.mass), float(body.weight)
+    mass = float(body.mass)
 
     def launched(speed: float) -> SingleImpact:
         kinetic = np.full(count, 0.5 * mass * speed**2)
-        launches = Launch(kinetic, np.full(count, np.inf), np.full(count, weight))
+        launches = Launch(kinetic, np.full(count, np.inf))
         return bodies.impacts(launches, stop, with_pull_off=False)
 
     rows = []

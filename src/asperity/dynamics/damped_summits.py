@@ -1,0 +1,230 @@
+"""The path of a rigid body on its summits, or apart from them, that drags slow.
+
+It is cut into pieces; on each its speed is met at Gauss's points, as in
+:mod:`asperity.dynamics.drag`, with the energies of its summits as they are. Cuts lie where forces
+or energies of the highest summits step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jax import jax, jnp
+from ..numerics.compilation import Program
+from .damped_turning_point import turn_on
+from .drag import PieceMotion, move_on
+from .external_forces import Along, Load
+from .record import Body
+from .summit_path import (
+    Arrival,
+    Departure,
+    Launch,
+    Outward,
+    SummitPath,
+    arrive,
+    begin_of,
+    evenly,
+)
+
+_SHARES = np.linspace(0.0, 1.0, 9)[1:-1]  # of the way through the forces: cuts
+_CUT = 8  # of the highest summits: those whose steps of force are cuts
+_FLIGHT = np.concatenate([[0.0], 16.0 ** -np.arange(3.0, 0.0, -1.0), 1.0 - 0.25 ** np.arange(1, 8)])
+"""Cuts of a way apart from the summits, closest together at both ends, but for its end."""
+
+
+class SummitPiece(NamedTuple):
+    """A piece of a way between two separations [m], by the summits of a path; None apart."""
+
+    path: SummitPath | None
+    enter: jax.Array
+    leave: jax.Array
+
+    @property
+    def ahead(self) -> jax.Array:
+        return jnp.sign(self.leave - self.enter)
+
+    def energy(self, places: jax.Array, load: Load) -> jax.Array:
+        gained = -load.potential_gain(self.enter, places - self.enter)
+        if self.path is None:
+            return gained
+        work = jnp.vectorize(self.path.work)
+        return gained + work(self.enter) - work(places)
+
+    def push(self, place: jax.Array, load: Load) -> jax.Array:
+        force = 0.0 if self.path is None else self.path.force(place)
+        return force - load.force(place)
+
+    def drags(self, body: Body, places: jax.Array, speed: jax.Array) -> jax.Array:
+        if self.path is None or all(drag.acts_apart for drag in body.drags):
+            return body.resistances(Along.apart(places))
+        force = self.path.force
+
+        def stiffness(place: jax.Array) -> jax.Array:
+            return jax.jvp(force, (place,), (jnp.ones_like(place),))[1]
+
+        def both(place: jax.Array) -> tuple[jax.Array, jax.Array]:
+            return jax.jvp(stiffness, (place,), (jnp.ones_like(place),))
+
+        return body.resistances(Along(places, *jax.vmap(both)(places), speed))
+
+
+def damped_kinetic_apart(
+    body: Body, kinetic: jax.Array, start: jax.Array, stop: jax.Array
+) -> jax.Array:
+    """:func:`~asperity.dynamics.summit_path.kinetic_apart` with drags; 0 where these stop it."""
+    moved = move_on(body, SummitPiece(None, start, stop), kinetic, stop)
+    return jnp.where(moved.passed, moved.kinetic, 0.0)
+
+
+class Passage(NamedTuple):
+    """A body on its way over pieces, until it stops.
+
+    Attributes
+    ----------
+    kinetic
+        Kinetic energy [J] where it entered the last.
+    taken
+        Energy taken by each drag [J] until there.
+    time
+        Time until there [s].
+    piece
+        Number of the last.
+    passed
+        Whether it passed all: then ``kinetic`` and the others are of their end.
+    """
+
+    kinetic: jax.Array
+    taken: jax.Array
+    time: jax.Array
+    piece: jax.Array
+    passed: jax.Array
+
+
+def _over(
+    body: Body, path: SummitPath | None, ends: jax.Array, kinetic: jax.Array
+) -> tuple[Passage, jax.Array]:
+    """From one of the ``ends`` [m] to the next, with a kinetic energy [J] at the first.
+
+    And the kinetic energy with which each piece is entered [J].
+    """
+    start = Passage(
+        kinetic, jnp.zeros(len(body.drags)), jnp.zeros(()), jnp.asarray(0), jnp.asarray(True)
+    )
+
+    def over(now: Passage, k: jax.Array) -> tuple[Passage, jax.Array]:
+        piece = SummitPiece(path, ends[k], ends[k + 1])
+        stop = jnp.where(now.passed, piece.leave, piece.enter)
+        moved = move_on(body, piece, now.kinetic, stop)
+        on = now.passed & moved.passed
+        after = Passage(
+            jnp.where(on, moved.kinetic, now.kinetic),
+            now.taken + jnp.where(on, moved.lost, 0.0),
+            now.time + jnp.where(on, moved.duration, 0.0),
+            jnp.where(now.passed, k, now.piece),
+            on,
+        )
+        return after, now.kinetic
+
+    return jax.lax.scan(over, start, jnp.arange(ends.size - 1))
+
+
+def _turned(
+    body: Body, path: SummitPath | None, ends: jax.Array, now: Passage
+) -> tuple[jax.Array, PieceMotion]:
+    """Where on its last piece a body stops [m], and how it gets there from where it entered."""
+    return turn_on(body, SummitPiece(path, ends[now.piece], ends[now.piece + 1]), now.kinetic)
+
+
+def _apart(body: Body, start: jax.Array, stop: jax.Array) -> jax.Array:
+    """Ends of the pieces of a way apart from the summits [m]."""
+    ends = jnp.concatenate([start + (stop - start) * np.sort(_FLIGHT), stop[None]])
+    return _with_cuts(ends, [], body)
+
+
+def _with_cuts(ends: jax.Array, cuts: list[jax.Array], body: Body) -> jax.Array:
+    """Ends of pieces, descending or ascending, and besides ``cuts`` where a film thins no more."""
+    thinnest = [drag.thinnest for drag in body.drags if drag.thinnest is not None]
+    more = jnp.concatenate([ends, *cuts, jnp.asarray(thinnest)])
+    low, high = jnp.minimum(ends[0], ends[-1]), jnp.maximum(ends[0], ends[-1])
+    ahead = jnp.where(ends[-1] < ends[0], -1.0, 1.0)
+    return ahead * jnp.sort(ahead * jnp.clip(more, low, high))
+
+
+def arrive_damped(body: Body, path: SummitPath, launch: Launch, top: jax.Array) -> Arrival:
+    """The way in of a body that drags slow, by the summits of ``path``."""
+    free, summits = arrive(body, path, launch, top), path.pressed.summits
+    standing, begin = path.offsets - path.pressed.residual, begin_of(launch, top)
+    # No drag brings it deeper than it comes without one.
+    even = evenly(summits, free.turning_point, top, standing, _SHARES)
+    even = _between(free.turning_point, even, top)
+    steps = jnp.concatenate([summits.forming, jnp.zeros((1, standing.size))])
+    flight = _apart(body, begin, top)
+    ends = _with_cuts(even[::-1], _steps_at(standing, steps, even), body)
+    ends = jnp.concatenate([flight[:-1], ends])
+    now, entered = _over(body, path, ends, launch.kinetic)
+    place, moved = _turned(body, path, ends, now)
+    unknown = jnp.isnan(free.turning_point)
+    met = now.passed | (now.piece >= flight.size - 1) | unknown
+    back = SummitPiece(path, top, place).push(place, body.load) > 0.0
+    back = jnp.where(met, back, body.load.force(place) < 0.0)
+    return Arrival(
+        before=jnp.where(met, entered[flight.size - 1], 0.0),
+        turning_point=jnp.where(now.passed | unknown, free.turning_point, place),
+        kinetic=jnp.zeros(()),
+        taken=now.taken + jnp.where(now.passed, 0.0, moved.lost),
+        met=met,
+        stays=~back & ~unknown,
+    )
+
+
+def _between(start: jax.Array, inner: jax.Array, end: jax.Array) -> jax.Array:
+    return jnp.concatenate([start[None], inner, end[None]])
+
+
+def _steps_at(offsets: jax.Array, gaps: jax.Array, even: jax.Array) -> list[jax.Array]:
+    """Separations [m] where forces of the highest summits step, by their gaps, shape (steps, n).
+
+    None within the piece next to the turning point, where the body hardly moves.
+    """
+    highest = jax.lax.top_k(offsets, min(_CUT, offsets.size))[1]
+    cuts = (offsets + gaps)[:, highest].ravel()
+    return [jnp.where(cuts < even[1], even[1], cuts)]
+
+
+def leave_damped(body: Body, outward: Outward, kinetic: jax.Array) -> Departure:
+    """The way out of a body that drags slow, with a kinetic energy [J] where it turns."""
+    even = _between(outward.start, outward.even(_SHARES), outward.end)
+    touching = jnp.zeros((1, outward.recovered.size))
+    broken = jnp.concatenate([outward.ends - outward.recovered, touching])
+    ends = _with_cuts(even, _steps_at(outward.recovered, broken, even), body)
+    now, _ = _over(body, outward.path, ends, kinetic)
+    # A body that forces still push out creeps out of them where drag takes its speed.
+    last = SummitPiece(outward.path, ends[now.piece], ends[now.piece + 1])
+    pushes = [last.push(place, body.load) for place in (last.enter, last.leave)]
+    held = jnp.minimum(*pushes) <= 0.0
+    return Departure(~now.passed & held, jnp.where(now.passed, now.kinetic, 0.0), now.taken)
+
+
+def _flight(body: Body, start: jax.Array, kinetic: jax.Array) -> tuple[jax.Array, jax.Array]:
+    load = body.load
+    height = load.apex_height(start, kinetic)
+    ends = _apart(body, start, start + jnp.where(jnp.isfinite(height), height, 0.0))
+    up, _ = _over(body, None, ends, kinetic)
+    apex, moved = _turned(body, None, ends, up)
+    apex, last = jnp.where(up.passed, ends[-1], apex), jnp.where(up.passed, 0.0, moved.duration)
+    down, _ = _over(body, None, _apart(body, apex, start), jnp.zeros(()))
+    # Where drag stops it on its way down, weight or spring bring it to its summits all the same.
+    still = jnp.where(load.force(start) > 0.0, 0.0, jnp.nan)
+    back = jnp.where(down.passed, down.kinetic, still)
+    returns = jnp.isfinite(height) & (kinetic > 0.0)
+    time = up.time + last + down.time
+    return jnp.where(returns, back, jnp.nan), jnp.where(returns, time, jnp.inf)
+
+
+flights = Program(jax.vmap(_flight, (None, 0, 0)))
+"""Kinetic energies [J] with which bodies come back, and times [s]: by body, starts [m], energies.
+
+NaN and infinite for one that does not come back, 0 where drag stops one on its way back, with the
+time until there. Arrays of shape (bodies,)."""
