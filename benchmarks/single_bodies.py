@@ -1,4 +1,4 @@
-"""Single bodies: first impacts on a rigid bulk, and on a half-space beside them, in turn.
+"""Single bodies: first impacts on a rigid bulk, in air, and on a half-space, in turn.
 
 ``python -m benchmarks.single_bodies`` prints these rows alone.
 """
@@ -19,41 +19,44 @@ from asperity.single_bodies import SingleBodies
 EXAMPLE = Path(__file__).parents[1] / "examples" / "single-bodies.toml"
 SPEED = "3 mm/s"
 SPEEDS = (3e-3, 12e-3)  # m/s
-BODIES = {"rigid": 100_000, "half-space": 1000}
+BODIES = {"rigid": 100_000, "in air": 1000, "half-space": 1000}
+AIR = '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"\n'
 TURNS = 3
+_IMPACT = f'[impact]\nspeed = "{SPEED}"'
 Row = tuple[str, str, str]
 
 
-def _case(bulk: str) -> str:
+def _case(kind: str) -> str:
     """The example, with DMT's adhesion, launched with a speed."""
     kept = [row for row in EXAMPLE.read_text().splitlines() if "release_separation" not in row]
-    text = "\n".join(kept).replace('"maugis"', '"dmt"').replace('"rigid"', f'"{bulk}"')
-    return text.replace("[impact]", f'[impact]\nspeed = "{SPEED}"')
+    text = "\n".join(kept).replace('"maugis"', '"dmt"').replace("[impact]", _IMPACT)
+    if kind == "in air":
+        return text.replace("[impact]", f'{AIR}[impact]\nrelease_separation = "60 nm"')
+    return text.replace('"rigid"', f'"{kind}"')
 
 
 def rows() -> list[Row]:
     """What was measured, the figure, and its goal."""
     out = []
     for speed in SPEEDS:
-        some = {bulk: _Bodies(bulk, speed) for bulk in BODIES}
-        turns = [{bulk: bodies.seconds() for bulk, bodies in some.items()} for _ in range(TURNS)]
-        taken = {bulk: min(turn[bulk] for turn in turns) for bulk in BODIES}
-        for bulk, count in BODIES.items():
-            what = f"{count} first impacts, {bulk}, {some[bulk].contacting:.1f} summits touch"
-            out.append((what, f"{taken[bulk]:.1f} s", "10 s"))
-        each = [taken[bulk] / count for bulk, count in BODIES.items()]
-        out.append(
-            ("  a body on the half-space over one on a rigid bulk", f"{each[1] / each[0]:.0f}", "")
-        )
+        some = {kind: _Bodies(kind, speed) for kind in BODIES}
+        turns = [{kind: bodies.seconds() for kind, bodies in some.items()} for _ in range(TURNS)]
+        taken = {kind: min(turn[kind] for turn in turns) for kind in BODIES}
+        for kind, count in BODIES.items():
+            what = f"{count} first impacts, {kind}, {some[kind].contacting:.1f} summits touch"
+            out.append((what, f"{taken[kind]:.1f} s", "10 s"))
+        free, *others = (taken[kind] / count for kind, count in BODIES.items())
+        for kind, each in zip([*BODIES][1:], others, strict=True):
+            out.append((f"  a body {kind} over one that is rigid", f"{each / free:.0f}", ""))
     return out
 
 
 class _Bodies:
     """Bodies of one case that come with a speed [m/s]; compiled once they are there."""
 
-    def __init__(self, bulk: str, speed: float) -> None:
-        problem = build(resolve(asperity.config.load(_case(bulk))))
-        count = BODIES[bulk]
+    def __init__(self, kind: str, speed: float) -> None:
+        problem = build(resolve(asperity.config.load(_case(kind))))
+        count = BODIES[kind]
         kinetic = np.full(count, 0.5 * float(problem.body.mass) * speed**2)
         self._launches = Launch(kinetic, np.full(count, np.inf))
         self._bodies = SingleBodies(problem, 0.0)
