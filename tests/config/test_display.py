@@ -6,8 +6,8 @@ import re
 import numpy as np
 
 import asperity
+from asperity.amounts import amount
 from asperity.config import load
-from asperity.config.amounts import amount
 from asperity.sweeps.study.study import parse
 from fake_result import bounce, loading
 from jkr_spheres import SMOOTH

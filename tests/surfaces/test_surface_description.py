@@ -516,7 +516,6 @@ def test_figures_that_do_not_exist_are_null_and_a_verdict_says_why(heights):
     assert record["summits"]["skewness"] is None
     assert record["summit_rms_height"] is None
     assert any("too few for their statistics" in verdict for verdict in found.verdicts)
-    assert found.table()
 
 
 def test_the_description_does_not_depend_on_units_or_level():

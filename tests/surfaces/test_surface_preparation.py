@@ -477,7 +477,7 @@ def test_a_preparation_refuses_by_key(key, value):
         (-3.6e-1, "-360 mm"),
         (0.0, "0 m"),
         (np.inf, "inf m"),
-        (1e-30, "1e-15 fm"),
+        (1e-30, "1e-06 ym"),
     ],
 )
 def test_a_length_is_told_in_a_unit_that_suits_it(metres, words):

@@ -6,7 +6,7 @@ import math
 
 from pydantic import BaseModel
 
-from asperity.config.amounts import amount
+from asperity.amounts import amount
 from asperity.config.case_text import ordered, unit_of
 from asperity.config.html_table import card
 from asperity.config.tables import CaseTables

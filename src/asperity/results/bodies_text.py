@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from asperity.config.amounts import amount
+from asperity.amounts import amount
 from asperity.results.realisations import KINDS, percent, restitution_text
 
 if TYPE_CHECKING:

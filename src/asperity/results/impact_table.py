@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from asperity.config.amounts import scaled
+from asperity.amounts import scaled
 
 if TYPE_CHECKING:
     from asperity.results.result_data import ResultData

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.config.amounts import amount as amount
-from asperity.config.amounts import scaled as scaled
+from asperity.amounts import amount as amount
+from asperity.amounts import scaled as scaled
 from asperity.regimes import LAW_NAMES
 from asperity.results.bodies_text import bodies_rows
 from asperity.results.impact_table import cell_text, impact_table

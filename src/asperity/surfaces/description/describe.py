@@ -105,21 +105,6 @@ class Description:
         plain: dict[str, Any] = _plain(record)
         return plain
 
-    def table(self) -> list[tuple[str, float | None, str]]:
-        """Rows (name, value, unit) for a terminal, SI; None where a figure does not exist."""
-        record = self.as_json()
-        rows = [(name, record[key], unit) for key, name, unit in _ROWS]
-        rows += [
-            (f"moment m{order}", value, unit)
-            for order, value, unit in zip((0, 2, 4), record["moments"], _MOMENT_UNITS, strict=True)
-        ]
-        rows += _nested(record, "gaussian", "heights, ", _GAUSSIAN_ROWS)
-        rows += _nested(record, "summits", "summits, ", _SUMMIT_ROWS)
-        rows += _nested(record["summits"], "gaussian", "summit heights, ", _GAUSSIAN_ROWS)
-        rows += _nested(record, "mccool", "McCool, ", _MODEL_ROWS)
-        rows += _nested(record, "nayak", "Nayak, ", _NAYAK_ROWS)
-        return rows
-
     def _summits(self) -> dict[str, Any]:
         """Figures of the summits; those of their distribution only from ten summits up."""
         found, shape = self.summits, self.summit_heights
@@ -147,45 +132,6 @@ class Description:
         """Estimated relative errors of the counted density and radius."""
         errors = discretisation_error(self.effects)
         return dict(zip(("density", "radius"), errors, strict=True)) if errors else None
-
-
-_MOMENT_UNITS = ("m^2", "", "1/m^2")
-_ROWS = (
-    ("rms_height", "rms height", "m"),
-    ("peak_to_valley", "peak to valley", "m"),
-    ("skewness", "skewness", ""),
-    ("kurtosis", "kurtosis", ""),
-    ("missing_pixels", "missing pixels", ""),
-    ("summit_density", "summit density", "1/m^2"),
-    ("summit_radius", "summit radius", "m"),
-    ("summit_rms_height", "summit rms height", "m"),
-    ("bandwidth", "bandwidth", ""),
-)
-_GAUSSIAN_ROWS = (
-    ("statistic", "Kolmogorov-Smirnov statistic", ""),
-    ("p_value", "p-value", ""),
-    ("independent", "independent values", ""),
-)
-_SUMMIT_ROWS = (
-    ("count", "number", ""),
-    ("mean_height", "mean height", "m"),
-    ("mean_radius", "mean radius", "m"),
-    ("median_radius", "median radius", "m"),
-    ("skewness", "skewness", ""),
-    ("kurtosis", "kurtosis", ""),
-)
-_MODEL_ROWS = (
-    ("density", "summit density", "1/m^2"),
-    ("radius", "summit radius", "m"),
-    ("rms_height", "summit rms height", "m"),
-    ("mean_height", "mean summit height", "m"),
-)
-_NAYAK_ROWS = (
-    *_MODEL_ROWS,
-    ("skewness", "summit skewness", ""),
-    ("kurtosis", "summit kurtosis", ""),
-    ("curvature_correlation", "correlation of height and curvature", ""),
-)
 
 
 def describe(topography: Topography) -> Description:
@@ -244,14 +190,6 @@ def _gaussian(shape: Gaussianity | None) -> dict[str, Any]:
         "p_value": shape and shape.p_value,
         "independent": shape and shape.independent.distribution,
     }
-
-
-def _nested(
-    record: dict[str, Any], key: str, prefix: str, rows: tuple[tuple[str, str, str], ...]
-) -> list[tuple[str, float | None, str]]:
-    """Rows of a part of the record; none where the part is absent."""
-    part = record[key] or {}
-    return [(prefix + name, part[inner], unit) for inner, name, unit in rows if inner in part]
 
 
 def _plain(value: Any) -> Any:

@@ -6,9 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-_PREFIXES = {
-    -15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T",
-}  # fmt: skip
+from ...amounts import amount
 
 
 @dataclass(frozen=True)
@@ -51,9 +49,4 @@ class Step:
 
 def length(value: float) -> str:
     """A length [m] at three digits in a unit that suits it, e.g. ``35.2 nm``."""
-    if value == 0.0 or not math.isfinite(value):
-        return f"{value:g} m"
-    # A value that rounds to 1000 at three digits takes the next prefix.
-    power = 3 * math.floor(math.log10(abs(value) * 1.0005) / 3)
-    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
-    return f"{value / float(f'1e{power}'):.3g} {_PREFIXES[power]}m"
+    return amount(value, "m", 3) if math.isfinite(value) else f"{value:g} m"

@@ -10,7 +10,7 @@ _PREFIXES = {
 }  # fmt: skip
 
 
-def scaled(value: float, unit: str) -> tuple[float, str]:
+def scaled(value: float, unit: str, digits: int = 4) -> tuple[float, str]:
     """What to divide by, and the unit with its prefix, to show a value between 1 and 1000.
 
     Parameters
@@ -19,6 +19,8 @@ def scaled(value: float, unit: str) -> tuple[float, str]:
         A typical value, in ``unit``.
     unit : str
         SI unit without a prefix; an empty one takes none.
+    digits : int
+        How many are shown.
 
     Returns
     -------
@@ -27,17 +29,17 @@ def scaled(value: float, unit: str) -> tuple[float, str]:
     """
     if not unit or not math.isfinite(value) or value == 0.0:
         return 1.0, unit
-    # A value that rounds to 1000 at four digits takes the next prefix.
-    power = 3 * math.floor(math.log10(abs(value) * 1.00005) / 3)
+    # A value that rounds to 1000 takes the next prefix.
+    power = 3 * math.floor(math.log10(abs(value) * (1.0 + 0.5 * 0.1**digits)) / 3)
     power = min(max(power, -24), 12)
     return float(f"1e{power}"), _PREFIXES[power] + unit
 
 
-def amount(value: float | None, unit: str = "") -> str:
-    """A value with its unit at four digits, e.g. ``45.9 nm``; ``-`` where there is none."""
+def amount(value: float | None, unit: str = "", digits: int = 4) -> str:
+    """A value with its unit at some digits, e.g. ``45.9 nm``; ``-`` where there is none."""
     if value is None or not math.isfinite(value):
         return "-"
     if value == 0.0:
         return f"0 {unit}".strip()
-    factor, prefixed = scaled(value, unit)
-    return f"{value / factor:.4g} {prefixed}".strip()
+    factor, prefixed = scaled(value, unit, digits)
+    return f"{value / factor:.{digits}g} {prefixed}".strip()
