@@ -348,3 +348,26 @@ def test_summits_of_a_map_do_not_yield(map_file: Path):
 def test_measured_places_need_a_map():
     with pytest.raises(InputError, match="`placement` must be 'random' without `files`"):
         load(CASE.replace('"random"', '"measured"'))
+
+
+IN_AIR = """release_separation = "1 um"
+gravity = "0 m/s^2"
+[gas]
+name = "air"
+pressure = "1 bar"
+temperature = "20 degC"
+[numerics]"""
+
+
+def test_single_bodies_stand_beside_no_mean_that_gas_stops():
+    """The film alone decides, and it is the same for all; asked for, they stand still too."""
+    still = OPEN.replace("25 um", "2 um").replace("[numerics]", IN_AIR)
+    result = beside(still)
+    assert result.outcome is asperity.Outcome.STOPPED
+    assert result.realisations is None
+    asked = beside(
+        still.replace("[adhesion]", 'placement = "random"\nrealisations = 32\n[adhesion]')
+    )
+    assert asked.realisations.capture_probability == 0.0
+    assert not asked.realisations.values["restitution"].any()
+    assert np.isinf(asked.realisations.values["rebounds"]).all()

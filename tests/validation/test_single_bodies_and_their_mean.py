@@ -108,7 +108,7 @@ GAS = FAST.replace("[impact]", '[impact]\nrelease_separation = "30 nm"') + (
 
 
 def test_a_mean_in_air_is_that_of_many_summits():
-    """With ten times the summits, mass and drag, where the forces of the mean field end.
+    """With three times the summits, mass and drag, where the forces of the mean field end.
 
     The film takes a quarter of what is lost. Beyond their last forces bodies coast there and back.
     """
@@ -116,10 +116,10 @@ def test_a_mean_in_air_is_that_of_many_summits():
     mean = measured(solution)
     problem = build(resolve(load(GAS)))
     body, (film,) = problem.body, problem.body.drags
-    dense = SqueezeFilm(film.radius, 10.0 * film.viscosity, film.slip_length, film.closest)
-    heavy = dataclasses.replace(body, mass=10.0 * body.mass, drags=(dense,))
+    dense = SqueezeFilm(film.radius, 3.0 * film.viscosity, film.slip_length, film.closest)
+    heavy = dataclasses.replace(body, mass=3.0 * body.mass, drags=(dense,))
     bodies = SingleBodies(problem._replace(body=heavy), 0.0)
-    bodies.field = dataclasses.replace(bodies.field, density=10.0 * bodies.field.density)
+    bodies.field = dataclasses.replace(bodies.field, density=3.0 * bodies.field.density)
     energy = 0.5 * float(heavy.mass) * SPEED**2
     found = bodies.impacts(Launch(np.full(512, energy), np.full(512, 30e-9)), with_pull_off=False)
     one = partial(damped_kinetic_apart, dataclasses.replace(heavy, release=0.0, speed=0.0))
@@ -129,5 +129,5 @@ def test_a_mean_in_air_is_that_of_many_summits():
     touching = np.mean(found.contacting)
     apart = touching * (np.mean(squares) - float(mean.restitution[0]) ** 2)
     scatter = touching * np.std(squares) / np.sqrt(512)
-    assert touching > 70.0
+    assert touching > 20.0
     assert apart == pytest.approx(-0.35, abs=0.05 + 3.0 * scatter)

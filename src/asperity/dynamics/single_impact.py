@@ -45,13 +45,13 @@ class SingleImpact(NamedTuple):
         begin, of a body that does not come as close as that.
     captured
         Whether its kinetic energy is spent before forces end. Also of a body that drag stops on its
-        way in, unless other forces push it back; what else is known of it is of that place.
+        way in and that other forces press on; what else is known of it is of that place.
     impact_energy
         Kinetic energy [J] that it brings to where forces end on retraction, had its summits none
         before. 0 where it meets none.
     restitution
-        Square root of the ratio of what it takes from there to it; 0 where the body is captured, 1
-        where it meets no summit.
+        Square root of the ratio of what it takes from there to it; 0 where the body is captured or
+        drag stops it, 1 where it comes back without having met a summit.
     contacting
         Summits in contact at the turning point.
     maximum_force
@@ -129,7 +129,8 @@ def _impact(
     departure = (leave_damped if body.damped else leave)(body, out, arrival.kinetic)
     apart = damped_kinetic_apart if body.damped else kinetic_apart
     before = jnp.where(met, apart(body, arrival.before, top, end), 0.0)
-    captured = (departure.captured & met) | arrival.stays
+    drawn = arrival.met | (body.load.force(arrival.turning_point) > 0.0)
+    captured = (departure.captured & met) | (arrival.stays & drawn)
     after = jnp.where(met, jnp.maximum(departure.after, 0.0), before)
     kept = jnp.where(before > 0.0, jnp.sqrt(after / jnp.where(before > 0.0, before, 1.0)), ~met)
     each = inward.forces(turning_point)
@@ -141,7 +142,7 @@ def _impact(
         closest_approach=turning_point,
         captured=captured,
         impact_energy=before,
-        restitution=jnp.where(captured, 0.0, kept),
+        restitution=jnp.where(captured | arrival.stays, 0.0, kept),
         contacting=jnp.sum(gaps < 0.0).astype(float),
         maximum_force=jnp.sum(each),
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),

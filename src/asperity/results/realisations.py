@@ -14,7 +14,7 @@ QUANTILES = (0.1, 0.5, 0.9)
 """Shares of the bodies below the quantiles that are given."""
 
 KINDS = {
-    "restitution": ("1", "coefficient of restitution, 0 where captured, 1 where no summit is met"),
+    "restitution": ("1", "coefficient of restitution, 0 where captured or stopped"),
     "contacting": ("1", "summits in contact at the turning point"),
     "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2"),
     "maximum_force": ("N", "contact force there"),
