@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..numerics.compilation import Program
@@ -28,7 +29,7 @@ from .summit_path import (
     evenly,
 )
 
-_SHARES = np.linspace(0.0, 1.0, 9)[1:-1]  # of the way through the forces: cuts
+_SHARES = np.linspace(0.0, 1.0, 6)[1:-1]  # of the way through the forces: cuts
 _CUT = 8  # of the highest summits: those whose steps of force are cuts
 _FLIGHT = np.concatenate([[0.0], 16.0 ** -np.arange(3.0, 0.0, -1.0), 1.0 - 0.25 ** np.arange(1, 8)])
 """Cuts of a way apart from the summits, closest together at both ends, but for its end."""
@@ -115,8 +116,12 @@ def _over(
 
     def over(now: Passage, k: jax.Array) -> tuple[Passage, jax.Array]:
         piece = SummitPiece(path, ends[k], ends[k + 1])
-        stop = jnp.where(now.passed, piece.leave, piece.enter)
-        moved = move_on(body, piece, now.kinetic, stop)
+        active = now.passed & (piece.enter != piece.leave)
+        stop = jnp.where(active, piece.leave, piece.enter)
+        still = PieceMotion.none(body, now.kinetic)
+        moved = jax.lax.cond(
+            unvmap_any(active), lambda: move_on(body, piece, now.kinetic, stop), lambda: still
+        )
         on = now.passed & moved.passed
         after = Passage(
             jnp.where(on, moved.kinetic, now.kinetic),
