@@ -6,7 +6,6 @@ import numpy as np
 
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
-from ..errors import ENDS, Outcome
 from ..inputs import Inputs
 from .dimensionless_numbers import Regime
 from .loaded_asperities import mean_is_enough
@@ -37,9 +36,8 @@ def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
         As for :func:`asperity.regimes.validity.warnings_of`.
     """
     loaded, impacts = regime.loaded_asperities, motion.impacts
-    stopped = int(motion.end.outcome) == ENDS.index(Outcome.STOPPED)
-    if loaded is None or (stopped and not regime.contacting_asperities):
-        return False  # without asperities, or where gas keeps every body away from them
+    if not loaded:
+        return False  # without asperities, or where gas or a spring keeps bodies away from them
     energy = float(impacts.maximum_kinetic[0])
     lost = np.asarray(impacts.lost[0])[: len(names := problem.contact.mechanisms)]
     filled = problem.inputs.structure.liquid == "kelvin-filling"  # no asperity bears that liquid
