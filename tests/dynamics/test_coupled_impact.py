@@ -9,13 +9,16 @@ from scipy.optimize import brentq
 from asperity._jax import jax, jnp
 from asperity.contact.asperity_table import asperity_table
 from asperity.contact.coupled_summits import influence_between
+from asperity.dynamics import Body
 from asperity.dynamics.coupled_impact import Bulk, coupled_impacts
 from asperity.dynamics.summit_path import Launch
+from asperity.dynamics.suspension import Spring
 from asperity.interface.summit_field import GaussianField
 from asperity.laws.law import terms
 from dynamics.test_single_impact import (
     BODY,
     FAST,
+    GAP,
     HEAVY,
     LAWS,
     MASS,
@@ -94,6 +97,22 @@ def test_elastic_summits_lose_nothing(name):
     np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
     assert not np.any(found.captured)
     assert not np.any(found.interaction)
+
+
+def test_a_spring_holds_a_body_on_a_half_space_too():
+    """It has a potential: dry summits lose nothing; on a stiff bulk it is as on a rigid one."""
+    held = Body(MASS, 9.81, 0.0, forces=(Spring(5.0, 20e-9),))
+    launches, (offsets, positions) = launched(np.full(BODIES, FAST)), drawn(3)
+    found = impacts(LAWS["dry"], launches, offsets, positions, body=held)
+    np.testing.assert_allclose(found.restitution, 1.0, rtol=1e-8)
+    stiff = impacts(LAWS["dry"], launches, offsets, positions, 1e20, held)
+    rigid = all_impacts(LAWS["dry"], launches, offsets, held)
+    np.testing.assert_allclose(stiff.closest_approach, rigid.closest_approach, rtol=1e-8)
+    np.testing.assert_allclose(stiff.impact_energy, rigid.impact_energy, rtol=1e-12)
+    fall = held.weight * (GAP - rigid.end)
+    swung = 0.5 * 5.0 * ((GAP - 20e-9) ** 2 - (rigid.end - 20e-9) ** 2)
+    brought = 0.5 * MASS * FAST**2 + fall + swung
+    np.testing.assert_allclose(rigid.impact_energy, brought, rtol=1e-12)
 
 
 class Path:

@@ -12,6 +12,7 @@ from asperity.contact.asperity_table import asperity_table
 from asperity.dynamics import Body
 from asperity.dynamics.single_impact import Yielding, single_impacts
 from asperity.dynamics.summit_path import Launch
+from asperity.dynamics.suspension import Dashpot
 from asperity.interface.summit_field import GaussianField
 from asperity.laws import Dmt, Meniscus
 from asperity.laws.law import Sum, as_float64
@@ -29,9 +30,10 @@ HARDLY = Sum([Dmt(TIP, 1e-12), Meniscus(TIP, 1e-12, 0.2, 5e-10)])
 RADIUS = 25e-6  # m
 MASS = 4.0 / 3.0 * pi * RADIUS**3 * 2200.0  # kg
 BODIES, SUMMITS = 16, 16
+BODY = Body(MASS, 0.0, 0.0)
 
 
-def impacts(contact, law, speeds, offsets, before=np.inf):
+def impacts(contact, law, speeds, offsets, before=np.inf, body=BODY):
     """First impacts, or later ones of bodies that came as close before."""
     count = len(offsets)
     offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - offsets.shape[1])), constant_values=-1.0)
@@ -41,7 +43,7 @@ def impacts(contact, law, speeds, offsets, before=np.inf):
     contact = jax.tree_util.tree_map(as_float64, contact)
     kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
     found = single_impacts(
-        asperity_table([law], 1e-11, contact), Body(MASS, 0.0, 0.0), launches,
+        asperity_table([law], 1e-11, contact), body, launches,
         jnp.asarray(offsets[some]), kinds, True, Yielding(contact, jnp.asarray(before)),
     )  # fmt: skip
     return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[:count], found)
@@ -110,6 +112,25 @@ def test_losses_and_restitution_are_one_balance():
     assert lost[:, 1].min() > 0.02  # by yielding, and by menisci that flatter tips make larger:
     each = found.lost[free, 0] / found.bonds[free, 0]
     assert np.all(each > float(sum(ADHESIVE.parts[1].losses)))
+
+
+def test_a_dashpot_and_tips_that_yield_share_the_loss():
+    """One balance for each body that leaves; a dashpot of nothing takes nothing."""
+    contact = CONTACTS["kogut-etsion"]
+    offsets = GaussianField(RADIUS, 2e13, 1.2e-9).summits(3, 0, 16)[0][:16]
+    found = impacts(contact, ADHESIVE, 12e-3, offsets)
+    loose, damped = (Body(MASS, 0.0, 0.0, drags=(Dashpot(each),)) for each in (0.0, 2e-5))
+    still = impacts(contact, ADHESIVE, 12e-3, offsets, body=loose)
+    np.testing.assert_array_equal(still.captured, found.captured)
+    np.testing.assert_allclose(still.restitution, found.restitution, rtol=1e-7)
+    slowed = impacts(contact, ADHESIVE, 12e-3, offsets, body=damped)
+    free = ~slowed.captured
+    assert np.sum(free) > 8
+    kept = slowed.impact_energy * slowed.restitution**2
+    whole = (kept + slowed.lost.sum(axis=1))[free] / (0.5 * MASS * 12e-3**2)
+    np.testing.assert_allclose(whole, 1.0, rtol=1e-8)
+    assert np.all(slowed.lost[:, -1] > 0.0)
+    assert np.all(slowed.restitution[free] < found.restitution[free])
 
 
 def test_what_was_pressed_flat_yields_no_more():
