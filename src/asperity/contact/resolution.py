@@ -46,7 +46,8 @@ class Resolution(NamedTuple):
         Relative error of the curves below which more panels gain nothing.
     later
         Of the pieces, those in which rings that lag behind reach the branch; of a contact that
-        deforms half of all at most, and :data:`LATER`, where it is 0.
+        deforms half of all at most, and :data:`LATER`, where it is 0. On a rigid bulk those that
+        narrow towards the inner end, where the forces of menisci bend.
     """
 
     panels: int

@@ -127,8 +127,11 @@ class RigidContact(RoughContact):
 
     def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
         """Ends of pieces on the way from a reversal."""
-        steps = np.arange(1.0, self.resolved.pieces + 1.0) / self.resolved.pieces
-        return start + (end - start) * steps
+        narrowing = self.resolved.later
+        even = np.linspace(0.0, 1.0, self.resolved.pieces - narrowing + 1)[1:]
+        outward = np.append(even[0] * 2.0 ** -np.arange(narrowing, 0.0, -1.0), even)
+        inward = np.append(1.0 - outward[-2::-1], 1.0)
+        return start + (end - start) * jnp.where(end > start, outward, inward)
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

@@ -18,8 +18,8 @@ from .clock import Report
 
 _SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
 _RUN, _AGAIN = 0.85, 0.05  # share of the work that a run is, and that its second run counts as
-_STORED = 1e3  # times what bonds lose: more than they store between
-_RIGID = 4  # times the pieces without a bulk; 8 leave 3e-6 of constant-volume menisci, 32 1e-13
+_RIGID = 4  # times the even pieces without a bulk; 8 leave 3e-6 of some menisci, 32 1e-13
+_NARROWING = 6  # besides; without them 16 even ones leave 1.5e-5 of menisci narrower than these
 
 
 def balanced(
@@ -60,8 +60,8 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
 
     Curves are cut as the width of bonds asks for. On a soft bulk that adhesion draws out, the
     innermost rings pass from branch to branch many rms heights later, and forces of wide bonds may
-    bend within a piece. Where bonds lose far less than what is missing of the balance, their
-    scanning curves are not why.
+    bend within a piece. Where more is missing of the balance than the bonds at closest approach can
+    lose, their scanning curves are not why.
 
     Parameters
     ----------
@@ -76,14 +76,14 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     if problem.in_time or not cut or not contact.mechanisms:
         return None
     rows = motion.impacts
-    lost = np.sum(rows.lost[:, : len(contact.mechanisms)], axis=1)
-    by_bonds = _STORED * np.max(np.where(rows.made, lost, 0.0)) / rows.maximum_kinetic[0]
+    losable = np.asarray(rows.bonds) @ np.sum(motion.table.losses, axis=0)
+    by_bonds = np.max(np.where(rows.made, losable, 0.0)) / rows.maximum_kinetic[0]
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     if isinstance(contact, ElasticContact):
         pieces = max(_SOON, contact.resolved.pieces) + _LATER
         resolved = contact.resolved._replace(nodes=16, pieces=pieces, later=_LATER)
     else:
-        pieces = _RIGID * contact.resolved.pieces
-        resolved = contact.resolved._replace(nodes=16, pieces=pieces)
+        pieces = _RIGID * contact.resolved.pieces + _NARROWING
+        resolved = contact.resolved._replace(nodes=16, pieces=pieces, later=_NARROWING)
     return problem._replace(contact=dataclasses.replace(contact, resolved=resolved))
