@@ -5,11 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 import threading
-from typing import Any
+from typing import Any, NoReturn
 
 from .config import Case
 from .config.resolve import resolve
-from .contact import Contact
 from .critical_velocity import sought
 from .dynamics import Limits
 from .dynamics.problem import Problem
@@ -20,6 +19,7 @@ from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
 from .regimes.few_asperities import pull_warnings
+from .regimes.wave_limits import refuse_stopped
 from .results.assessment import Assessment, assessment_of
 from .results.case_source import CaseLike, case_of
 from .results.conversion import Solution, beside_mean, first_restitution, result_of
@@ -84,7 +84,7 @@ def solve(
         result.measures.update(sought(solution, problem, Limits.of(problem.inputs.tolerance), stop))
     report(1.0, "done")
     if solution.outcome is Outcome.FAILED and throw:
-        raise SimulationError(_failure(problem, solution.contact), result)
+        _raise_failed(problem, solution, result)
     return result
 
 
@@ -119,7 +119,7 @@ def explore(
     solution = integrate(problem, report, stop, many=True)
     result = _result(case, name, problem, solution, report, stop, most)
     if solution.outcome is Outcome.FAILED:
-        raise SimulationError(_failure(problem, solution.contact), result)
+        _raise_failed(problem, solution, result)
     if solution.trajectory is not None:  # the curve is that of menisci that have the time to form
         return result, _curve_of(case, name, problem, lambda _, text: report(0.95, text))
     motion, held = solution.motion, problem.inputs.suspension
@@ -198,15 +198,17 @@ def _result(
     return result
 
 
-def _failure(problem: Problem, contact: Contact) -> str:
-    if contact.sides > 1:
-        return (
+def _raise_failed(problem: Problem, solution: Solution, result: Result) -> NoReturn:
+    refuse_stopped(problem, solution.motion)
+    if solution.contact.sides > 1:
+        raise SimulationError(
             "a scanning curve of the contact that jumps folds itself, or its contact shrinks by "
-            "more than its mesh resolves"
+            "more than its mesh resolves",
+            result,
         )
     drags = " and ".join(drag.name for drag in problem.body.drags)
     damped = f" or is damped too strongly to be followed, by {drags}" if drags else ""
-    return f"the motion left the tabulated separations{damped}"
+    raise SimulationError(f"the motion left the tabulated separations{damped}", result)
 
 
 def curve(

@@ -136,11 +136,20 @@ class RigidContact(RoughContact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
-        stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
-        energy = stored + potential(ladder)
+        ladder, energy = self._energies(release, potential)
         level = energy[0] + kinetic
         return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
+
+    def most_gained(self, release: jax.Array, potential: Potential) -> jax.Array:
+        """The most that a body gains by falling from its release [J]: no less than 0."""
+        ladder, energy = self._energies(release, potential)
+        return energy[0] - jnp.min(jnp.where(ladder <= release, energy, energy[0]))
+
+    def _energies(self, release: jax.Array, potential: Potential) -> tuple[jax.Array, jax.Array]:
+        """Separations, the release first, and the potential energy of contact and body there."""
+        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
+        stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
+        return ladder, stored + potential(ladder)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         return rough_panels(self, low, high, self.resolved.panels)

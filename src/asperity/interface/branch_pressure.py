@@ -36,7 +36,8 @@ class BranchPressure(RoughPlanes):
         self.planes = planes
         # Apart, so that what is not read is not computed either.
         self.parts = PanelTable.through(ends, list(means.parts))
-        self.others = PanelTable.through(ends, [means.energy, *means.bonds, means.contacting])
+        others = [means.energy, *means.bonds, means.contacting]
+        self.others = PanelTable.through(ends, others, energy=0)
 
     @property
     def error(self) -> jax.Array:

@@ -119,7 +119,8 @@ class Interface(RoughPlanes):
             if law.powers(edge) is not None:
                 return None
             found = self._quadrature(number, edge, places, 0)
-            return PanelTable.through(ends, [found[name] for name in sorted(found)])
+            names = sorted(found)
+            return PanelTable.through(ends, [found[n] for n in names], names.index("energy"))
 
         each = tuple(one(k, law) for k, law in enumerate(self.laws))
         return each if any(table is not None for table in each) else ()

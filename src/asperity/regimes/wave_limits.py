@@ -8,6 +8,7 @@ from ..contact import SmoothContact, SmoothPlasticContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..dynamics.wave_radiation import shear_speed
+from ..errors import InputError
 from ..inputs import Inputs
 from .model_domain import contact_radius
 
@@ -16,6 +17,9 @@ SMALL = 0.1
 
 SPHERE_MODE = 2.64
 """Lowest spheroidal mode of a sphere [c_s/R] at a Poisson's ratio of 0.25. Lamb (1882)."""
+
+MOST = 0.5
+"""Share of a body's largest kinetic energy in waves, above which one that fails is refused."""
 
 _QUASI_STATIC = 0.25  # of that mode: a sphere that is shaken more slowly hardly rings
 
@@ -48,14 +52,46 @@ def wave_warnings(problem: Problem, elastic: float, central: float, motion: Moti
 
 def _strong(problem: Problem, motion: Motion, energy: float) -> list[str]:
     """Waves that change the motion by more than the first order tells."""
-    place = len(problem.contact.mechanisms) + problem.body.mechanisms.index("waves")
-    share = float(motion.impacts.lost[0, place]) / energy
+    share = _radiated(problem, motion) / energy
     if share <= SMALL:
         return []
     return [
         f"the first impact radiates {100 * share:.2g} % of its energy: waves are computed to first "
         "order, which is off by about as much of itself"
     ]
+
+
+def _radiated(problem: Problem, motion: Motion) -> float:
+    """Energy that the first impact radiates [J]."""
+    place = len(problem.contact.mechanisms) + problem.body.mechanisms.index("waves")
+    return float(motion.impacts.lost[0, place])
+
+
+def refuse_stopped(problem: Problem, motion: Motion) -> None:
+    """Refuse a body that could not be followed, and that waves take most of the energy of.
+
+    Parameters
+    ----------
+    problem
+        What was built from a case.
+    motion
+        The motion, which failed.
+
+    Raises
+    ------
+    InputError
+        If its waves are not to be computed to first order.
+    """
+    if not problem.inputs.structure.waves:
+        return
+    energy, radiated = float(motion.impacts.maximum_kinetic[0]), _radiated(problem, motion)
+    if radiated > MOST * energy:
+        raise InputError(
+            "[waves] must be absent where waves stop a body that attraction draws on: they take "
+            f"{radiated:.3g} J of one that has {energy:.3g} J at most, and are computed to first "
+            "order, for bodies that lose little to them",
+            key="waves.model",
+        )
 
 
 def _wide(problem: Problem, elastic: float, central: float, rate: float) -> list[str]:
