@@ -45,11 +45,9 @@ enter()
 get_ipython().run_cell_magic("console", "", {!r})"""
 
 
-@pytest.mark.parametrize(
-    "cell", ["1 / 0", CONSOLE.format("false\ntrue"), CONSOLE.format("false | true")]
-)
-def test_a_broken_example_fails_the_build(cell: str, tmp_path: Path):
-    ran = built(tmp_path, cell)
+@pytest.mark.parametrize("commands", ["false\ntrue", "false | true"])
+def test_a_broken_example_fails_the_build(commands: str, tmp_path: Path):
+    ran = built(tmp_path, CONSOLE.format(commands))
     assert ran.returncode != 0
     assert "Error" in ran.stderr
 
@@ -74,19 +72,6 @@ def test_every_public_name_is_documented():
     page = (DOCS / "api.md").read_text()
     named = set(re.findall(r"auto(?:class|function|exception):: (\w+)", page))
     assert set(asperity.__all__) <= named
-
-
-def test_commands_of_pages_that_run_are_of_the_program():
-    from typer.main import get_command
-
-    from asperity.cli import app
-
-    known = set(get_command(app).commands)  # type: ignore[attr-defined]
-    for page in DOCS.glob("*.md"):
-        cells = re.findall(r"^%%console\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
-        named = set(re.findall(r"^asperity (\S+)", "".join(cells), re.MULTILINE))
-        assert named <= known, page.name
-        assert "%%bash" not in page.read_text(), page.name  # it tells a failure by its last command
 
 
 def test_every_page_that_uses_an_example_names_one_that_is_there():

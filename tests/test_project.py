@@ -239,12 +239,16 @@ def test_first_page_shows_the_same_python_as_the_readme():
     assert readme.startswith(shown)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/cli.md"])
-def test_commands_named_in_the_pages_exist(page: str):
-    shown = "\n".join(blocks(ROOT / page, "console") + blocks(ROOT / page, "text"))
-    named = set(re.findall(r"^(?:\$ )?asperity ([\w-]+)", shown, re.MULTILINE))
-    assert named
-    assert named <= command_names()
+def test_commands_named_in_the_pages_exist():
+    """In blocks that show the terminal, and in cells that run."""
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        text = page.read_text()
+        cells = re.findall(r"^%%console\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+        shown = "\n".join(blocks(page, "console") + blocks(page, "text") + cells)
+        named = set(re.findall(r"^(?:\$ )?asperity ([\w-]+)", shown, re.MULTILINE))
+        assert named <= command_names(), page.name
+        assert named or page.name not in ("README.md", "index.md", "cli.md")
+        assert "%%bash" not in text, page.name  # it tells a failure by its last command
 
 
 def test_every_command_is_documented():
@@ -278,41 +282,22 @@ def environment_tool() -> ModuleType:
     return module
 
 
-def environment_steps(noted: dict[str, str] | None, kind: str) -> list[str]:
+def test_an_environment_is_made_or_added_to_as_far_as_it_is_stale():
     tool = environment_tool()
-    return tool.steps(noted, tool.wanted(kind))
 
+    def steps(made_for: str | None, kind: str, stale: str = "") -> list[str]:
+        noted = None if made_for is None else tool.wanted(made_for)
+        if noted is not None and stale:
+            noted = {**noted, stale: "other"}
+        return tool.steps(noted, tool.wanted(kind))
 
-def test_environment_is_made_when_missing_or_half_made():
-    assert environment_steps(None, "run") == ["make", "run", "package"]
-    assert environment_steps(None, "dev") == ["make", "dev", "package"]
-
-
-def test_environment_for_tests_serves_runs_too():
-    note = environment_tool().wanted("dev")
-    assert environment_steps(note, "dev") == []
-    assert environment_steps(note, "run") == []
-
-
-def test_environment_for_runs_is_only_added_to():
-    note = environment_tool().wanted("run")
-    assert environment_steps(note, "run") == []
-    assert environment_steps(note, "dev") == ["dev"]
-
-
-@pytest.mark.parametrize("key", ["run", "root", "python"])
-def test_stale_environment_is_made_anew(key: str):
-    note = {**environment_tool().wanted("dev"), key: "other"}
-    assert environment_steps(note, "run") == ["make", "run", "package"]
-    assert environment_steps(note, "dev") == ["make", "dev", "package"]
-
-
-def test_stale_dev_lock_concerns_tests_alone():
-    note = {**environment_tool().wanted("dev"), "dev": "other"}
-    assert environment_steps(note, "run") == []
-    assert environment_steps(note, "dev") == ["make", "dev", "package"]
-
-
-def test_changed_project_file_installs_the_package_alone():
-    note = {**environment_tool().wanted("dev"), "package": "other"}
-    assert environment_steps(note, "dev") == ["package"]
+    for kind in ("run", "dev"):
+        anew = ["make", kind, "package"]
+        assert steps(None, kind) == anew
+        assert [steps("dev", kind, key) for key in ("run", "root", "python")] == [anew] * 3
+        assert steps("dev", kind) == []  # one for tests serves runs too
+    assert steps("run", "run") == []
+    assert steps("run", "dev") == ["dev"]
+    assert steps("dev", "run", stale="dev") == []
+    assert steps("dev", "dev", stale="dev") == anew
+    assert steps("dev", "dev", stale="package") == ["package"]

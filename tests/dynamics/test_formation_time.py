@@ -3,7 +3,6 @@
 import threading
 from math import pi, radians
 
-import equinox as eqx
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -25,8 +24,10 @@ from asperity.dynamics.time_collocation import BodyState, step
 from asperity.errors import Tolerance
 from asperity.interface.interface import Interface
 from asperity.laws import ConstantVolume, Hertz, Jkr, Meniscus
+from asperity.numerics.compilation import Program
 from asperity.surfaces.heights import Gaussian
 from chosen import long_but
+from records import never_goes_back
 
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MASS = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
@@ -36,7 +37,7 @@ DROP = Body(MASS, 9.81, 120e-9)
 AIR = Body(MASS, 9.81, 120e-9, 0.0, (SqueezeFilm(RADIUS, 18.2e-6, 75e-9, SIGMA),))
 TWO = Tolerance(max_impacts=2)
 
-_prepare = eqx.filter_jit(prepare)
+_prepare = Program(prepare)
 
 
 def rough(law):
@@ -51,27 +52,34 @@ def delayed(contact, body, time, tolerance=TWO):
     )
 
 
-@eqx.filter_jit
+@jax.jit
 def at_once(contact, body):
     return simulate(contact, body, tolerance=TWO)
 
 
 TURNS = ("closest_approach", "apex", "closest_approach_time", "apex_time")
-SPHERE = Meniscus(RADIUS, 0.0728, radians(73.0), 1.05e-9)
+
+
+def sphere(tension=0.0728):
+    return Meniscus(RADIUS, tension, radians(73.0), 1.05e-9)
+
+
 CASES = {
     "rough": (rough(HERTZ + WET), DROP),
     "rough in air": (rough(HERTZ + WET), AIR),
-    "rough, adhesive": (rough(Jkr(2e-7, E, 0.05) + WET), DROP),
-    "rough, constant volume": (
-        rough(HERTZ + ConstantVolume(BETA, 0.0728, radians(20.0), 1e-9, edge=False)), DROP),
-    "smooth": (SmoothContact(Hertz(RADIUS, E) + SPHERE), Body(MASS, 9.81, 1e-6, 0.05)),
+    "rough, adhesive, constant volume": (
+        rough(Jkr(2e-7, E, 0.05) + ConstantVolume(BETA, 0.0728, radians(20.0), 1e-9, edge=False)),
+        DROP,
+    ),
+    "smooth": (SmoothContact(Hertz(RADIUS, E) + sphere()), Body(MASS, 9.81, 1e-6, 0.05)),
     "smooth, adhesive": (
-        SmoothContact(Jkr(RADIUS, E, 0.05) + SPHERE), Body(MASS, 9.81, 1e-6, 0.05)),
+        SmoothContact(Jkr(RADIUS, E, 0.05) + sphere()), Body(MASS, 9.81, 1e-6, 0.05)),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "name", long_but(["rough", "rough in air", "smooth", "smooth, adhesive"], "rough", "smooth")
+    "name",
+    long_but(["rough", "rough in air", "smooth", "smooth, adhesive"], "rough", "smooth, adhesive"),
 )
 def test_short_formation_tends_to_formation_at_once_in_proportion_to_the_time(name):
     contact, body = CASES[name]
@@ -84,44 +92,41 @@ def test_short_formation_tends_to_formation_at_once_in_proportion_to_the_time(na
         np.testing.assert_allclose(off[0], 10.0 * off[1], rtol=0.05, atol=2e-11 * np.max(exact))
 
 
-@pytest.mark.parametrize("name", ["rough", "smooth, adhesive"])
+NONE = 1e-30  # N/m, a tension that pulls nothing, so that the programs are those of wet contacts
+DRY = {
+    "rough": rough(HERTZ + Meniscus(BETA, NONE, radians(20.0), 10e-9)),
+    "smooth, adhesive": SmoothContact(Jkr(RADIUS, E, 0.05) + sphere(NONE)),
+}
+
+
+@pytest.mark.parametrize("name", DRY)
 def test_long_formation_tends_to_the_dry_motion(name):
     contact, body = CASES[name]
-    law = contact.law if name.startswith("smooth") else contact.interface.law
-    alone = law.parts[0]
-    dry = SmoothContact(alone) if name.startswith("smooth") else rough(alone)
-    rows, wanted = delayed(contact, body, 1e6)[0].impacts, at_once(dry, body).impacts
-    made = len(rows.apex)
+    rows, wanted = delayed(contact, body, 1e6)[0].impacts, at_once(DRY[name], body).impacts
+    assert len(rows.apex) >= 1
     for turn in TURNS:
         np.testing.assert_allclose(getattr(rows, turn)[0], getattr(wanted, turn)[0], rtol=1e-9)
-    assert made >= 1
 
 
-def test_fewer_menisci_form_the_longer_they_take():
-    contact, body = CASES["rough"]
-    times = (1e-9, 1e-7, 1e-6, 1e-5, 1e-3)
-    bonds = [float(delayed(contact, body, t)[0].impacts.bonds[0, 0]) for t in times]
-    assert np.all(np.diff(bonds) < 0.0)
-
-
-def test_menisci_that_form_in_overlap_lose_more_than_those_that_form_at_touch():
+def test_fewer_menisci_form_the_longer_they_take_and_lose_most_where_they_form_in_overlap():
     """Between both limits the loss has a maximum, where the delay is about the contact's time."""
     contact, body = CASES["rough"]
-    lost = [
-        float(delayed(contact, body, t)[0].impacts.lost[0, 0]) for t in (1e-9, 1e-7, 1e-6, 1e-2)
-    ]
+    times = (1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 1e-2)
+    rows = [delayed(contact, body, time)[0].impacts for time in times]
+    assert np.all(np.diff([float(each.bonds[0, 0]) for each in rows]) < 0.0)
+    lost = [float(each.lost[0, 0]) for each in rows]
     assert lost[0] < lost[1] < lost[2]
-    assert lost[3] < 0.1 * lost[0]
+    assert lost[5] < 0.1 * lost[0]
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("time", [1e-8, 1e-6])
-def test_the_ledger_closes(name, time):
+def test_the_ledger_closes(name):
     contact, body = CASES[name]
-    motion, trajectory, _ = delayed(contact, body, time)
-    rows = motion.impacts
-    assert np.max(rows.energy_balance_error) < 1e-8 * rows.maximum_kinetic[0]
-    assert np.all(np.diff(trajectory.lost, axis=0) >= -1e-9 * rows.maximum_kinetic[0])
+    for time in (1e-8, 1e-6):
+        motion, trajectory, _ = delayed(contact, body, time)
+        rows = motion.impacts
+        assert np.max(rows.energy_balance_error) < 1e-8 * rows.maximum_kinetic[0]
+        assert np.all(np.diff(trajectory.lost, axis=0) >= -1e-9 * rows.maximum_kinetic[0])
 
 
 def _mean(cells, weights, values, edge):
@@ -184,7 +189,7 @@ def test_motion_is_that_of_explicit_asperities_each_with_its_relay():
 def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
     """At constant speed v from d0, b = d + v time (1 - exp(-t/time)), and b = 0 then."""
     time, speed, start = 2e-6, 1e-3, 5e-9
-    contact = SmoothContact(Hertz(RADIUS, 1e3) + SPHERE)
+    contact = SmoothContact(Hertz(RADIUS, 1e3) + sphere())
     _, trajectory, _ = delayed(
         contact, Body(MASS, 0.0, start, speed), time, Tolerance(max_impacts=1)
     )
@@ -194,11 +199,11 @@ def test_meniscus_of_a_smooth_sphere_appears_when_the_closed_form_says():
     )
     assert trajectory.time[wet[0] - 1] == pytest.approx(appears, rel=1e-6)
     gap = start - speed * appears
-    loss = float(SPHERE.pull) * (0.5 * float(SPHERE.interaction_range) - gap)
+    loss = float(sphere().pull) * (0.5 * float(sphere().interaction_range) - gap)
     assert trajectory.lost[wet[0], 0] == pytest.approx(loss, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["rough", "rough, adhesive", "rough, constant volume"])
+@pytest.mark.parametrize("name", ["rough", "rough, adhesive, constant volume"])
 def test_force_is_the_slope_of_the_energy_at_a_threshold_that_lags_behind(name):
     """While no bond breaks: no bond of any law is stretched to where it would."""
     place = 35e-9
@@ -218,7 +223,7 @@ def test_a_step_is_of_high_order():
     """Against four quarters of it, the error of a step falls by over 2^12 when it is halved."""
     contact, body = CASES["rough"]
     delayed = DelayedContact(contact, 1e-5)
-    one = eqx.filter_jit(step)
+    one = Program(step)
 
     def end(span, parts):
         here = BodyState(
@@ -249,12 +254,14 @@ def case():
 
 
 def test_a_case_with_a_formation_time_is_solved_measured_and_warned_of(case):
-    result = solver.solve(case.replace({"capillary.formation_time": "1 ms"}), critical=False)
-    assert result.outcome is Outcome.MAX_IMPACTS
-    assert result.ledger["energy_balance_error"] < 1e-6
-    total = sum(result.energies.values())
-    kinetic = np.max(result.energies["kinetic"])
-    assert np.max(np.abs(total - result.ledger["initial"])) < 1e-6 * kinetic
+    for time in ("10 us", "1 ms"):
+        result = solver.solve(case.replace({"capillary.formation_time": time}), critical=False)
+        assert result.outcome is Outcome.MAX_IMPACTS
+        assert result.ledger["energy_balance_error"] < 1e-6
+        total = sum(result.energies.values())
+        kinetic = np.max(result.energies["kinetic"])
+        assert np.max(np.abs(total - result.ledger["initial"])) < 1e-6 * kinetic
+        never_goes_back(result)
     assert any("menisci take 0.001 s to form" in line for line in result.warnings)
 
 
@@ -305,8 +312,6 @@ def test_a_motion_can_be_stopped(case):
             "without a film",
         ),
         ({"capillary.formation": "capillary-condensation"}, "equilibrium"),
-        ({"capillary.formation_time": "-1 s"}, "negative"),
-        ({"capillary.formation_time": "1e-6"}, "unit"),
     ],
 )
 def test_what_has_no_delay_refuses_one(case, changes, reason):

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import asperity
-from asperity import InputError, Outcome
+from asperity import Outcome
 from asperity.config.resolve import resolve
 from asperity.contact.delayed_formation import DelayedContact
 from asperity.dynamics.viscoelastic.ring_menisci import FreeFlight
@@ -54,7 +54,7 @@ def test_long_formation_tends_to_the_dry_motion(case):
     assert 0.0 < float(delayed.lost[0, 0]) < 1e-8 * lost(case)
 
 
-@pytest.mark.parametrize("time", ["300 ns", "10 us", "1 ms"])
+@pytest.mark.parametrize("time", ["300 ns", "10 us"])
 def test_a_stiff_half_space_is_the_rigid_body(case, time):
     """Another method, of order 15: one threshold for all places, polynomials in time."""
     here = case.replace({"capillary.formation_time": time})
@@ -72,8 +72,9 @@ def test_a_stiff_half_space_is_the_rigid_body(case, time):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"capillary.contact_angle": "20 deg"},
+        {},
         {
+            "numerics.rings": 24,
             "capillary.model": "kelvin-filling",
             "capillary.surface_rms_height": "11 nm",
             "impact.release_separation": "200 nm",
@@ -97,18 +98,6 @@ def test_the_ledger_closes(case, changes):
     assert result.ledger["energy_balance_error"] < 2e-7
     assert result.outcome is Outcome.MAX_IMPACTS
     assert all(value > 0.0 for value in result.ledger["lost"].values())
-
-
-def test_a_wait_longer_than_the_contact_is_told(case):
-    result = asperity.solve(case.replace({"capillary.formation_time": "1 ms"}), critical=False)
-    assert any("menisci take 0.001 s to form" in line for line in result.warnings)
-    assert result.ledger["energy_balance_error"] < 1e-7
-
-
-def test_gas_is_refused_beside_it(case):
-    with pytest.raises(InputError, match="without a film") as raised:
-        case.replace({"gas.viscosity": "18.2 uPa s", "gas.slip_length": "75 nm"})
-    assert raised.value.key == "capillary.formation_time"
 
 
 @pytest.mark.parametrize("pace", [1e-3, 0.3, 3.0, 300.0])

@@ -5,12 +5,15 @@ import pytest
 
 import asperity
 from asperity import Result
+from asperity.dynamics.curve_table import RATE, TIME_NODES
+from asperity.dynamics.phase_time import missed_time
+from asperity.dynamics.time_series import ascending
 
 
 @pytest.fixture(scope="module")
 def motion() -> Result:
     """A body that bounces on menisci, with scanning curves."""
-    return asperity.solve(asperity.load("glass-bead"))
+    return asperity.solve(asperity.load("glass-bead"), critical=False)
 
 
 def test_energies_add_up_at_every_sample(motion: Result):
@@ -42,3 +45,29 @@ def test_samples_lie_on_the_phases_between_the_turns(motion: Result):
     assert np.max(nearest) < 1e-6 * times[-1]
     signs = np.sign(motion.speed[np.abs(motion.speed) > 1e-6 * np.max(np.abs(motion.speed))])
     assert np.sum(np.diff(signs) != 0.0) == len(times) - 1
+
+
+def test_a_fall_lasts_as_long_as_its_speeds_say(motion: Result):
+    """Between samples that are close the speed changes evenly: dt = 2 dd / (v + v')."""
+    first, then = motion.events["apex_time"][0], motion.events["closest_approach_time"][1]
+    inside = (motion.time >= first * (1.0 - 1e-12)) & (motion.time <= then * (1.0 + 1e-12))
+    fall = np.flatnonzero(inside)
+    place, speed = motion.separation[fall], motion.speed[fall]
+    steps = 2.0 * np.diff(place) / (speed[1:] + speed[:-1])
+    assert then - first == pytest.approx(np.sum(steps), rel=1e-5)
+
+
+def test_the_time_of_a_body_that_was_just_at_rest_is_that_of_its_even_acceleration():
+    """With what the quadrature misses: 2/(sqrt(e + 1) + sqrt(e)), for small e and large."""
+    for energy in (0.0, 1e-12, 1e-8, 1e-6, 1e-4, 1e-3, 0.02, 0.3):
+        found = np.sum(RATE / np.sqrt(energy + TIME_NODES))
+        missed = float(missed_time(np.array([energy]), np.array([1.0]))[0])
+        exact = 2.0 / (np.sqrt(1.0 + energy) + np.sqrt(energy))
+        assert found + missed == pytest.approx(exact, rel=1e-9)
+
+
+def test_only_a_fall_of_a_loss_within_what_is_known_is_taken_for_rounding():
+    lost = np.array([[0.0, 0.0], [1.0, 1.0], [1.0 - 1e-7, 0.9], [2.0, 2.0]])
+    kept = ascending(lost, 1e-6)
+    np.testing.assert_array_equal(kept[:, 0], [0.0, 1.0, 1.0, 2.0])
+    np.testing.assert_array_equal(kept[:, 1], lost[:, 1])

@@ -6,48 +6,24 @@ from scipy.integrate import quad
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.config import builtin, load
+from asperity.config import builtin, load_file
 from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.model import build
 from asperity.results.read_record import read as read_record
 
-CASE = """
-[body]
-radius = "20 um"
-material = "silica"
-[counterface]
-material = "silicon"
-deformation = "rigid"
-[roughness]
-asperity_density = "1e14 1/m^2"
-asperity_radius = "200 nm"
-rms_height = "5 nm"
-[adhesion]
-model = "dmt"
-work = "30 mJ/m^2"
-equilibrium_spacing = "0.3 nm"
-[plasticity]
-model = "kogut-etsion"
-hardness = "2 GPa"
-[capillary]
-model = "equilibrium"
-formation = "on-contact"
-liquid = "water"
-humidity = 0.5
-temperature = "20 degC"
-contact_angle = "75 deg"
-[impact]
-speed = "30 mm/s"
-[numerics]
-max_impacts = 100
-tolerance = 1e-7
-"""
-
 
 @pytest.fixture(scope="module")
 def case():
-    return load(CASE)
+    """The example of yielding, faster and less wet, for a hundred impacts."""
+    return load_file("examples/yielding-drop.toml").replace(
+        {
+            "capillary.contact_angle": "75 deg",
+            "impact.speed": "30 mm/s",
+            "numerics.max_impacts": 100,
+            "numerics.tolerance": 1e-7,
+        }
+    )
 
 
 @pytest.fixture(scope="module")
@@ -113,31 +89,21 @@ def test_the_turn_of_the_first_impact_is_where_its_energy_is_spent(case, solved)
     deepest = float(solved.events["closest_approach_separation"][0])
     work, _ = quad(
         lambda d: float(force(jnp.asarray(d))), deepest, float(body.release), epsrel=1e-9,
-        points=[deepest + k * 5e-9 for k in (0.5, 1.0, 2.0, 3.0)], limit=200,
+        points=[deepest + k * 2e-9 for k in (0.5, 1.0, 2.0, 3.0)], limit=200,
     )  # fmt: skip
     gained = float(body.kinetic + body.weight * (body.release - deepest))
     assert work == pytest.approx(gained, rel=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"counterface.deformation": "half-space"}, "`deformation` must be 'rigid' where"),
-        ({"plasticity.hardness": "0 GPa"}, "positive"),
-    ],
-)
-def test_what_cannot_yield_is_refused(case, changes, words):
-    with pytest.raises(InputError) as caught:
-        case.replace(changes)
-    assert words in str(caught.value)
-
-
-SOFT = {"plasticity.hardness": "50 MPa", "numerics.max_impacts": 3}
-"""A thousand times softer than stiff, as lead is."""
+def test_asperities_that_yield_need_a_rigid_bulk(case):
+    with pytest.raises(InputError, match="`deformation` must be 'rigid' where"):
+        case.replace({"counterface.deformation": "half-space"})
 
 
 def test_asperities_far_softer_than_stiff_meet_the_usual_tolerance(case):
-    result = asperity.solve(case.replace({**SOFT, "numerics.tolerance": 1e-8}), critical=False)
+    """A thousand times, as lead is."""
+    soft = {"plasticity.hardness": "50 MPa", "numerics.max_impacts": 3, "numerics.tolerance": 1e-8}
+    result = asperity.solve(case.replace(soft), critical=False)
     assert result.ledger["energy_balance_error"] < 1e-6
     assert result.ledger["lost"]["plastic"] > 0.9 * result.ledger["initial"]
 

@@ -31,17 +31,17 @@ TAIL = 2.0 * pi * RADIUS * W * 0.2e-9 * 9.0 / 7.0  # of the 3-9 potential: (4/3 
         ("bradley", 2.0 * pi * W * RADIUS, DMT_WORK + TAIL),
     ],
 )
-def test_pull_off_and_work_are_those_of_closed_forms_at_any_speed(model, pull_off, work):
-    for speed in ("0.3 m/s", "2 m/s", "20 m/s"):
-        curve = asperity.curve(smooth(model, speed))
-        assert curve.pull_off == pytest.approx(pull_off, rel=1e-9)
-        assert curve.work_of_separation == pytest.approx(work, rel=1e-9)
-        assert curve.preload is None
+def test_pull_off_and_work_are_those_of_closed_forms(model, pull_off, work):
+    """Whatever the speed: see `validation/test_pull_off_of_spheres.py`."""
+    curve = asperity.curve(smooth(model, "20 m/s"))
+    assert curve.pull_off == pytest.approx(pull_off, rel=1e-9)
+    assert curve.work_of_separation == pytest.approx(work, rel=1e-9)
+    assert curve.preload is None
 
 
 def test_maugis_pull_off_lies_between_the_limits_and_has_no_speed():
-    found = [asperity.curve(smooth("maugis", v)).pull_off for v in ("0.3 m/s", "2 m/s", "20 m/s")]
-    assert found == pytest.approx([found[0]] * 3, rel=1e-9)
+    found = [asperity.curve(smooth("maugis", speed)).pull_off for speed in ("0.3 m/s", "20 m/s")]
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
     assert 1.5 < found[0] / (pi * W * RADIUS) < 2.0
 
 
@@ -74,28 +74,22 @@ def test_bonds_made_by_contact_pull_more_after_a_larger_load_and_say_so():
         assert curve.pull_off >= tension.max() * (1.0 - 1e-9)
         there = curve.rigid_separation[np.argmax(tension)]
         assert curve.pull_off_separation == pytest.approx(there, abs=2e-10)
+        area = -np.trapezoid(np.minimum(curve.force_unloading, 0.0), curve.rigid_separation)
+        assert curve.work_of_separation == pytest.approx(area, rel=1e-2)
 
 
-def test_the_work_of_a_rough_contact_is_the_integral_of_its_drawn_tension():
-    curve = asperity.curve(load_file("examples/wet-drop.toml"), load=1e-5)
-    drawn = np.minimum(curve.force_unloading, 0.0)
-    area = -np.trapezoid(drawn, curve.rigid_separation)
-    assert curve.work_of_separation == pytest.approx(area, rel=1e-2)
+STILL = smooth("jkr").replace({"impact": None})
 
 
-@pytest.mark.parametrize("load", [0.0, 1e-7, 1e-3])
-def test_a_case_without_an_impact_is_loaded_to_what_is_asked(load):
-    still = smooth("jkr").replace({"impact": None})
-    curve = asperity.curve(still, load=load)
-    assert curve.force_loading[0] == pytest.approx(load, rel=1e-9, abs=1e-15)
-    assert curve.case.impact is None
-
-
-@pytest.mark.parametrize("depth", [1e-9, 3e-8])  # before and beyond where attraction alone draws it
-def test_a_case_without_an_impact_is_loaded_to_a_depth(depth):
-    curve = asperity.curve(smooth("jkr").replace({"impact": None}), depth=depth)
-    assert curve.minimum_separation == pytest.approx(-depth, rel=1e-9)
-    assert curve.pull_off == pytest.approx(1.5 * pi * W * RADIUS, rel=1e-9)
+def test_a_case_without_an_impact_is_loaded_to_what_is_asked():
+    for load in (0.0, 1e-7, 1e-3):
+        curve = asperity.curve(STILL, load=load)
+        assert curve.force_loading[0] == pytest.approx(load, rel=1e-9, abs=1e-15)
+        assert curve.case.impact is None
+    for depth in (1e-9, 3e-8):  # before and beyond where attraction alone draws it
+        curve = asperity.curve(STILL, depth=depth)
+        assert curve.minimum_separation == pytest.approx(-depth, rel=1e-9)
+        assert curve.pull_off == pytest.approx(1.5 * pi * W * RADIUS, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -110,14 +104,14 @@ def test_a_case_without_an_impact_is_loaded_to_a_depth(depth):
 )
 def test_what_cannot_be_loaded_is_refused_in_one_line(given, words):
     with pytest.raises(InputError, match=words) as caught:
-        asperity.curve(smooth("jkr").replace({"impact": None}), **given)
+        asperity.curve(STILL, **given)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("compute", [asperity.solve, asperity.restitution_curve])
 def test_a_motion_needs_an_impact(compute):
     with pytest.raises(InputError, match=r"an \[impact\] table must be given"):
-        compute(smooth("jkr").replace({"impact": None}))
+        compute(STILL)
 
 
 def test_a_curve_warns_as_a_run_does():

@@ -261,9 +261,8 @@ def test_a_load_rises_to_where_its_energy_is_spent():
         assert found == pytest.approx(max(exact, 0.0), rel=1e-12, abs=1e-22)
 
 
-@pytest.mark.parametrize("places", [(1e-9, 3e-9, 100e-9)])
-def test_a_spring_pulls_by_the_slope_of_its_potential(places):
-    spring, dashpot = Spring(7.0, 20e-9), Dashpot(3e-9)
+def test_a_spring_pulls_by_the_slope_of_its_potential():
+    spring, dashpot, places = Spring(7.0, 20e-9), Dashpot(3e-9), (1e-9, 3e-9, 100e-9)
     for near, far in pairwise(places):
         work = quad(lambda d: float(spring.force(jnp.asarray(d))), near, far)[0]
         gained = spring.potential_gain(jnp.asarray(near), jnp.asarray(far - near))

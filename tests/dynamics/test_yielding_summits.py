@@ -7,7 +7,7 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.config import load
+from asperity.config import load_file
 from asperity.contact.asperity_table import asperity_table
 from asperity.dynamics import Body
 from asperity.dynamics.single_impact import Yielding, single_impacts
@@ -153,37 +153,28 @@ def test_what_was_pressed_flat_yields_no_more():
     np.testing.assert_allclose(later.restitution[free] ** 2, kept, rtol=1e-7)
 
 
-CASE = """
-[body]
-material = "silica"
-radius = "25 um"
-[counterface]
-material = "silicon carbide"
-deformation = "rigid"
-[roughness]
-asperity_density = "6.3e13 1/m^2"
-asperity_radius = "450 nm"
-rms_height = "1.64 nm"
-placement = "random"
-realisations = 64
-[adhesion]
-model = "dmt"
-work = "5 mJ/m^2"
-equilibrium_spacing = "0.3 nm"
-[plasticity]
-model = "kogut-etsion"
-hardness = "2 GPa"
-[impact]
-speed = "0.1 m/s"
-[numerics]
-max_impacts = 1
-"""
-
-
 def test_many_asperities_yield_as_the_mean_field_says():
-    result = asperity.solve(load(CASE), critical=False)
+    """Of laws as in the example of yielding: it serves them both."""
+    case = load_file("examples/yielding-drop.toml").replace(
+        {
+            "body.radius": "25 um",
+            "roughness": {
+                "asperity_density": "6.3e13 1/m^2",
+                "asperity_radius": "450 nm",
+                "rms_height": "1.64 nm",
+                "placement": "random",
+                "realisations": 64,
+            },
+            "adhesion.work": "5 mJ/m^2",
+            "plasticity.hardness": "2 GPa",
+            "capillary.contact_angle": "85 deg",
+            "impact.speed": "0.1 m/s",
+            "numerics.max_impacts": 1,
+        }
+    )
+    result = asperity.solve(case, critical=False)
     bodies, mean = result.realisations, result.measures["restitution"][0]
     assert result.regime["contacting_asperities"] > 10.0
     assert mean < 0.96
     assert np.mean(bodies.values["restitution"]) == pytest.approx(mean, rel=5e-3)
-    assert set(bodies.lost) == {"plastic"}
+    assert set(bodies.lost) == {"capillary", "plastic"}
