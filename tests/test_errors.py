@@ -42,12 +42,7 @@ def test_every_outcome_has_a_sentence(outcome):
 
 
 def test_exit_codes_differ():
-    codes = [
-        errors.EXIT_INPUT,
-        errors.EXIT_NUMERICS,
-        errors.EXIT_OUTPUT,
-        errors.EXIT_INTERRUPTED,
-    ]
+    codes = [errors.EXIT_INPUT, errors.EXIT_NUMERICS, errors.EXIT_OUTPUT, errors.EXIT_INTERRUPTED]
     assert codes == [2, 3, 4, 130]
 
 

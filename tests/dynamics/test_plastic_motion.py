@@ -19,7 +19,7 @@ def case():
     return load_file("examples/yielding-drop.toml").replace(
         {
             "capillary.contact_angle": "75 deg",
-            "impact.speed": "30 mm/s",
+            "impact.speed": "60 mm/s",
             "numerics.max_impacts": 100,
             "numerics.tolerance": 1e-7,
         }

@@ -136,10 +136,9 @@ def test_with_gravity_the_body_creeps_on_until_it_rests():
     assert solved(changes).outcome is Outcome.REST
 
 
-@pytest.mark.parametrize("release", [1e-6, 30e-6])
-def test_a_film_takes_the_momentum_and_the_weight_goes_on_as_integrated_in_time(release):
+def test_a_film_takes_the_momentum_and_the_weight_goes_on_as_integrated_in_time():
     """It fell 30 um, and ended with an error: the speed changes by 200 within half a nanometre."""
-    impact = {"impact.gravity": "9.81 m/s^2", "impact.release_separation": f"{release} m"}
+    impact = {"impact.gravity": "9.81 m/s^2", "impact.release_separation": "30 um"}
     result = solved({**ROUGH, **impact})
     assert result.outcome is Outcome.REST
     assert result.ledger["energy_balance_error"] < 1e-9
@@ -154,7 +153,7 @@ def test_a_film_takes_the_momentum_and_the_weight_goes_on_as_integrated_in_time(
         return float(y[0]) - place
 
     there.terminal = True
-    start = [release, -10e-3]
+    start = [30e-6, -10e-3]
     fall = solve_ivp(rates, (0.0, 1.0), start, "Radau", events=there, rtol=1e-10, atol=1e-20)
     assert result.time[sample] == pytest.approx(fall.t_events[0][0], rel=1e-6)
     assert result.speed[sample] == pytest.approx(fall.y_events[0][0][1], rel=1e-6)

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from asperity import solve
-from asperity.config import load
+from asperity.config import builtin
 from asperity.config.resolve import resolve
 from asperity.errors import Outcome, SimulationError
 from asperity.integration import single_case
@@ -15,38 +15,36 @@ from asperity.model import build
 from asperity.regimes.accuracy import CLOSED, balance_error
 from records import never_goes_back
 
-SOFT = """
-schema = 1
-[body]
-radius = "38 um"
-youngs_modulus = "1.67 MPa"
-poisson = 0.25
-density = "4800 kg/m^3"
-[counterface]
-youngs_modulus = "1.67 MPa"
-poisson = 0.25
-density = "4800 kg/m^3"
-deformation = "half-space"
-[impact]
-speed = "0.06 m/s"
-[numerics]
-max_impacts = 1
-rings = 32
-[roughness]
-asperity_density = "3.76e14 1/m^2"
-asperity_radius = "1.92 nm"
-rms_height = "26.9 nm"
-[adhesion]
-model = "jkr"
-work = "0.0191 J/m^2"
-"""
+
+def case(solid, deformation, **tables):
+    """A sphere of a solid of modulus and density, on the same solid."""
+    solid = {"youngs_modulus": solid[0], "poisson": 0.25, "density": solid[1]}
+    body = {"radius": tables.pop("radius"), **solid}
+    counterface = {**solid, "deformation": deformation}
+    tables = {"body": body, "counterface": counterface, "capillary": None, **tables}
+    return builtin("published-exact").replace(tables)
+
+
+def roughness(density, radius, rms):
+    return {"asperity_density": density, "asperity_radius": radius, "rms_height": rms}
+
+
+SOFT = case(
+    ("1.67 MPa", "4800 kg/m^3"),
+    "half-space",
+    radius="38 um",
+    impact={"speed": "0.06 m/s"},
+    numerics={"max_impacts": 1, "rings": 32},
+    roughness=roughness("3.76e14 1/m^2", "1.92 nm", "26.9 nm"),
+    adhesion={"model": "jkr", "work": "0.0191 J/m^2"},
+)
 
 
 def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_asks_for(
     monkeypatch,
 ):
     """Bonds stretch by 1/20 of the rms height; the innermost pass between branches over 50."""
-    problem = cut_in_steps(build(resolve(load(SOFT))))
+    problem = cut_in_steps(build(resolve(SOFT)))
     runs, told = [], []
 
     def recorded(problem, run, report):
@@ -61,7 +59,7 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
         return balanced(problem, kept, noted)
 
     monkeypatch.setattr(single_case, "balanced", recorded)
-    never_goes_back(solve(load(SOFT), critical=False))
+    never_goes_back(solve(SOFT, critical=False))
     before, found = runs
     assert found.contact.resolved.later > 0
     # The second run is a small share of the progress, which does not go back to its begin.
@@ -98,43 +96,28 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
         assert balanced(problem._replace(contact=coarse), run, lambda *_: None) is first
 
 
-WET = """
-schema = 1
-[body]
-radius = "11.4 um"
-youngs_modulus = "222 GPa"
-poisson = 0.25
-density = "6015 kg/m^3"
-[counterface]
-youngs_modulus = "222 GPa"
-poisson = 0.25
-density = "6015 kg/m^3"
-deformation = "rigid"
-[impact]
-speed = "0.12 mm/s"
-gravity = "0 m/s^2"
-[numerics]
-max_impacts = 1
-[roughness]
-asperity_density = "7.7e15 1/m^2"
-asperity_radius = "13 nm"
-rms_height = "0.166 nm"
-[adhesion]
-model = "jkr"
-work = "0.2137 mJ/m^2"
-[capillary]
-model = "constant-volume"
-formation = "capillary-condensation"
-liquid = "water"
-humidity = 0.667
-temperature = "321 K"
-contact_angle = "66.4 degrees"
-"""
+WET = case(
+    ("222 GPa", "6015 kg/m^3"),
+    "rigid",
+    radius="11.4 um",
+    impact={"speed": "0.12 mm/s", "gravity": "0 m/s^2"},
+    numerics={"max_impacts": 1},
+    roughness=roughness("7.7e15 1/m^2", "13 nm", "0.166 nm"),
+    adhesion={"model": "jkr", "work": "0.2137 mJ/m^2"},
+    capillary={
+        "model": "constant-volume",
+        "formation": "capillary-condensation",
+        "liquid": "water",
+        "humidity": 0.667,
+        "temperature": "321 K",
+        "contact_angle": "66.4 degrees",
+    },
+)
 
 
 @pytest.mark.long
 def test_menisci_that_stretch_far_are_read_on_as_many_pieces_as_their_force_bends():
-    problem = cut_in_steps(build(resolve(load(WET))))
+    problem = cut_in_steps(build(resolve(WET)))
     found = integrate(problem, drawn=False)
     assert found.contact.resolved.pieces == 4 * problem.contact.resolved.pieces
     assert balance_error(found.motion) < 1e-10
