@@ -301,7 +301,7 @@ def test_an_earlier_map_is_kept_unless_forced(place: Path):
 def test_the_maps_file_must_be_a_png():
     ran = call("adhesion-map", BOUNCE, "-o", "map.pdf")
     assert ran.exit_code == 2
-    assert "must be a FILE.png; got 'map.pdf'" in ran.stderr
+    assert "map.pdf: must end in .png; got '.pdf'" in ran.stderr
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from asperity.errors import OutputError
+from asperity.writing import told
 
 OWN = "jaxlib-"
 """Beginning of the name of the user's own folder."""
@@ -89,11 +89,8 @@ def empty(place: Path) -> tuple[int, int]:
     """
     before = size_of(place)
     for file in _kept(place):
-        try:
+        with told(file, "removed"):
             file.unlink(missing_ok=True)
-        except OSError as error:
-            reason = error.strerror or error
-            raise OutputError(f"{file}: cannot be removed: {reason}", path=str(file)) from None
     return before
 
 

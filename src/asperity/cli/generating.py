@@ -15,8 +15,7 @@ from asperity.cli.options import in_options
 from asperity.cli.reporter import Reporter
 from asperity.cli.terminal import WIDTH
 from asperity.cli.working import Progress, completed
-from asperity.errors import InputError, OutputError, one_line
-from asperity.results.results_folder import check_folder
+from asperity.errors import InputError, one_line
 from asperity.results.summary import amount
 from asperity.results.surface_report import pixel_in_words, rows
 from asperity.surfaces import Topography
@@ -68,10 +67,7 @@ def generate(
         where one is not given.
     """
     reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
-    target = check_target(file, force=force)
-    if not target.parent.is_dir():
-        raise OutputError(f"{file}: cannot be written: no folder {target.parent}", path=file)
-    check_folder(target.parent, [target.name], force=True)
+    check_target(Path(file), force=force)
     distribution = "kurtosis" if options["heights"] is None else "heights"
     with in_options(heights=distribution):
         wanted = _wanted(options)

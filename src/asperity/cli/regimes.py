@@ -17,6 +17,7 @@ from asperity.results.case_source import Source, source_of
 from asperity.results.record_layout import plain
 from asperity.results.results_folder import check_folder, write_folder
 from asperity.results.summary import WIDTH, amount, warning_lines
+from asperity.writing import ending_of, refuse_present
 
 if TYPE_CHECKING:
     from asperity.results.assessment import Assessment
@@ -210,18 +211,15 @@ def _map_object(
 
 def _files(picture: Path) -> list[str]:
     """The picture's name, and those of the files beside it."""
-    return [picture.with_suffix(suffix).name for suffix in (".png", ".svg", ".csv")]
+    return [picture.name, *(picture.with_suffix(suffix).name for suffix in (".svg", ".csv"))]
 
 
 def _check_picture(picture: Path, *, force: bool) -> None:
     """See to it, before anything is computed, that the map can be written."""
-    if picture.suffix != ".png":
-        raise InputError(f"`--output` must be a FILE.png; got {str(picture)!r}")
+    ending_of(picture, [".png"])
     names = _files(picture)
-    there = [name for name in names if (picture.parent / name).exists()]
-    if there and not force:
-        path = picture.parent / there[0]
-        raise InputError(f"{path}: is there already; --force replaces it", file=str(path))
+    for name in names:
+        refuse_present(picture.parent / name, force=force)
     check_folder(picture.parent, names, force=True)
 
 

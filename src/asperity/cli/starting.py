@@ -12,20 +12,14 @@ from typing import Any
 
 from asperity.cli.terminal import tell
 from asperity.config.problems import did_you_mean
-from asperity.errors import InputError, OutputError
+from asperity.errors import InputError
 from asperity.materials.gases import ATMOSPHERE, GASES, Gas
-from asperity.materials.solids import (
-    ADHESION,
-    LIQUIDS,
-    ROOM_TEMPERATURE,
-    SOLIDS,
-    Adhesion,
-    Liquid,
-    Solid,
-)
+from asperity.materials.liquids import LIQUIDS, ROOM_TEMPERATURE, Liquid
+from asperity.materials.solids import ADHESION, SOLIDS, Adhesion, Solid
 from asperity.results.record_layout import plain
 from asperity.results.summary import WIDTH, amount
 from asperity.units import shown
+from asperity.writing import aside, told
 
 _SOLID = (9, 7, 15, 12, 11)
 _FLUID = (18, 18, 18)
@@ -53,19 +47,11 @@ def write_template(file: str, *, as_json: bool = False) -> None:
     from asperity.config import template
 
     path, text = Path(file), template()
-    try:
-        with path.open("x", encoding="utf-8") as stream:
-            try:
-                stream.write(text)
-                stream.flush()
-            except BaseException:
-                path.unlink(missing_ok=True)
-                raise
-    except FileExistsError:
-        raise InputError(f"{file}: is there already and stays as it is", file=file) from None
-    except OSError as error:
-        reason = error.strerror or error
-        raise OutputError(f"{file}: cannot be written: {reason}", path=file) from None
+    with told(file):
+        if path.exists():
+            raise InputError(f"{file}: is there already and stays as it is", file=file)
+        with aside(path, force=False) as place:
+            place.write_text(text, encoding="utf-8")
     if as_json:
         content = text.encode()
         digest = hashlib.sha256(content).hexdigest()

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from asperity.errors import InputError, OutputError
+from asperity.writing import told
 
 RUN_FILES = (
     "record.nc",
@@ -85,7 +86,7 @@ def check_folder(
         Where nothing can be written there.
     """
     target = Path(directory)
-    with _told(target):
+    with told(target):
         _refuse_occupied(target, own, force=force)
         place = target
         while not place.exists() and place != place.parent:
@@ -126,13 +127,13 @@ def write_folder(
         As `check_folder`; the folder is then as it was before.
     """
     target = Path(directory)
-    with _told(target), _parents(target):
+    with told(target), _parents(target):
         _refuse_occupied(target, own, force=force)
         there = target.is_dir()
         aside = _aside(target if there else target.parent)
         try:
             for name, content in files.items():
-                with _told(target / name):
+                with told(target / name):
                     (aside / name).write_bytes(content)
             if there:
                 _move_in(aside, target, files, own)
@@ -145,7 +146,7 @@ def write_folder(
 
 def _move_in(aside: Path, target: Path, files: Collection[str], own: Collection[str]) -> None:
     for name in files:
-        with _told(target / name):
+        with told(target / name):
             (aside / name).replace(target / name)
     for name in own:
         if name not in files:
@@ -201,15 +202,3 @@ def _parents(target: Path) -> Iterator[None]:
             with contextlib.suppress(OSError):
                 place.rmdir()
         raise
-
-
-@contextlib.contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """Failures of the system as `OutputError`, with the path and the reason."""
-    try:
-        yield
-    except OutputError:
-        raise
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OutputError(f"{path}: cannot be written: {reason}", path=str(path)) from error

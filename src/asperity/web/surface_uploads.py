@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from asperity.config import Case
-from asperity.errors import InputError, OutputError
+from asperity.errors import InputError
 from asperity.results.result import Result
 from asperity.surfaces.files.content import digest
 from asperity.web.upload_reader import SECONDS
+from asperity.writing import told
 
 MOST_FILES = 16
 """Uploads that are kept; the one longest unused goes first."""
@@ -90,11 +91,9 @@ class Surfaces:
         token = hashlib.sha256(name.encode() + b"\0" + content).hexdigest()[:32]
         with self._lock:
             place = self._place(token)
-            try:
+            with told(name, "kept"):
                 place.mkdir(exist_ok=True)
                 (place / name).write_bytes(content)
-            except OSError as error:
-                raise OutputError(f"{name}: cannot be kept: {error.strerror or error}") from None
             self._kept[token] = len(content)
             self._kept.move_to_end(token)
             self._make_room()

@@ -5,15 +5,14 @@ from __future__ import annotations
 import gzip
 import io
 import os
-import secrets
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from ...errors import OutputError
+from ...writing import aside, check_file, ending_of
 from ..topography import Topography
-from .content import refusal, suffix_of
+from .content import suffix_of
 
 
 def write_topography(
@@ -40,54 +39,33 @@ def write_topography(
     OutputError
         Where it cannot be written.
     """
-    target = check_target(path, force=force)
-    file = os.fspath(path)
-    content = _ENCODERS[suffix_of(file)](topography)
-    if file.lower().endswith(".gz"):
+    target = Path(path)
+    content = _ENCODERS[_format_of(target)](topography)
+    if target.name.lower().endswith(".gz"):
         content = gzip.compress(content, compresslevel=6, mtime=0)
-    try:
-        _replace(target, content)
-    except OSError as error:
-        raise OutputError(
-            f"{file}: cannot be written: {error.strerror or error}", path=file
-        ) from None
+    with aside(target, force=force) as place:
+        place.write_bytes(content)
 
 
-def check_target(path: str | os.PathLike[str], *, force: bool = False) -> Path:
-    """The file to write, refused where it cannot be.
+def check_target(target: Path, *, force: bool = False) -> None:
+    """See to it, before a surface is made, that it can be written.
 
     Parameters
     ----------
-    path, force
+    target, force
         As `write_topography`.
 
     Raises
     ------
     InputError, OutputError
-        As `write_topography`, but for what only writing can find out.
+        As `write_topography`.
     """
-    file = os.fspath(path)
-    if suffix_of(file) not in _ENCODERS:
-        raise refusal(file, f"must end in one of {' '.join(_ENCODERS)} to be written; rename it")
-    target = Path(file)
-    try:
-        if not force and target.exists():
-            raise refusal(file, "must not be there yet; got a file; use --force to replace it")
-    except OSError as error:
-        raise OutputError(
-            f"{file}: cannot be written: {error.strerror or error}", path=file
-        ) from None
-    return target
+    _format_of(target)
+    check_file(target, force=force)
 
 
-def _replace(target: Path, content: bytes) -> None:
-    """Write beside the target, then rename, so that no file is ever half there."""
-    aside = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
-    try:
-        aside.write_bytes(content)
-        aside.replace(target)
-    finally:
-        aside.unlink(missing_ok=True)
+def _format_of(target: Path) -> str:
+    return ending_of(target, _ENCODERS, suffix_of(target.name))
 
 
 def _array(topography: Topography) -> bytes:

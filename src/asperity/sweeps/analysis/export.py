@@ -6,17 +6,17 @@ import contextlib
 import csv
 import importlib
 import os
-import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from asperity.errors import InputError, OutputError
+from asperity.errors import InputError
 from asperity.sweeps.store.dataset import Results, dataset_of, open_results
 from asperity.sweeps.store.variables import FLAGS
 from asperity.sweeps.study.columns import Column, reasons
+from asperity.writing import aside, ending_of
 
 _WORDS = np.array(FLAGS["outcome"], dtype=object)
 
@@ -53,69 +53,12 @@ def export(
         Where the file cannot be written.
     """
     target = Path(file)
-    writer = _WRITERS.get(target.suffix.lower())
-    if writer is None:
-        raise InputError(
-            f"{target}: must end in one of {' '.join(_WRITERS)}; got "
-            f"{target.suffix or 'no ending'!r}",
-            file=str(target),
-        )
+    writer = _WRITERS[ending_of(target, _WRITERS)]
     found = open_results(store)
     found.refuse_empty()
     with aside(target, force=force) as path:
         writer(found, path)
     return target
-
-
-@contextlib.contextmanager
-def aside(target: Path, *, force: bool) -> Iterator[Path]:
-    """A path beside the target to write to, which takes the target's place if all goes well.
-
-    Parameters
-    ----------
-    target
-        The file to come.
-    force
-        Whether one that is there may be replaced.
-
-    Raises
-    ------
-    InputError
-        Where the target is there and ``force`` is not set.
-    OutputError
-        Where it cannot be written.
-    """
-    path = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
-    try:
-        if target.is_dir():
-            raise IsADirectoryError("Is a directory")
-        refuse_present(target, force=force)
-        path.touch()
-        yield path
-        path.replace(target)
-    except OutputError:
-        raise
-    except OSError as error:
-        reason = error.strerror or error
-        raise OutputError(f"{target}: cannot be written: {reason}", path=str(target)) from error
-    finally:
-        with contextlib.suppress(OSError):
-            path.unlink(missing_ok=True)
-
-
-def refuse_present(target: Path, *, force: bool) -> None:
-    """Refuse a file that is there already.
-
-    Raises
-    ------
-    InputError
-        Where it is, and ``force`` is not set.
-    """
-    if target.exists() and not force:
-        raise InputError(
-            f"{target}: must not be there yet; got a file; use --force to replace it",
-            file=str(target),
-        )
 
 
 def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:

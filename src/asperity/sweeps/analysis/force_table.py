@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asperity.errors import InputError
-from asperity.sweeps.analysis.export import aside, refuse_present
+from asperity.writing import aside, check_file, ending_of
 
 if TYPE_CHECKING:
     from asperity.results.result import Curve
@@ -126,13 +126,11 @@ def check_force_table(target: Path, *, force: bool = False) -> None:
     ------
     InputError
         Where the ending is not ``.table``, or the file is there and ``force`` is not set.
+    OutputError
+        Where it cannot be written.
     """
-    if target.suffix.lower() != ".table":
-        raise InputError(
-            f"{target}: a table of forces must end in .table; got {target.suffix or 'no ending'!r}",
-            file=str(target),
-        )
-    refuse_present(target, force=force)
+    ending_of(target, [".table"])
+    check_file(target, force=force)
 
 
 def _section(branch: Branch) -> list[str]:

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asperity.errors import InputError
-from asperity.sweeps.analysis.export import aside
 from asperity.sweeps.analysis.pareto import numbers
 from asperity.sweeps.analysis.view import axes_of, is_number, is_sample
+from asperity.writing import aside, ending_of
 
 if TYPE_CHECKING:
     import xarray
@@ -137,13 +137,7 @@ def write_restitution(
         Where it cannot be written.
     """
     target = Path(file)
-    form = _FORMS.get(target.suffix.lower())
-    if form is None:
-        raise InputError(
-            f"{target}: a table of restitution must end in one of {' '.join(_FORMS)}; got "
-            f"{target.suffix or 'no ending'!r}",
-            file=str(target),
-        )
+    form = _FORMS[ending_of(target, _FORMS)]
     with aside(target, force=force) as path:
         path.write_text(form(table), encoding="utf-8")
     return target

@@ -1,37 +1,21 @@
-"""Files that are whole or not there, and the system's refusals in one line."""
+"""Files of a store, which are on the disk or not there, whatever kills the process."""
 
 from __future__ import annotations
 
 import contextlib
-import errno
+import functools
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-from asperity.errors import OutputError
+from asperity import writing
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-
-
-@contextlib.contextmanager
-def told(path: Path) -> Iterator[None]:
-    """Failures of the system as `OutputError`, with the path and the reason.
-
-    Parameters
-    ----------
-    path : Path
-        What is being written.
-    """
-    try:
-        yield
-    except OutputError:
-        raise
-    except OSError as error:
-        reason = error.strerror or str(error)
-        full = error.errno in _FULL
-        remedy = "; what was finished is kept, `--resume` goes on once there is room" * full
-        raise OutputError(f"{path}: cannot be written: {reason}{remedy}", path=str(path)) from error
+told = functools.partial(
+    writing.told,
+    if_full="; what was finished is kept, `--resume` goes on once there is room",
+)
+"""Failures of the system as `OutputError`, with the path, the reason and what to do."""
 
 
 def put(path: Path, content: bytes, aside: Path) -> None:
