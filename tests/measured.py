@@ -20,7 +20,8 @@ from asperity._jax import jnp
 from asperity.interface.interface import Interface
 from asperity.laws import Bradley, ByContact, ByKelvinGap, Hertz, KelvinFilling, Meniscus
 from asperity.laws.liquid.meniscus import Formation
-from asperity.materials.solids import LIQUIDS, SOLIDS, Solid, contact_modulus, kelvin_radius
+from asperity.materials.liquids import LIQUIDS, kelvin_radius
+from asperity.materials.solids import SOLIDS, Solid, contact_modulus
 from asperity.surfaces.heights import Gaussian
 
 FILE = Path(__file__).parent / "data" / "measurements.csv"

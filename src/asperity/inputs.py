@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .errors import Tolerance
 from .materials.gases import SLIP_PER_FREE_PATH
-from .materials.solids import Liquid, Solid
+from .materials.liquids import Liquid
+from .materials.solids import Solid
 
 if TYPE_CHECKING:
     from .surfaces.description.summits import Summits

@@ -223,7 +223,8 @@ def test_init_writes_a_case_that_runs_and_never_overwrites(place: Path):
 
 
 def test_materials_are_listed_with_their_sources():
-    from asperity.materials.solids import ADHESION, LIQUIDS, SOLIDS
+    from asperity.materials.liquids import LIQUIDS
+    from asperity.materials.solids import ADHESION, SOLIDS
 
     text = call("materials").stdout
     for name in (*SOLIDS, *LIQUIDS):

@@ -20,7 +20,8 @@ from asperity.config.problems import tables_of
 from asperity.config.resolve import resolve
 from asperity.config.roughness import NUMBERS
 from asperity.errors import InputError, Tolerance
-from asperity.materials.solids import LIQUIDS, SOLIDS, kelvin_radius
+from asperity.materials.liquids import LIQUIDS, kelvin_radius
+from asperity.materials.solids import SOLIDS
 from asperity.units import quantity
 
 TEMPLATE = template()

@@ -22,7 +22,7 @@ from asperity.laws import (
     Maugis,
     Meniscus,
 )
-from asperity.materials.solids import LIQUIDS, kelvin_radius
+from asperity.materials.liquids import LIQUIDS, kelvin_radius
 from asperity.surfaces.heights import Gaussian
 
 BETA, E, W, EPS = 50e-9, 50e9, 0.05, 0.3e-9

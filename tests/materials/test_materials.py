@@ -12,19 +12,15 @@ from asperity.config import load
 from asperity.config.resolve import resolve
 from asperity.errors import InputError
 from asperity.laws.plastic import ThorntonNing
-from asperity.materials.solids import (
-    ADHESION,
+from asperity.materials.liquids import (
     AVOGADRO,
     LIQUIDS,
-    SOLIDS,
-    Adhesion,
     Liquid,
-    Solid,
-    contact_modulus,
     kelvin_radius,
     water_density,
     water_tension,
 )
+from asperity.materials.solids import ADHESION, SOLIDS, Adhesion, Solid, contact_modulus
 
 WATER = LIQUIDS["water"]
 PUBLISHED_WATER = dataclasses.replace(WATER, tension=75e-3, molar_volume=1.805e-5)

@@ -8,7 +8,7 @@ import pytest
 from asperity._jax import jnp
 from asperity.interface.interface import Interface
 from asperity.laws import ByKelvinGap, Meniscus
-from asperity.materials.solids import Liquid, kelvin_radius
+from asperity.materials.liquids import Liquid, kelvin_radius
 from asperity.surfaces.heights import Gaussian
 from figures import Figure
 

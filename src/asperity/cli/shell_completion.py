@@ -48,7 +48,8 @@ def store_or_case(incomplete: str) -> list[str]:
 def material(incomplete: str) -> list[str]:
     """Names of the catalogue; those of several words are quoted by hand."""
     from asperity.materials.gases import GASES
-    from asperity.materials.solids import LIQUIDS, SOLIDS
+    from asperity.materials.liquids import LIQUIDS
+    from asperity.materials.solids import SOLIDS
 
     return [name for name in (*SOLIDS, *LIQUIDS, *GASES) if _PLAIN.fullmatch(name)]
 

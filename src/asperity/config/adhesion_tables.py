@@ -13,7 +13,7 @@ from asperity.config.base_table import Table, need
 from asperity.config.fields import entry
 from asperity.config.problems import did_you_mean
 from asperity.errors import InputError
-from asperity.materials import solids as catalogue
+from asperity.materials import liquids as catalogue
 from asperity.units import shown
 
 

@@ -25,7 +25,8 @@ from asperity.inputs import (
     Structure,
     Suspension,
 )
-from asperity.materials.solids import contact_modulus, kelvin_radius
+from asperity.materials.liquids import kelvin_radius
+from asperity.materials.solids import contact_modulus
 from asperity.regimes.choice import AdhesionChoice, choose_adhesion
 from asperity.regimes.dimensionless_numbers import tabor_number
 

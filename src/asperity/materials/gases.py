@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from asperity.errors import InputError
-from asperity.materials.solids import GAS_CONSTANT
+from asperity.materials.liquids import GAS_CONSTANT
 
 ATMOSPHERE = 101325.0
 """Standard atmosphere [Pa]."""

@@ -11,37 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.errors import InputError
-from asperity.materials.liquids import (
-    AVOGADRO,
-    GAS_CONSTANT,
-    LIQUIDS,
-    ROOM_TEMPERATURE,
-    Liquid,
-    kelvin_radius,
-    refuse_not_positive,
-    water_density,
-    water_tension,
-)
-
-__all__ = [
-    "ADHESION",
-    "AVOGADRO",
-    "GAS_CONSTANT",
-    "HARDNESS_PER_YIELD_STRENGTH",
-    "LIQUIDS",
-    "ROOM_TEMPERATURE",
-    "SOLIDS",
-    "Adhesion",
-    "Liquid",
-    "Solid",
-    "bar_wave_speed",
-    "contact_modulus",
-    "kelvin_radius",
-    "named",
-    "refuse_softer_than_yield",
-    "water_density",
-    "water_tension",
-]
+from asperity.materials.liquids import refuse_not_positive
 
 HARDNESS_PER_YIELD_STRENGTH = 2.8
 """Indentation hardness over yield strength [-]. Tabor, The Hardness of Metals (1951)."""

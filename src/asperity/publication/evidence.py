@@ -19,7 +19,7 @@ from ..config.resolve import resolve
 from ..contact import Contact, PublishedContact, RigidContact
 from ..halfspace import ring_mesh
 from ..inputs import Asperities, Inputs
-from ..materials.solids import kelvin_radius
+from ..materials.liquids import kelvin_radius
 from ..model import build
 from ..numerics.compilation import Program, kept
 from ..results.result import Result

@@ -10,7 +10,7 @@ from ..dynamics import Motion
 from ..dynamics.gas_film import slip_factor
 from ..inputs import Gas, Inputs
 from ..laws.liquid.constant_volume import EDGE_ANGLE, EDGE_HOLDS
-from ..materials.solids import Liquid
+from ..materials.liquids import Liquid
 from . import Regime
 
 SLIP_HOLDS = 0.1

@@ -7,7 +7,7 @@ from scipy.special import ndtr
 
 from ...dynamics.gas_film import gas_decrement
 from ...materials.gases import ATMOSPHERE, GASES
-from ...materials.solids import ROOM_TEMPERATURE
+from ...materials.liquids import ROOM_TEMPERATURE
 from ...results.summary import amount
 from ..evidence import Evidence, first
 from ..parameter_estimation import WITHIN
