@@ -209,7 +209,7 @@ def test_figures_2_and_3_name_the_files_and_are_85_mm_wide(two: Pair):
 def test_figure_3_is_the_convolution_beside_the_gaussian_of_its_rms(two: Pair):
     drawing = surface_figures.distribution(two)
     whole, gauss = (drawing.series[name] for name in (two.name, "Gaussian"))
-    shape = two.composite.height_gaussianity
+    shape = two.height_gaussianity
     squares = sum(one.topography.rms_height**2 for one in two.surfaces)
     assert shape.rms**2 == pytest.approx(squares, rel=1e-3)
     assert gauss[1].max() == pytest.approx(0.398942 / shape.rms, rel=1e-3)

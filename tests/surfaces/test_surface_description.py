@@ -10,8 +10,8 @@ import pytest
 from scipy import integrate, stats
 
 from asperity.errors import InputError
+from asperity.results.record_layout import plain
 from asperity.surfaces import Topography
-from asperity.surfaces.description.composite import composite
 from asperity.surfaces.description.convolution import convolved
 from asperity.surfaces.description.describe import describe
 from asperity.surfaces.description.gaussianity import (
@@ -26,8 +26,11 @@ from asperity.surfaces.description.pixel_size import discretisation_error, pixel
 from asperity.surfaces.description.spectrum import Moments, moments, profile_spectrum
 from asperity.surfaces.description.sum_of_maps import added, adding_in_words
 from asperity.surfaces.description.summits import find_summits
+from asperity.surfaces.files.reading import Reading
 from asperity.surfaces.generation.synthetic import gaussian_surface
+from asperity.surfaces.measured_surface import Pair, Surface, pair
 from asperity.surfaces.preparation.form_removal import levelled
+from asperity.surfaces.preparation.prepare import Prepared
 
 PIXEL = (2e-9, 3e-9)
 RMS = 1e-9
@@ -467,12 +470,22 @@ def test_too_small_a_common_area_is_refused_by_name():
         added(fine, coarse)
 
 
+def both(first: Topography, second: Topography) -> Pair:
+    """Two maps as surfaces that face each other."""
+    return pair(
+        *(
+            Surface(Reading(one, "made"), Prepared(one, (), 0), describe(one), "")
+            for one in (first, second)
+        )
+    )
+
+
 def test_the_composite_of_two_gaussian_surfaces_is_gaussian_with_the_rms_of_both():
     first, second = surface(512, 5.0, 13), surface(512, 5.0, 14, rms=2.0 * RMS)
-    found = composite(first, second)
-    both = sqrt(first.rms_height**2 + second.rms_height**2)
-    assert found.rms_height == pytest.approx(both, rel=1e-4)
-    assert found.added.rms_height == pytest.approx(both, rel=0.02)
+    found = both(first, second)
+    whole = sqrt(first.rms_height**2 + second.rms_height**2)
+    assert found.height_gaussianity.rms == pytest.approx(whole, rel=1e-4)
+    assert found.description.topography.rms_height == pytest.approx(whole, rel=0.02)
     assert "are Gaussian within the sampling error" in found.height_gaussianity.verdict
     tops = [find_summits(one).rms_height for one in (first, second)]
     assert found.summit_gaussianity.rms == pytest.approx(np.hypot(*tops), rel=1e-3)
@@ -481,9 +494,18 @@ def test_the_composite_of_two_gaussian_surfaces_is_gaussian_with_the_rms_of_both
 def test_the_composite_of_alike_surfaces_has_their_summit_density():
     """Moments add up, and density depends on m4/m2 alone; the curvature grows by sqrt(2)."""
     first, second = surface(1024, 6.0, 15), surface(1024, 6.0, 16)
-    single, both = find_summits(first), composite(first, second).added_summits
-    assert both.density == pytest.approx(single.density, rel=0.03)
-    assert both.radius == pytest.approx(single.radius / sqrt(2.0), rel=0.03)
+    single, summits = find_summits(first), both(first, second).description.summits
+    assert summits.density == pytest.approx(single.density, rel=0.03)
+    assert summits.radius == pytest.approx(single.radius / sqrt(2.0), rel=0.03)
+
+
+def test_a_rough_surface_on_a_flat_one_is_the_rough_one():
+    rough = surface(256, 5.0, 13)
+    found = both(rough, Topography(np.zeros((256, 256)), rough.pixel_size))
+    assert found.height_gaussianity.rms == pytest.approx(rough.rms_height, rel=1e-4)
+    assert found.summits is None
+    worth = describe(rough).independent
+    assert found.height_gaussianity.independent == pytest.approx(worth, rel=1e-12)
 
 
 # The description
@@ -497,7 +519,7 @@ KEYS = {
 
 
 def test_the_record_is_json_with_the_keys_promised():
-    record = describe(surface(128, 4.0, 17)).as_json()
+    record = plain(describe(surface(128, 4.0, 17)).as_json())
     assert set(record) >= KEYS
     assert set(record["gaussian"]) >= {"statistic", "p_value"}
     assert len(record["moments"]) == 3
@@ -511,7 +533,7 @@ def test_the_record_is_json_with_the_keys_promised():
 )
 def test_figures_that_do_not_exist_are_null_and_a_verdict_says_why(heights):
     found = describe(Topography(heights, PIXEL))
-    record = found.as_json()
+    record = plain(found.as_json())
     json.dumps(record, allow_nan=False)
     assert record["summits"]["skewness"] is None
     assert record["summit_rms_height"] is None

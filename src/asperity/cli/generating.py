@@ -184,7 +184,7 @@ def _lines(file: str, wanted: _Wanted, made: _Made) -> list[str]:
         ("cut-off", amount(cut_off or 2.0 * max(wanted.pixel_size), "m")),
         ("seed", str(wanted.rest["seed"])),
         ("heights", wanted.words),
-        ("rms height", amount(found.rms_height, "m")),
+        ("rms height", amount(surface.rms_height, "m")),
         ("rms slope", _slope(wanted.rest["rms_slope"], found)),
         ("skewness, kurtosis", f"{amount(shape.skewness if shape else None)}, "
                                f"{amount(shape.kurtosis if shape else None)}"),
@@ -212,7 +212,7 @@ def _object(file: str, wanted: _Wanted, made: _Made) -> dict[str, Any]:
         "roll_off": spectrum["rolloff"],
         "cut_off": spectrum["cutoff"] or 2.0 * max(wanted.pixel_size),
         "seed": wanted.rest["seed"],
-        "rms_height": found.rms_height,
+        "rms_height": surface.rms_height,
         "rms_slope": sqrt(2.0 * found.spectral.m2),
         "skewness": shape.skewness if shape else None,
         "kurtosis": shape.kurtosis if shape else None,

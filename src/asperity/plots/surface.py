@@ -18,8 +18,6 @@ from asperity.plots.surface_panels import (
 )
 from asperity.results.summary import amount
 from asperity.results.surface_report import size_in_words
-from asperity.surfaces import Topography
-from asperity.surfaces.description.composite import Composite
 from asperity.surfaces.description.describe import Description
 from asperity.surfaces.measured_surface import Pair, Surface
 
@@ -59,46 +57,38 @@ def _of_pair(found: Pair) -> dict[str, Figure]:
 def of_surface(found: Surface) -> Figure:
     """The page of one surface."""
     done = "; ".join(step.words for step in found.prepared.steps) or "not prepared"
-    return page(found.topography, found.description, found.name, done)
+    return page(found.description, found.name, done)
 
 
 def of_composite(found: Pair) -> Figure:
     """The page of two surfaces as one: of the added maps, with the distributions convolved."""
-    convolved = f"by convolution Sq {amount(found.composite.rms_height, 'm')}"
+    convolved = f"by convolution Sq {amount(found.height_gaussianity.rms, 'm')}"
     return page(
-        found.composite.added,
         found.description,
         f"Composite of {found.name}",
         f"maps added; {convolved}",
-        found.composite,
+        found,
     )
 
 
-def page(
-    topography: Topography,
-    description: Description,
-    title: str,
-    done: str,
-    both: Composite | None = None,
-) -> Figure:
+def page(description: Description, title: str, done: str, both: Pair | None = None) -> Figure:
     """One page on a map.
 
     Parameters
     ----------
-    topography
-        The map.
     description
-        What it says.
+        The map and what it says.
     title
         Name of the surface.
     done
         How the map was made ready.
     both
-        Where the map is a sum of two: their composite, whose distributions are drawn too.
+        Where the map is a sum of two: both, whose distributions convolved are drawn too.
     """
+    topography = description.topography
     with style.look():
         figure = style.sheet(*_SHEET)
-        size = f"{size_in_words(topography)}; Sq {amount(description.rms_height, 'm')}"
+        size = f"{size_in_words(topography)}; Sq {amount(topography.rms_height, 'm')}"
         for (top, letters, longest), line in zip(_LINES, (title, size, done), strict=True):
             text = figure.text(
                 MAP.left / style.PAGE, 1.0 - top / _SHEET[1], "", fontsize=letters, parse_math=False
@@ -108,7 +98,7 @@ def page(
         heights, spectrum, quantiles, summits, radii = (
             figure.add_axes(place.share(_SHEET)) for place in _PANELS
         )
-        draw_heights(heights, topography.heights, description, both)
+        draw_heights(heights, description, both)
         draw_spectrum(spectrum, description)
         draw_quantiles(quantiles, description, both)
         draw_summit_heights(summits, description, both)

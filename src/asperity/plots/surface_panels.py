@@ -12,10 +12,10 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from asperity.plots import style
 from asperity.publication.surface_figures import in_bins
 from asperity.results.colours import colour
-from asperity.surfaces.description.composite import Composite
 from asperity.surfaces.description.convolution import HeightDistribution
 from asperity.surfaces.description.describe import Description
 from asperity.surfaces.description.spectrum import ProfileSpectrum
+from asperity.surfaces.measured_surface import Pair
 
 _REACH = 6.0
 """Standard deviations on either side that a histogram shows at most."""
@@ -40,9 +40,7 @@ def empty(axes: Axes, words: str) -> None:
     axes.set(xticks=[], yticks=[])
 
 
-def draw_heights(
-    axes: Axes, heights: np.ndarray, description: Description, both: Composite | None = None
-) -> None:
+def draw_heights(axes: Axes, description: Description, both: Pair | None = None) -> None:
     """Heights about their mean as a histogram, with the Gaussian of the same rms."""
     shape = description.heights
     if shape is None:
@@ -50,6 +48,7 @@ def draw_heights(
         empty(axes, "the map is flat")
         return
     heading(axes, f"Heights: skewness {shape.skewness:.3g}, kurtosis {shape.kurtosis:.3g}")
+    heights = description.topography.heights
     known = heights[np.isfinite(heights)]
     known = known - known.mean()
     factor, unit, edges = _histogram(axes, known, shape.rms, "heights", "central")
@@ -89,7 +88,7 @@ def draw_spectrum(axes: Axes, description: Description) -> None:
     style.legend_above(axes, 2)
 
 
-def draw_quantiles(axes: Axes, description: Description, both: Composite | None = None) -> None:
+def draw_quantiles(axes: Axes, description: Description, both: Pair | None = None) -> None:
     """Quantiles of the heights and of the summits against the Gaussian's."""
     heading(axes, "Quantiles; straight: Gaussian")
     shown = [
@@ -111,9 +110,7 @@ def draw_quantiles(axes: Axes, description: Description, both: Composite | None 
     style.legend_above(axes, 1)
 
 
-def draw_summit_heights(
-    axes: Axes, description: Description, both: Composite | None = None
-) -> None:
+def draw_summit_heights(axes: Axes, description: Description, both: Pair | None = None) -> None:
     """Summit heights above the map's mean, with the Gaussian and Nayak's distribution."""
     shape, tops = description.summit_heights, description.summits
     heading(axes, f"{tops.count} summits: heights above the mean", 1 if both is None else 2)

@@ -11,6 +11,7 @@ from ..config import Case, builtin
 from ..config.html_table import card, counted
 from ..config.resolve import resolve
 from ..errors import InputError, SimulationError
+from ..results.record_layout import plain
 from ..results.result import Result
 from ..solver import solve
 from . import audit, figures
@@ -128,7 +129,7 @@ def reproduce(
     if refitted and not stop.is_set():
         partial = replace(partial, problems=problems_of(fit, entries, partial.rows))
     if measured is not None:
-        partial = replace(partial, surfaces=measured.json_object())
+        partial = replace(partial, surfaces=plain(measured.json_object()))
     if keep is not None:
         keep(partial)
     if stop.is_set():

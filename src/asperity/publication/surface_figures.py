@@ -18,13 +18,13 @@ _REACH = 8.0
 
 def heights(found: Pair) -> Drawing:
     """Figure 2: the heights of the composite, both maps added."""
-    surface = found.composite.added
+    surface = found.description.topography
     every = max(-(-count // _FINEST) for count in surface.heights.shape)
     shown = surface.heights[::every, ::every]
     steps = [every * step for step in surface.pixel_size]
     rows, columns = shown.shape
     return Drawing(
-        f"Figure 2: heights of {found.name}, {found.composite.how}",
+        f"Figure 2: heights of {found.name}, {found.how}",
         ("x [m]", "y [m]", "height [m]"),
         {found.name: map_columns(shown, steps)},
         {"rows": rows, "columns": columns, "pixels left out between two": every - 1,
@@ -34,8 +34,8 @@ def heights(found: Pair) -> Drawing:
 
 def distribution(found: Pair) -> Drawing:
     """Figure 3: the convolution of the two distributions of heights against the Gaussian."""
-    both, peaks = found.composite.heights, found.composite.summits
-    shape = found.composite.height_gaussianity
+    both, peaks = found.heights, found.summits
+    shape = found.height_gaussianity
     low, high = np.interp((_TAIL, 1.0 - _TAIL), both.cumulative, both.heights)
     half_width = _REACH * shape.rms
     edges = np.linspace(max(low, -half_width), min(high, half_width), _BINS + 1)

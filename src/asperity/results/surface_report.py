@@ -80,20 +80,20 @@ def _of_surface(found: Surface) -> list[str]:
 
 def _of_pair(found: Pair) -> list[str]:
     """The composite of two surfaces."""
-    both, peaks = found.composite.height_gaussianity, found.composite.summit_gaussianity
+    both, peaks = found.height_gaussianity, found.summit_gaussianity
     added = found.description
     tops = added.summits.rms_height if added.summit_heights else None
     cells = [
-        ("rms height", amount(both.rms, "m"), amount(added.rms_height, "m")),
+        ("rms height", amount(both.rms, "m"), amount(added.topography.rms_height, "m")),
         *_shape_cells(both, added.heights),
         ("summit rms height", amount(peaks.rms if peaks else None, "m"), amount(tops, "m")),
     ]
     return [
         *underlined(f"Composite of {found.name}"),
-        *_wrapped(f"  Maps {found.composite.how}."),
+        *_wrapped(f"  Maps {found.how}."),
         *_table("Both ways", ("by convolution", "by adding"), cells),
         *listed("Verdict on the convolution", [both.verdict]),
-        *rows([("added maps", size_in_words(found.composite.added))]),
+        *rows([("added maps", size_in_words(added.topography))]),
         *_described(added),
     ]
 
@@ -126,8 +126,8 @@ def _described(found: Description) -> list[str]:
 def _heights(found: Description) -> list[Row]:
     shape = found.heights
     rows = [
-        ("rms height Sq", amount(found.rms_height, "m")),
-        ("peak to valley", amount(found.peak_to_valley, "m")),
+        ("rms height Sq", amount(found.topography.rms_height, "m")),
+        ("peak to valley", amount(found.topography.peak_to_valley, "m")),
     ]
     if shape is None:
         return rows

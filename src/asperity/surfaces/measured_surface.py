@@ -10,9 +10,16 @@ from typing import Any
 
 from ..errors import one_line
 from . import Topography
-from .description.composite import Composite, composite
+from .description.convolution import (
+    HeightDistribution,
+    convolved,
+    distribution_against_gaussian,
+    independent_sums,
+)
 from .description.describe import Description, describe
-from .description.gaussianity import Gaussianity
+from .description.gaussianity import Gaussianity, independent_summits
+from .description.sum_of_maps import added, adding_in_words
+from .description.summits import LEAST_SUMMITS
 from .files.content import digest
 from .files.read_surface import read_surface
 from .files.reading import Reading
@@ -100,26 +107,38 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """Two surfaces that face each other.
+    """Two surfaces that face each other, as one rough surface against a flat one; see `pair`.
 
     Parameters
     ----------
     surfaces
         Either one.
-    composite
-        Both as one rough surface against a flat.
     description
-        Of the sum of their maps.
+        Of the sum of their maps: densities and curvatures of the composite come from it.
+    heights, summits
+        The two height distributions convolved, and those of the summits. The latter is the
+        publication's distribution of peaks; None with fewer than ten summits on either.
+    height_gaussianity, summit_gaussianity
+        Those against the Gaussian.
     """
 
     surfaces: tuple[Surface, Surface]
-    composite: Composite
     description: Description
+    heights: HeightDistribution
+    height_gaussianity: Gaussianity
+    summits: HeightDistribution | None
+    summit_gaussianity: Gaussianity | None
 
     @property
     def name(self) -> str:
         """Names of both files."""
         return " + ".join(surface.name for surface in self.surfaces)
+
+    @property
+    def how(self) -> str:
+        """How the maps were added, in words."""
+        first, second = self.surfaces
+        return adding_in_words(first.topography, second.topography)
 
     def json_object(self) -> dict[str, Any]:
         """What ``--json`` prints."""
@@ -134,15 +153,14 @@ class Pair:
             "surfaces": [surface.record() for surface in self.surfaces],
             "composite": {
                 **self._composite(self.description.as_json()),
-                "how": self.composite.how,
-                "verdict": self.composite.height_gaussianity.verdict,
+                "how": self.how,
+                "verdict": self.height_gaussianity.verdict,
             },
         }
 
     def _composite(self, added: dict[str, Any]) -> dict[str, Any]:
         """Heights by convolution, which needs no common pixel; the rest of the added maps."""
-        both, peaks = self.composite.height_gaussianity, self.composite.summit_gaussianity
-        heights = _of_heights(both)
+        heights, peaks = _of_heights(self.height_gaussianity), self.summit_gaussianity
         return {
             **added,
             **heights,
@@ -167,15 +185,49 @@ def surface(file: str, treatment: Treatment) -> Surface:
 
 
 def pair(first: Surface, second: Surface) -> Pair:
-    """Two surfaces and their composite.
+    """Two surfaces that face each other, as one against a flat.
+
+    The publication convolves the two distributions; that needs no common pixel, and it holds
+    for surfaces that know nothing of each other. Adding the maps is one sample of it, and
+    the only source of the composite's densities and curvatures.
 
     Raises
     ------
     InputError
         If both are flat, or if they share fewer than three pixels a side.
     """
-    both = composite(first.topography, second.topography)
-    return Pair((first, second), both, describe(both.added))
+    one, other = first.description, second.description
+    whole = added(first.topography, second.topography)
+    heights = convolved(first.topography.heights, second.topography.heights)
+    enough = min(one.summits.count, other.summits.count) >= LEAST_SUMMITS
+    summits = convolved(one.summits.heights, other.summits.heights) if enough else None
+    return Pair(
+        surfaces=(first, second),
+        description=describe(whole),
+        heights=heights,
+        height_gaussianity=distribution_against_gaussian(
+            heights,
+            independent_sums(
+                (first.topography.rms_height, second.topography.rms_height),
+                (one.independent, other.independent),
+            ),
+            "composite heights",
+        ),
+        summits=summits,
+        summit_gaussianity=_peaks(summits, one, other) if summits is not None else None,
+    )
+
+
+def _peaks(distribution: HeightDistribution, one: Description, other: Description) -> Gaussianity:
+    """The convolved summit heights against the Gaussian."""
+    independent = independent_sums(
+        (one.summits.rms_height, other.summits.rms_height),
+        (
+            independent_summits(one.summits.count, one.independent),
+            independent_summits(other.summits.count, other.independent),
+        ),
+    )
+    return distribution_against_gaussian(distribution, independent, "composite summit heights")
 
 
 def surfaces(

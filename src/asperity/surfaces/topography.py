@@ -84,6 +84,11 @@ class Topography:
         """Root mean square deviation [m] of the heights from their mean, Sq (ISO 25178-2)."""
         return float(np.nanstd(self.heights))
 
+    @property
+    def peak_to_valley(self) -> float:
+        """Highest height over the lowest [m]."""
+        return float(np.nanmax(self.heights) - np.nanmin(self.heights))
+
     def with_heights(self, heights: np.ndarray) -> Topography:
         """The same map with other heights [m]."""
         return dataclasses.replace(self, heights=heights)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -27,16 +26,8 @@ class Description:
 
     Attributes
     ----------
-    source
-        Name of the map's file; empty where there is none.
-    pixels
-        Pixels along x and along y.
-    pixel_size, physical_size
-        Of the map, along x and along y [m].
-    missing_pixels
-        How many pixels are missing.
-    rms_height, peak_to_valley
-        Of the heights about their mean [m].
+    topography
+        The map.
     heights
         The heights against the Gaussian; None for a flat map.
     spectral
@@ -56,13 +47,7 @@ class Description:
         What it means, in sentences.
     """
 
-    source: str
-    pixels: tuple[int, int]
-    pixel_size: tuple[float, float]
-    physical_size: tuple[float, float]
-    missing_pixels: int
-    rms_height: float
-    peak_to_valley: float
+    topography: Topography
     heights: Gaussianity | None
     spectral: Moments
     along_x: ProfileSpectrum | None
@@ -74,17 +59,22 @@ class Description:
     effects: tuple[PixelEffect, ...]
     verdicts: tuple[str, ...]
 
+    @property
+    def independent(self) -> Independent:
+        """How many independent heights the map is worth; 1 for a flat one."""
+        return self.heights.independent if self.heights else Independent(1.0, 1.0, 1.0)
+
     def as_json(self) -> dict[str, Any]:
-        """The figures in SI units, for `json.dumps`; null where a figure does not exist."""
-        heights, summits, enough = self.heights, self.summits, self.summit_heights is not None
-        record = {
-            "source": self.source,
-            "pixels": self.pixels,
-            "pixel_size": self.pixel_size,
-            "physical_size": self.physical_size,
-            "missing_pixels": self.missing_pixels,
-            "rms_height": self.rms_height,
-            "peak_to_valley": self.peak_to_valley,
+        """The figures in SI units, by name; None or NaN where a figure does not exist."""
+        surface, heights, summits = self.topography, self.heights, self.summits
+        return {
+            "source": surface.source,
+            "pixels": surface.heights.shape[::-1],
+            "pixel_size": surface.pixel_size,
+            "physical_size": surface.physical_size,
+            "missing_pixels": surface.missing_pixels,
+            "rms_height": surface.rms_height,
+            "peak_to_valley": surface.peak_to_valley,
             "skewness": heights and heights.skewness,
             "kurtosis": heights and heights.kurtosis,
             "gaussian": _gaussian(heights),
@@ -94,7 +84,7 @@ class Description:
             "spectrum_moments": self._spectrum_moments(),
             "summit_density": summits.density,
             "summit_radius": summits.radius,
-            "summit_rms_height": summits.rms_height if enough else None,
+            "summit_rms_height": summits.rms_height if self.summit_heights else None,
             "summits": self._summits(),
             "mccool": self.mccool and asdict(self.mccool),
             "nayak": self.nayak and self.nayak.as_json(),
@@ -102,8 +92,6 @@ class Description:
             "discretisation_error": self._errors(),
             "verdicts": self.verdicts,
         }
-        plain: dict[str, Any] = _plain(record)
-        return plain
 
     def _summits(self) -> dict[str, Any]:
         """Figures of the summits; those of their distribution only from ten summits up."""
@@ -148,13 +136,7 @@ def describe(topography: Topography) -> Description:
     tops = _summit_shape(summits, worth)
     effects = pixel_effect(topography, summits, spectral)
     return Description(
-        source=topography.source,
-        pixels=(heights.shape[1], heights.shape[0]),
-        pixel_size=topography.pixel_size,
-        physical_size=topography.physical_size,
-        missing_pixels=topography.missing_pixels,
-        rms_height=topography.rms_height,
-        peak_to_valley=float(present.max() - present.min()),
+        topography=topography,
         heights=shape,
         spectral=spectral,
         along_x=profile_spectrum(topography, "x"),
@@ -190,14 +172,3 @@ def _gaussian(shape: Gaussianity | None) -> dict[str, Any]:
         "p_value": shape and shape.p_value,
         "independent": shape and shape.independent.distribution,
     }
-
-
-def _plain(value: Any) -> Any:
-    """Numbers, lists and dictionaries only; NaN and infinity become None, as JSON has neither."""
-    if isinstance(value, dict):
-        return {key: _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    if isinstance(value, float):
-        return float(value) if math.isfinite(value) else None
-    return value
