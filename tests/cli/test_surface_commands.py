@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 from asperity.cli import app
 from asperity.surfaces import Topography
-from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.read_surface import read_surface
 from asperity.surfaces.files.write_surface import write_topography
 from asperity.surfaces.generation.generate import self_affine
 
@@ -83,7 +83,7 @@ def rough(name: str = "rough.csv", seed: int = 1, rms: float = 10e-9, points: in
 
 
 def with_gaps(name: str = "gaps.csv", count: int = 7) -> str:
-    heights = read_topography(rough("whole.nc")).heights.copy()
+    heights = read_surface(rough("whole.nc")).topography.heights.copy()
     heights[10, 5 : 5 + count] = np.nan
     write_topography(Topography(heights, PIXEL), name)
     return name
@@ -196,7 +196,7 @@ def test_missing_pixels_are_refused_kept_or_filled_and_counted():
 
 
 def test_a_tilt_does_not_change_what_is_described():
-    heights = read_topography(rough()).heights
+    heights = read_surface(rough()).topography.heights
     slope = 0.3 * PIXEL[0] * np.arange(heights.shape[1])
     write_topography(Topography(heights + slope, PIXEL), "tilted.nc")
     level, tilted = described("rough.csv"), described("tilted.nc")
@@ -212,7 +212,7 @@ def test_a_cut_of_short_waves_leaves_fewer_and_rounder_summits():
 
 
 def test_an_array_takes_its_size_and_unit_from_the_options():
-    np.save("bare.npy", read_topography(rough()).heights * 1e9)
+    np.save("bare.npy", read_surface(rough()).topography.heights * 1e9)
     options = ["--size", "1.28 um x 1280 nm", "--unit", "nm"]
     found, known = described("bare.npy", *options), described("rough.csv")
     assert found["rms_height"] == pytest.approx(known["rms_height"], rel=1e-9)
@@ -396,7 +396,7 @@ def test_a_made_surface_takes_the_heights_of_an_array_or_of_a_surface():
                    "--force")  # fmt: skip
         assert ran.exit_code == 0, ran.output
         assert source in ran.stdout
-        got = np.sort(read_topography("made.nc").heights, axis=None) / 5e-9
+        got = np.sort(read_surface("made.nc").topography.heights, axis=None) / 5e-9
         if source == "drawn.npy":
             wanted = np.sort((heights - heights.mean()) / heights.std())
             np.testing.assert_allclose(got, wanted, atol=1e-9)

@@ -9,7 +9,7 @@ import pytest
 from asperity.errors import InputError
 from asperity.surfaces import Topography
 from asperity.surfaces.files import netcdf_heights
-from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.read_surface import read_surface
 from asperity.surfaces.files.write_surface import write_topography
 from vendor_files import gwyddion, x3p
 
@@ -25,7 +25,7 @@ WHOLE = {
 def refused(path, **asked):
     """The message of a refusal, after the file's name."""
     with pytest.raises(InputError) as caught:
-        read_topography(path, **asked)
+        read_surface(path, **asked)
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert len(message.splitlines()) == 1
@@ -150,7 +150,7 @@ def test_a_size_is_a_pair_of_positive_lengths(tmp_path, size):
 def test_a_unit_is_a_length(tmp_path, unit):
     path = written(tmp_path, "a.csv", "# size[um] 4 3\n" + PLAIN)
     if unit.strip() == "nm":
-        assert read_topography(path, unit=unit).heights[0, 0] == 1e-9
+        assert read_surface(path, unit=unit).topography.heights[0, 0] == 1e-9
     else:
         assert "the unit must be a length; got" in refused(path, unit=unit)
 
@@ -164,8 +164,8 @@ def test_file_and_caller_may_not_contradict(tmp_path, suffix):
         write_topography(SURFACE, path)
     assert "the unit must be the one in the file" in refused(path, unit="nm")
     assert "the size must be the one in the file" in refused(path, size=(6e-6, 9e-6))
-    agreed = read_topography(path, unit="m", size=SURFACE.physical_size)
-    np.testing.assert_array_equal(agreed.heights, read_topography(path).heights)
+    agreed = read_surface(path, unit="m", size=SURFACE.physical_size).topography
+    np.testing.assert_array_equal(agreed.heights, read_surface(path).topography.heights)
 
 
 SUFFIXES = [".npy", ".csv", ".txt", ".xyz", ".nc", ".csv.gz", ".npy.gz", *WHOLE, "4.nc"]
@@ -182,7 +182,7 @@ def test_a_file_cut_short_is_refused(tmp_path, suffix, part):
     else:
         write_topography(SURFACE, path)
     asked = {"unit": "m", "size": SURFACE.physical_size} if ".npy" in suffix else {}
-    read_topography(path, **asked)
+    read_surface(path, **asked)
     path.write_bytes(path.read_bytes()[: int(part * path.stat().st_size)])
     refused(path, **asked)
 
@@ -217,7 +217,7 @@ def test_a_netcdf_has_one_plane_or_a_channel_is_named(tmp_path, how, rule):
     path = plane(tmp_path / "a.nc", **how)
     assert rule in refused(path)
     if how["names"] == ["a", "b"]:
-        assert read_topography(path, channel="b").heights[0, 0] == 1e-9
+        assert read_surface(path, channel="b").topography.heights[0, 0] == 1e-9
         assert "one of a, b; got 'c'" in refused(path, channel="c")
 
 
@@ -265,7 +265,7 @@ def test_a_format_known_by_its_ending_alone_is_not_guessed(tmp_path):
     path = written(tmp_path, "a.bin", bytes(range(72)))
     assert "in a known format" in refused(path, size=(1e-6, 1e-6), unit="m")
     path = written(tmp_path, "a.hgt", bytes(range(72)))
-    surface = read_topography(path, size=(1e-6, 3e-6), unit="nanometer")
+    surface = read_surface(path, size=(1e-6, 3e-6), unit="nanometer").topography
     assert surface.heights[0, 1] == (2 * 256 + 3) / 1e9
     assert surface.pixel_size == pytest.approx((1e-6 / 6, 3e-6 / 6), rel=1e-15)
 
@@ -283,7 +283,7 @@ def test_no_file_a_folder_and_no_permission_are_told_apart(tmp_path):
     assert "must be a regular file" in refused(tmp_path / "pipe.csv")
     assert "empty file" in refused(written(tmp_path, "a.csv", ""))
     with pytest.raises(InputError, match="no such file"):
-        read_topography("a\0.csv")
+        read_surface("a\0.csv")
 
 
 def test_a_file_that_may_not_be_read_says_why(tmp_path, monkeypatch):

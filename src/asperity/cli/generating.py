@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 import shlex
 from math import sqrt
@@ -20,8 +19,9 @@ from asperity.results.summary import amount
 from asperity.results.surface_report import pixel_in_words, rows
 from asperity.surfaces import Topography
 from asperity.surfaces.description.describe import Description, describe
-from asperity.surfaces.files.content import MOST_PIXELS, content_of, cut_short, refusal, suffix_of
-from asperity.surfaces.files.read_surface import read_topography
+from asperity.surfaces.files.arrays import numbers_of_array
+from asperity.surfaces.files.content import MOST_PIXELS, content_of, suffix_of
+from asperity.surfaces.files.read_surface import read_surface
 from asperity.surfaces.files.write_surface import check_target, write_topography
 from asperity.surfaces.generation.generate import self_affine
 from asperity.surfaces.generation.self_affine import SpectrumError, spectrum_error
@@ -70,7 +70,7 @@ def generate(
     check_target(Path(file), force=force)
     distribution = "kurtosis" if options["heights"] is None else "heights"
     with in_options(heights=distribution):
-        wanted = _wanted(options)
+        wanted = _wanted(options, reporter)
         with reporter.watch(compiles=False) as progress:
             made = completed(lambda stop: _make(wanted, progress))
     with reporter.step("file"):
@@ -80,13 +80,15 @@ def generate(
     )
 
 
-def _wanted(options: dict[str, Any]) -> _Wanted:
+def _wanted(options: dict[str, Any], reporter: Reporter) -> _Wanted:
     """The options as numbers, checked as far as one alone can be wrong."""
     points = _points(options["points"])
     if options["size"] is None:
         raise InputError("`size` must be given, such as '10 um x 10 um'; got nothing")
     width, length = lengths(options["size"], 2, "size")
-    heights, words = _heights(options["heights"], options["skewness"], options["kurtosis"])
+    heights, words = _heights(
+        options["heights"], options["skewness"], options["kurtosis"], reporter
+    )
     measures = {
         name: None if options[name] is None else quantity(options[name], "m", name)
         for name in ("roll_off", "cut_off", "rms_height")
@@ -121,7 +123,7 @@ def _points(text: str) -> tuple[int, int]:
 
 
 def _heights(
-    file: str | None, skewness: float | None, kurtosis: float | None
+    file: str | None, skewness: float | None, kurtosis: float | None, reporter: Reporter
 ) -> tuple[tuple[float, float] | np.ndarray | None, str]:
     """The distribution of heights, and its name."""
     moments = (skewness, kurtosis)
@@ -136,25 +138,18 @@ def _heights(
         raise InputError("`heights` and `skewness` or `kurtosis` exclude each other; got both")
     name = one_line(Path(file).name)
     if suffix_of(file) == ".npy":
-        return _numbers(file), f"distributed as the numbers of {name}"
-    flat, step = levelled(read_topography(file), "tilt")
+        return (
+            numbers_of_array(content_of(file), file).ravel(),
+            f"distributed as the numbers of {name}",
+        )
+    reading = read_surface(file)
+    for line in reading.notes:
+        reporter.note(f"asperity: warning: {file}: {line}")
+    flat, step = levelled(reading.topography, "tilt")
     known = flat.heights[~flat.missing]
     lost = flat.heights.size - known.size
     left_out = f"; {lost} missing pixels left out" if lost else ""
     return known, f"distributed as those of {name} ({step.words}{left_out})"
-
-
-def _numbers(file: str) -> np.ndarray:
-    """The numbers of an .npy file of any shape."""
-    try:
-        values = np.load(io.BytesIO(content_of(file)), allow_pickle=False)
-    except InputError:
-        raise
-    except Exception as error:  # a damaged header makes NumPy's parser raise many kinds
-        raise cut_short(file, "an .npy file that cannot be read") from error
-    if not isinstance(values, np.ndarray) or values.dtype.kind not in "iuf":
-        raise refusal(file, "must hold real numbers; save the heights as float64")
-    return np.asarray(values, dtype=np.float64).ravel()
 
 
 def _make(wanted: _Wanted, progress: Progress | None) -> _Made:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +25,6 @@ from asperity.units import lengths, quantity
 _MOST_FILES = 2
 _PACKED = ".gz"
 _PREPARATION = tuple(field.name for field in fields(Preparation))
-
-
-@dataclass(frozen=True)
-class _Request:
-    """What to do with the answer."""
-
-    folder: Path | None
-    force: bool
-    reporter: Reporter
 
 
 def describe(
@@ -72,7 +63,7 @@ def describe(
     for one in found.surfaces if isinstance(found, Pair) else (found,):
         with in_options():
             one.description.summits.at_least()
-    _deliver(found, _Request(folder, force, reporter))
+    _deliver(found, folder, reporter, force=force)
 
 
 def treatment(options: Mapping[str, Any]) -> Treatment:
@@ -126,26 +117,26 @@ def _found(
         return surfaces(tuple(files), asked, progress, stop)
 
 
-def _deliver(found: Surface | Pair, request: _Request) -> None:
+def _deliver(
+    found: Surface | Pair, folder: Path | None, reporter: Reporter, *, force: bool
+) -> None:
     """Write the files and print the answer."""
-    with request.reporter.step("pictures and files"):
-        written, code = _keep(found, request)
+    with reporter.step("pictures and files"):
+        written, code = ([], 0) if folder is None else _keep(found, folder, force=force)
     if code:
         say("asperity: interrupted while drawing; the rest is kept", whole=True)
-    request.reporter.answer(lambda: surface_report.text(found), lambda: plain(found.json_object()))
-    request.reporter.written(written)
+    reporter.answer(lambda: surface_report.text(found), lambda: plain(found.json_object()))
+    reporter.written(written)
     if code:
         raise typer.Exit(code)
 
 
-def _keep(found: Surface | Pair, request: _Request) -> tuple[list[Path], int]:
+def _keep(found: Surface | Pair, folder: Path, *, force: bool) -> tuple[list[Path], int]:
     """Write the files; without pictures, which take seconds, where time presses."""
-    if request.folder is None:
-        return [], 0
     # In a thread, where no interruption can be lost in a callback of somebody else's.
     drawn, code = Work(lambda stop: _pictures(found)).wait()
     contents = {**({} if code else drawn or {}), **surface_report.files(found)}
-    return write_folder(request.folder, contents, SURFACE_FILES, force=request.force), code
+    return write_folder(folder, contents, SURFACE_FILES, force=force), code
 
 
 def _pictures(found: Surface | Pair) -> dict[str, bytes]:

@@ -17,7 +17,27 @@ _HEADERS = {
 
 
 def matrix_of_array(content: bytes, file: str) -> np.ndarray:
-    """The numbers of an .npy file, shape (rows, columns).
+    """The heights of an .npy file, shape (rows, columns).
+
+    Raises
+    ------
+    InputError
+        As `numbers_of_array`, or where it holds anything but a plane.
+    """
+    heights = numbers_of_array(content, file)
+    if heights.ndim != 2:
+        raise refusal(
+            file,
+            f"must hold a plane of heights, rows by columns; got shape "
+            f"{reprlib.repr(heights.shape)}; save one map a file",
+        )
+    if heights.size > MOST_PIXELS:
+        raise refusal(file, f"must have at most {MOST_PIXELS} pixels; got {heights.size}")
+    return heights
+
+
+def numbers_of_array(content: bytes, file: str) -> np.ndarray:
+    """The numbers of an .npy file of any shape.
 
     The header is checked against the length of the file before any memory is taken, and nothing
     is unpickled.
@@ -25,7 +45,7 @@ def matrix_of_array(content: bytes, file: str) -> np.ndarray:
     Raises
     ------
     InputError
-        Where it is no .npy file, is cut short, or holds anything but a plane of real numbers.
+        Where it is no .npy file, is cut short, or holds anything but real numbers.
     """
     held = io.BytesIO(content)
     try:
@@ -39,20 +59,12 @@ def matrix_of_array(content: bytes, file: str) -> np.ndarray:
         ) from error
     if kind.kind not in "iuf" or kind.hasobject:
         raise refusal(file, f"must hold real numbers; got {kind}; save the heights as float64")
-    if len(shape) != 2:
-        raise refusal(
-            file,
-            f"must hold a plane of heights, rows by columns; got shape {reprlib.repr(shape)}; "
-            "save one map a file",
-        )
     left = len(content) - held.tell()
-    if min(shape) < 1 or size != left:
+    if min(shape, default=1) < 1 or size != left:
         raise cut_short(
             file, f"a header of {reprlib.repr(shape)} numbers ({size} bytes) over {left} bytes"
         )
-    if math.prod(shape) > MOST_PIXELS:
-        raise refusal(file, f"must have at most {MOST_PIXELS} pixels; got {math.prod(shape)}")
     plain = np.frombuffer(content, dtype=kind, offset=held.tell())
     with np.errstate(over="ignore"):  # an extended number beyond float64 becomes inf
-        heights = plain.astype(np.float64)
-    return heights.reshape(shape, order="F" if columns_first else "C")
+        numbers = plain.astype(np.float64)
+    return numbers.reshape(shape, order="F" if columns_first else "C")

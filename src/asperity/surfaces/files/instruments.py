@@ -17,7 +17,7 @@ from ...units import shown
 from ..topography import Topography
 from .content import MOST_PIXELS, cut_short, refusal, suffix_of
 from .header import agreed_size, agreed_unit, in_metres
-from .reading import Reading
+from .reading import Asked, Reading
 
 _OURS = ".npy .csv .txt .dat .xyz .nc"
 """Endings that the program reads itself, each also packed as .gz."""
@@ -26,13 +26,7 @@ _BY_ENDING = ("nms", "hgt")
 """Formats without a mark of their own, which fit many a file: taken by their ending alone."""
 
 
-def instrument_reading(
-    content: bytes,
-    file: str,
-    size: tuple[float, float] | None,
-    unit: str | None,
-    channel: str | int | None,
-) -> Reading:
+def instrument_reading(content: bytes, file: str, asked: Asked) -> Reading:
     """One channel of heights from a file of any format that SurfaceTopography reads.
 
     Parameters
@@ -41,8 +35,8 @@ def instrument_reading(
         The file's bytes, unpacked.
     file
         Its name.
-    size, unit, channel
-        As `asperity.surfaces.files.read_surface.read_topography`.
+    asked
+        What is said of it beside.
 
     Raises
     ------
@@ -56,7 +50,7 @@ def instrument_reading(
         import SurfaceTopography.IO as library
 
         try:
-            reading = _read(library, content, file, size, unit, channel)
+            reading = _read(library, content, file, asked)
         except InputError:
             raise
         except Exception as error:  # damaged files make its readers raise errors of every kind
@@ -77,22 +71,15 @@ def _silenced(name: str) -> Iterator[None]:
         logger.propagate = before
 
 
-def _read(
-    library: Any,
-    content: bytes,
-    file: str,
-    size: tuple[float, float] | None,
-    unit: str | None,
-    channel: str | int | None,
-) -> Reading:
+def _read(library: Any, content: bytes, file: str, asked: Asked) -> Reading:
     with library.open_topography(io.BytesIO(content)) as reader:
         kind = reader.format()
         if kind in _BY_ENDING and suffix_of(file) != f".{kind}":
             raise _unknown(file)
         heights = [one for one in reader.channels if _is_map(one)]
-        chosen = _chosen(heights, reader.default_channel, file, channel)
-        heights_unit = agreed_unit(chosen.unit or None, unit, file)
-        width, length = _size(chosen, heights_unit, size, file)
+        chosen = _chosen(heights, reader.default_channel, file, asked.channel)
+        heights_unit = agreed_unit(chosen.unit or None, asked.unit, file)
+        width, length = _size(chosen, heights_unit, asked.size, file)
         surface = chosen.topography(**_lacking(chosen))
         _check_others(library, reader.channels, chosen)
         columns, rows = surface.nb_grid_pts

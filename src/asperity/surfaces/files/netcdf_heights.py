@@ -14,6 +14,7 @@ from ...errors import InputError
 from ...units import shown
 from .content import MOST_PIXELS, cut_short, refusal
 from .header import agreed_size, agreed_unit, checked_unit, in_metres
+from .reading import Asked
 from .scattered_points import steps_of
 
 _CLASSIC = (b"CDF\x01", b"CDF\x02")
@@ -43,11 +44,7 @@ class Plane(NamedTuple):
 
 
 def map_of_netcdf(
-    content: bytes,
-    file: str,
-    size: tuple[float, float] | None,
-    unit: str | None,
-    channel: str | int | None,
+    content: bytes, file: str, asked: Asked
 ) -> tuple[np.ndarray, tuple[float, float]]:
     """Heights [m] and pixel size (dx, dy) [m] of a netCDF file.
 
@@ -57,8 +54,8 @@ def map_of_netcdf(
         The file's bytes.
     file
         Its name.
-    size, unit, channel
-        As `asperity.surfaces.files.read_surface.read_topography`.
+    asked
+        What is said of it beside.
 
     Raises
     ------
@@ -66,7 +63,7 @@ def map_of_netcdf(
         Where the file is no whole netCDF file, or does not say which heights, unit and size.
     """
     try:
-        plane = _plane(_opened(content, file), file, channel)
+        plane = _plane(_opened(content, file), file, asked.channel)
     except InputError as error:
         raise (error if error.file else refusal(file, str(error))) from None
     except Exception as error:  # damaged files make the libraries raise many kinds
@@ -74,10 +71,10 @@ def map_of_netcdf(
     rows, columns = plane.values.shape
     if not plane.values.size:
         raise cut_short(file, f"a plane of {columns} x {rows} pixels")
-    heights = in_metres(plane.values, agreed_unit(plane.unit, unit, file))
+    heights = in_metres(plane.values, agreed_unit(plane.unit, asked.unit, file))
     step = plane.pixel_size
     stated = None if step is None else (columns * step[0], rows * step[1])
-    width, length = agreed_size(stated, size, file, _LINE)
+    width, length = agreed_size(stated, asked.size, file, _LINE)
     return heights, step or (width / columns, length / rows)
 
 

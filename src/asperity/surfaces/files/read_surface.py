@@ -38,7 +38,6 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 
 import numpy as np
 
@@ -50,7 +49,7 @@ from .content import refusal
 from .header import agreed_size, agreed_unit, check_pixels, in_metres
 from .instruments import instrument_reading
 from .netcdf_heights import map_of_netcdf
-from .reading import Reading
+from .reading import Asked, Reading
 from .scattered_points import gridded
 
 _TEXTS = (".csv", ".txt", ".dat", ".xyz")
@@ -60,45 +59,6 @@ _ADVICE_UNIT = ", or by a line `# unit nm` in the file"
 
 Map = tuple[np.ndarray, tuple[float, float]]
 """Heights [m], shape (rows, columns), and pixel size (dx, dy) [m]."""
-
-
-def read_topography(
-    path: str | os.PathLike[str],
-    *,
-    size: tuple[float, float] | None = None,
-    unit: str | None = None,
-    channel: str | int | None = None,
-) -> Topography:
-    """A surface from a file.
-
-    Parameters
-    ----------
-    path
-        The file; its ending names the format.
-    size
-        Size (x, y) [m] of the whole map, pixels times their size, where the file does not state it.
-    unit
-        Unit of the heights, e.g. ``"nm"``, where the file does not state it; of points also that of
-        x and y.
-    channel
-        Number or name of the channel; by default the one that the format's reader prefers, which
-        `read_surface` names.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read, or what it lacks is not given, or what is given contradicts
-        it; the message is one line that names file, rule and remedy.
-
-    Warns
-    -----
-    UserWarning
-        Where the reader of an instrument's format warns of something in the file.
-    """
-    reading = read_surface(path, size=size, unit=unit, channel=channel)
-    for note in reading.notes:
-        warnings.warn(f"{os.fspath(path)}: {note}", UserWarning, stacklevel=2)
-    return reading.topography
 
 
 def read_surface(
@@ -112,30 +72,39 @@ def read_surface(
 
     Parameters
     ----------
-    path, size, unit, channel
-        As `read_topography`.
+    path
+        The file; its ending names the format.
+    size
+        Size (x, y) [m] of the whole map, pixels times their size, where the file does not state it.
+    unit
+        Unit of the heights, e.g. ``"nm"``, where the file does not state it; of points also that of
+        x and y.
+    channel
+        Number or name of the channel; by default the one that the format's reader prefers.
 
     Raises
     ------
     InputError
-        As `read_topography`.
+        Where the file cannot be read, or what it lacks is not given, or what is given contradicts
+        it; the message is one line that names file, rule and remedy.
     """
+    asked = Asked(size, unit, channel)
     file = os.fspath(path)
     suffix = packed.suffix_of(file)
     content = packed.content_of(file)
     if suffix == ".nc":
-        heights, pixel_size = map_of_netcdf(content, file, size, unit, channel)
+        heights, pixel_size = map_of_netcdf(content, file, asked)
         return Reading(Topography(heights, pixel_size, file), "netCDF")
     if suffix == ".npy" or (suffix in _TEXTS and not _is_binary(suffix, content)):
         if channel is not None:
             raise refusal(file, f"holds one map and no channels; got {channel!r}; leave it out")
         if suffix == ".npy":
-            found = _from_array(content, file, size, unit)
+            found = _from_array(content, file, asked)
             return Reading(Topography(*found, file), "NumPy array")
         text = texts.split(content, file)
-        found, words = _from_text(text, suffix, size, unit)
+        found, words = _from_text(text, suffix, asked)
         return Reading(Topography(*found, file), words, notes=_doubts(text))
-    return instrument_reading(content, file, size, unit, channel)
+    return instrument_reading(content, file, asked)
 
 
 def _is_binary(suffix: str, content: bytes) -> bool:
@@ -143,12 +112,10 @@ def _is_binary(suffix: str, content: bytes) -> bool:
     return suffix == ".dat" and b"\0" in content[:_HEAD]
 
 
-def _from_array(
-    content: bytes, file: str, size: tuple[float, float] | None, unit: str | None
-) -> Map:
+def _from_array(content: bytes, file: str, asked: Asked) -> Map:
     values = matrix_of_array(content, file)
-    heights = in_metres(values, agreed_unit(None, unit, file))
-    return heights, _pixel_size(values, agreed_size(None, size, file))
+    heights = in_metres(values, agreed_unit(None, asked.unit, file))
+    return heights, _pixel_size(values, agreed_size(None, asked.size, file))
 
 
 def _doubts(text: texts.Text) -> tuple[str, ...]:
@@ -158,14 +125,12 @@ def _doubts(text: texts.Text) -> tuple[str, ...]:
     return ("its last line has no end: it may have been cut short; `# pixels 512 256` tells",)
 
 
-def _from_text(
-    text: texts.Text, suffix: str, size: tuple[float, float] | None, unit: str | None
-) -> tuple[Map, str]:
+def _from_text(text: texts.Text, suffix: str, asked: Asked) -> tuple[Map, str]:
     file = text.file
     if suffix == ".xyz" or text.stated.lateral is not None:
-        return _from_points(text, size, unit), "points x y z"
-    heights_unit = agreed_unit(text.stated.unit, unit, file, _ADVICE_UNIT)
-    agreed = agreed_size(text.stated.size, size, file, _ADVICE_SIZE)
+        return _from_points(text, asked), "points x y z"
+    heights_unit = agreed_unit(text.stated.unit, asked.unit, file, _ADVICE_UNIT)
+    agreed = agreed_size(text.stated.size, asked.size, file, _ADVICE_SIZE)
     if gap := re.search(rb"\n *\n", text.body):
         line = text.first + text.body.count(b"\n", 0, gap.start()) + 1
         raise refusal(
@@ -176,8 +141,8 @@ def _from_text(
     return (in_metres(values, heights_unit), _pixel_size(values, agreed)), "matrix of text"
 
 
-def _from_points(text: texts.Text, size: tuple[float, float] | None, unit: str | None) -> Map:
-    heights_unit = agreed_unit(text.stated.unit, unit, text.file, _ADVICE_UNIT)
+def _from_points(text: texts.Text, asked: Asked) -> Map:
+    heights_unit = agreed_unit(text.stated.unit, asked.unit, text.file, _ADVICE_UNIT)
     x_unit, y_unit = text.stated.lateral or (heights_unit, heights_unit)
     points = texts.numbers(text, columns=3)
     points[:, 0] = in_metres(points[:, 0], x_unit)
@@ -185,7 +150,7 @@ def _from_points(text: texts.Text, size: tuple[float, float] | None, unit: str |
     values, (width, length) = gridded(points, text.file)
     check_pixels(text.stated, values.shape, text.file)
     rows, columns = values.shape
-    for told in (text.stated.size, size):
+    for told in (text.stated.size, asked.size):
         agreed_size((columns * width, rows * length), told, text.file)
     return in_metres(values, heights_unit), (width, length)
 

@@ -3,8 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..topography import Topography
+
+
+class Asked(NamedTuple):
+    """What is said of a file beside what it says itself; None where nothing is.
+
+    Attributes
+    ----------
+    size
+        Size (x, y) [m] of the whole map, pixels times their size.
+    unit
+        Unit of the heights, e.g. ``"nm"``; of points also that of x and y.
+    channel
+        Number or name of the channel.
+    """
+
+    size: tuple[float, float] | None
+    unit: str | None
+    channel: str | int | None
 
 
 @dataclass(frozen=True)
