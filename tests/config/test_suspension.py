@@ -162,3 +162,15 @@ def test_a_body_that_never_touches_has_no_restitution_and_says_that_it_swings():
     assert free.measures["restitution"] == [None] * 5
     assert not free.measures["captured"]
     assert verdict(free).startswith("never touches, and still swings on its spring")
+
+
+def test_a_study_tells_of_a_body_that_never_touches_what_its_case_tells():
+    study = parse(
+        'schema = 1\nkeep = ["captured"]\n'
+        '[axes]\n"impact.release_separation" = {values = ["90 nm", "91 nm"]}\n'
+        + SWITCH.replace("schema = 1\n", "").replace("[", "[base.")
+    )
+    _, effort = compute(study, 0)
+    alone = asperity.solve(study.case(0), critical=False, beside=False)
+    assert [line for number, line in effort.warned if number == 0] == sorted(alone.warnings)
+    assert not any("released within the end of contact" in line for line in alone.warnings)

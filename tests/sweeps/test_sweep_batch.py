@@ -269,8 +269,11 @@ def test_cases_that_are_stepped_in_time_have_the_same_columns():
 def test_a_task_that_is_asked_to_stop_gives_nothing():
     stop = threading.Event()
     stop.set()
+    study = parse("schema = 1\n" + STUDIES["published"])
     with pytest.raises(Stopped):
-        compute(parse("schema = 1\n" + STUDIES["published"]), 0, stop)
+        compute(study, 0, stop)
+    with pytest.raises(Stopped):
+        evaluate(study, study.values(0, study.size), stop=stop)
 
 
 @pytest.mark.parametrize("base", ["published-exact", "published"])

@@ -87,7 +87,9 @@ def _indices(file: str, measure: str, reporter: Reporter) -> Sensitivity:
 
         tell_of(0)
         return completed(
-            lambda stop: indices(study, measure, lambda values: evaluate(study, values, tell_of))
+            lambda stop: indices(
+                study, measure, lambda values: evaluate(study, values, tell_of, stop)
+            )
         )
 
 

@@ -35,13 +35,11 @@ def speeds_of(ends: str | None, points: int | None) -> dict[str, Any]:
         If the ends are not two ascending speeds.
     """
     if ends is None:
-        return {} if points is None else {"points": points}
+        return {"points": points}
     given = [quantity(part.strip(), "m/s", "--speeds") for part in ends.split(",")]
     if len(given) != 2 or not 0.0 < given[0] < given[1]:
         raise InputError(
             "`--speeds` must be two ascending speeds above 0 with a comma between them, such as "
             f"'1 mm/s, 10 m/s'; got {ends!r}"
         )
-    import numpy as np
-
-    return {"speeds": np.geomspace(given[0], given[1], 61 if points is None else points)}
+    return {"ends": (given[0], given[1]), "points": points}

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from .. import regimes
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
+from ..regimes.few_asperities import pull_warnings
 from ..regimes.liquid_regime import liquid_state
-from ..regimes.validity import AtDepth, check_surface, slow_menisci, warnings_of
+from ..regimes.validity import (
+    AtDepth,
+    check_surface,
+    release_warnings,
+    slow_menisci,
+    warnings_of,
+)
 
 
 class Assessment(NamedTuple):
@@ -64,6 +72,32 @@ def assessment_of(name: str, problem: Problem, motion: Motion) -> Assessment:
     warnings = warnings_of(problem, regime, at_depth, motion)
     warnings += slow_menisci(problem, motion)
     return Assessment(name, regime, regimes.verdicts(situation), warnings)
+
+
+def measured_warnings(
+    problem: Problem,
+    regime: regimes.Regime,
+    at_depth: AtDepth,
+    motion: Motion,
+    measures: Mapping[str, Any],
+) -> list[str]:
+    """One line for each way in which a motion that was measured leaves the validity of its models.
+
+    Parameters
+    ----------
+    problem, regime, at_depth, motion
+        The case, its numbers, its contact at closest approach and its motion.
+    measures
+        Its :class:`~asperity.results.measures.Measures`, by name.
+    """
+    pull_off, held, contact_end = (
+        float(measures[name]) for name in ("pull_off", "held_at_pull_off", "contact_end")
+    )
+    return [
+        *warnings_of(problem, regime, at_depth, motion),
+        *pull_warnings(problem.inputs, pull_off, held),
+        *(release_warnings(contact_end) if measures["touched"] else ()),
+    ]
 
 
 def regime_of(problem: Problem, at_depth: AtDepth) -> regimes.Regime:

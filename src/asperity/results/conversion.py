@@ -20,16 +20,14 @@ from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
 from ..regimes.accuracy import CLOSED, balance_error
-from ..regimes.few_asperities import bodies_differ, pull_warnings
+from ..regimes.few_asperities import bodies_differ
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
     AtDepth,
     check_surface,
-    release_warnings,
     slow_menisci,
-    warnings_of,
 )
-from .assessment import regime_of
+from .assessment import measured_warnings, regime_of
 from .first_contact import FirstContact, first_contact, least_peak, passing_at
 from .measures import Measures, measure
 from .realisations import Realisations
@@ -122,7 +120,7 @@ def _sampled(
         series = stepped.until(min(limit, float(impacts.apex_time[-1])) if cut else limit)
     else:
         series = sample(body, motion.table, impacts).until(limit)
-    return series, _by_name(contact, body, ascending(series.lost, _known(motion)))
+    return series, losses_by_name(contact, body, ascending(series.lost, _known(motion)))
 
 
 def first_restitution(solution: Solution) -> float | None:
@@ -203,9 +201,7 @@ def result_of(
         ledger=_ledger(solution.contact, motion, body, made),
         surface=None if inputs.asperities is None else inputs.asperities.facts,
         warnings=[
-            *warnings_of(problem, regime, at_depth, motion),
-            *pull_warnings(inputs, float(measures.pull_off), float(measures.held_at_pull_off)),
-            *(release_warnings(float(measures.contact_end)) if measures.touched else ()),
+            *measured_warnings(problem, regime, at_depth, motion, measures._asdict()),
             *slow_menisci(problem, motion, solution.trajectory),
             *kept_elastic(inputs, float(np.asarray(measures.restitution)[0]), elastic),
         ],
@@ -260,7 +256,7 @@ def _known(motion: Motion) -> float:
     return share * float(motion.impacts.maximum_kinetic[0])
 
 
-def _by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
+def losses_by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:
     """Losses by mechanism, along the last axis, with those of one name together."""
     out: dict[str, np.ndarray] = {}
     for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
@@ -276,7 +272,7 @@ def _zero_height(ground: Reference) -> float:
 
 def _ledger(contact: Contact, motion: Motion, body: Body, made: int) -> dict[str, Any]:
     """Energy at the release, lost by mechanism, and how well all of it adds up."""
-    by_name = _by_name(contact, body, np.asarray(motion.impacts.lost[made - 1]))
+    by_name = losses_by_name(contact, body, np.asarray(motion.impacts.lost[made - 1]))
     lost = {name: float(energy) for name, energy in by_name.items()}
     zero = _zero_height(motion.reference)
     initial = float(motion.release) - float(body.plain.load.potential_gain(0.0, zero))

@@ -18,8 +18,12 @@ def checked(speeds: np.ndarray) -> np.ndarray:
     return found
 
 
-def decades(edges: list[float], own: float, points: int) -> np.ndarray:
-    """Speeds [m/s] over decades: about the edges of capture, and about the case's own."""
+def chosen(
+    ends: tuple[float, float] | None, points: int, edges: list[float], own: float
+) -> np.ndarray:
+    """Speeds [m/s] between two ends, else over decades about the edges of capture and its own."""
+    if ends is not None:
+        return np.geomspace(*ends, points)
     low, high = (edges[0], edges[-1]) if edges else (own, own)
     first, last = min(_BELOW * low, own), max(_ABOVE * high, own)
     # Where capture begins or ends restitution falls to 0 as a root does.

@@ -31,7 +31,7 @@ from ..results.result import drawing
 from ..results.results_folder import RESTITUTION_FILES, write_folder
 from ..results.summary import amount, warning_lines
 from .capture_probability import CaptureProbability, capture_probability
-from .curve_speeds import checked, decades, left_out
+from .curve_speeds import checked, chosen, left_out
 
 if TYPE_CHECKING:
     import xarray
@@ -221,6 +221,7 @@ def restitution_curve(
     case: CaseLike,
     speeds: np.ndarray | None = None,
     *,
+    ends: tuple[float, float] | None = None,
     points: int | None = None,
     name: str | None = None,
     progress: Report | None = None,
@@ -233,10 +234,13 @@ def restitution_curve(
     case
         A case, or the name or path of one; the body is launched where the forces on it begin.
     speeds
-        Speeds of launch [m/s], all positive; by default over three decades about the critical
-        velocity, or about the case's own speed where there is none.
+        Speeds of launch [m/s], all positive; without them they are chosen.
+    ends
+        Smallest and largest speed [m/s] of those chosen, at even ratios; by default they lie over
+        three decades about the critical velocity, or about the case's own speed where there is
+        none.
     points
-        How many speeds, where they are chosen: 61, or 31 with single bodies.
+        How many are chosen: 61, or 31 with single bodies.
     name, progress, stop
         As for :func:`asperity.solve`.
 
@@ -261,8 +265,8 @@ def restitution_curve(
     report(0.3, "critical velocity")
     found = critical_measures(launcher.edges(solution))
     if speeds is None:
-        usual = POINTS if inputs.placement is None else FEWER
-        speeds = decades(found["capture_edges"], own, points or usual)
+        count = points or (POINTS if inputs.placement is None else FEWER)
+        speeds = chosen(ends, count, found["capture_edges"], own)
     rebounds: list[Rebound] = []
     for number, speed in enumerate(speeds.tolist()):
         report(0.4 + 0.6 * number / speeds.size, f"{number} of {speeds.size} speeds")

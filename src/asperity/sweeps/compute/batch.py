@@ -13,6 +13,7 @@ from asperity.config import Case
 from asperity.errors import ENDS, InputError, SimulationError
 from asperity.integration.clock import Clock
 from asperity.regimes.validity import AtDepth, check_surface
+from asperity.results.conversion import losses_by_name
 from asperity.results.result import Result
 from asperity.solver import solve
 from asperity.sweeps.compute.building import Group, Values, built, case_at, problem_at
@@ -82,7 +83,10 @@ def compute(study: Study, task: int, stop: threading.Event | None = None) -> tup
 
 
 def evaluate(
-    study: Study, values: Values, progress: Callable[[int], None] | None = None
+    study: Study,
+    values: Values,
+    progress: Callable[[int], None] | None = None,
+    stop: threading.Event | None = None,
 ) -> Columns:
     """The columns of cases with any values of a study's axes, shape (cases,) each.
 
@@ -94,13 +98,15 @@ def evaluate(
         By the axes' keys, SI.
     progress
         Told of each number of cases that are computed.
+    stop
+        Ends it when set, by `Stopped`.
     """
     count = next(iter(values.values())).shape[0]
     parts = []
     most = study.blocks.largest
     for begin in range(0, count, most):
         some = {key: array[begin : begin + most] for key, array in values.items()}
-        columns, effort = _computed(study, some, Clock())
+        columns, effort = _computed(study, some, Clock(stop))
         parts.append(columns)
         if progress is not None:
             progress(effort.cases)
@@ -195,16 +201,13 @@ def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) ->
 
 def _totals(group: Group, solution: BatchSolution) -> Columns:
     """What is read off the impacts themselves."""
-    past, contact, body = solution.history, group.batch.contact, group.batch.body
-    out = {
+    lost = losses_by_name(group.batch.contact, group.batch.body, solution.lost)
+    return {
         "last_apex_time": solution.last_apex_time,
-        "minimum_separation": past["closest_approach"][:, 0],
+        "minimum_separation": solution.history["closest_approach"][:, 0],
         "energy_lost": solution.lost.sum(axis=1),
+        **{f"lost_{name}": values for name, values in lost.items()},
     }
-    for k, name in enumerate((*contact.mechanisms, *body.mechanisms)):
-        key = f"lost_{name}"
-        out[key] = out.get(key, 0.0) + solution.lost[:, k]
-    return out
 
 
 def _turns(past: Columns) -> Columns:

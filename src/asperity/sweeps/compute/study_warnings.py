@@ -6,9 +6,8 @@ from typing import Any
 
 from asperity.dynamics import Impacts, Motion
 from asperity.dynamics.problem import Problem
-from asperity.regimes.few_asperities import pull_warnings
-from asperity.regimes.validity import AtDepth, release_warnings, warnings_of
-from asperity.results.assessment import regime_of
+from asperity.regimes.validity import AtDepth
+from asperity.results.assessment import measured_warnings, regime_of
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 
 Warned = tuple[int, str]
@@ -32,12 +31,5 @@ def warnings_in(problem: Problem, solution: BatchSolution, place: int) -> list[s
     none: Any = None
     release: Any = solution.release[place]
     motion = Motion(Impacts(**rows, fall=none, rise=none), none, none, none, release)
-    pull_off, held, contact_end = (
-        float(solution.measures[name][place])
-        for name in ("pull_off", "held_at_pull_off", "contact_end")
-    )
-    return [
-        *warnings_of(problem, regime_of(problem, at_depth), at_depth, motion),
-        *pull_warnings(problem.inputs, pull_off, held),
-        *release_warnings(contact_end),
-    ]
+    measures = {name: array[place] for name, array in solution.measures.items()}
+    return measured_warnings(problem, regime_of(problem, at_depth), at_depth, motion, measures)
