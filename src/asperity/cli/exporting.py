@@ -75,13 +75,13 @@ def export(
 
 def _export_table(source: str, output: str, reporter: Reporter, *, force: bool) -> Exported:
     from asperity.sweeps.analysis.export import export as write
-    from asperity.sweeps.store.dataset import open_results
+    from asperity.sweeps.store.store import Store
 
     with reporter.step("table"):
         path: Path = completed(lambda stop: write(source, output, force=force))
-    found = open_results(source)
+    found = Store.open(source)
     columns = [*(axis.key for axis in found.study.axes), *found.columns]
-    facts = {"kind": "table", "cases": found.study.size, "done": found.store.cases_done}
+    facts = {"kind": "table", "cases": found.study.size, "done": found.cases_done}
     return path, {**facts, "columns": columns}
 
 
@@ -90,10 +90,11 @@ def _export_restitution(
 ) -> Exported:
     from asperity.sweeps.analysis.restitution_table import restitution_of, write_restitution
     from asperity.sweeps.analysis.view import at
-    from asperity.sweeps.store.dataset import dataset_of, open_results
+    from asperity.sweeps.store.dataset import dataset_of
+    from asperity.sweeps.store.store import Store
 
     with reporter.step("restitution"):
-        found = open_results(source)
+        found = Store.open(source)
         found.refuse_empty()
         names = [n for n in ("outcome", "impact_speed", "restitution") if n in found.columns]
         dataset, taken = at(dataset_of(found, names), held)

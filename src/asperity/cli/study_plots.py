@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
     from asperity.sweeps.analysis.pareto import Front, Goal
-    from asperity.sweeps.store.dataset import Results
+    from asperity.sweeps.store.store import Store
 
 _STORE_FILES = tuple(
     f"{kind}.{ending}"
@@ -82,14 +82,14 @@ def plot(
     from asperity.results.results_folder import check_folder, write_folder
     from asperity.sweeps.analysis.pareto import front_of, goal_of
     from asperity.sweeps.analysis.view import at as held_at
-    from asperity.sweeps.store.dataset import open_results
+    from asperity.sweeps.store.store import Store
 
     held = held_axes(at or ())
     goals = None if pareto is None else (goal_of(pareto[0]), goal_of(pareto[1]))
     folder = Path(output) if output is not None else _beside(record)
     again = force or output is None
     check_folder(folder, _STORE_FILES, force=again)
-    found = open_results(record)
+    found = Store.open(record)
     found.refuse_empty()
     with reporter.step("results and pictures"):
         dataset, files = completed(
@@ -130,7 +130,7 @@ def _redraw(record: str, output: str | None, reporter: Reporter, *, force: bool)
 
 
 def _drawn(
-    found: Results, *, measure: str | None, pareto: tuple[Goal, Goal] | None, **view: Any
+    found: Store, *, measure: str | None, pareto: tuple[Goal, Goal] | None, **view: Any
 ) -> tuple[xarray.Dataset, dict[str, bytes]]:
     """The results that a picture needs, and its files; in a thread of its own."""
     from asperity.plots import study
@@ -141,7 +141,7 @@ def _drawn(
     return dataset, study.pictures(dataset, measure=measure, pareto=pareto, **view)
 
 
-def _read_for(found: Results, wanted: Sequence[str]) -> list[str]:
+def _read_for(found: Store, wanted: Sequence[str]) -> list[str]:
     """Columns that a picture of some measures needs; of no certain ones, all that it can show."""
     drawable = [c.name for c in found.columns.values() if c.along not in ("byte", "turn")]
     needed = {"outcome", "captured", *wanted}

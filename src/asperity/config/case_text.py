@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import re
 import textwrap
 from collections.abc import Mapping
@@ -15,7 +16,6 @@ from asperity.config.problems import tables_of
 from asperity.errors import InputError
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
 def toml(model: BaseModel) -> str:
@@ -53,7 +53,7 @@ def text_of(tables: Mapping[str, Any]) -> str:
 def _given(tables: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
     inner = {key: value for key, value in tables.items() if isinstance(value, Mapping)}
     lines = [
-        f"{_key(key)} = {_literal(value)}"
+        f"{_key(key)} = {literal(value)}"
         for key, value in tables.items()
         if key not in inner and value is not None
     ]
@@ -76,26 +76,20 @@ def unit_of(field: FieldInfo) -> str:
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
-def _literal(value: object) -> str:
+def literal(value: object) -> str:
     """A value in TOML's notation."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):
-        return f"[{', '.join(_literal(each) for each in value)}]"
+        return f"[{', '.join(map(literal, value))}]"
     if isinstance(value, str):
-        return '"' + "".join(_escaped(character) for character in value) + '"'
+        # JSON's escapes are TOML's too, but for the one that JSON leaves out.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     return repr(value)
 
 
-def _escaped(character: str) -> str:
-    if character in _ESCAPES:
-        return _ESCAPES[character]
-    code = ord(character)
-    return f"\\u{code:04x}" if code < 0x20 or code == 0x7F else character
-
-
 def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else _literal(name)
+    return name if _BARE.fullmatch(name) else literal(name)
 
 
 def change(tables: dict[str, Any], changes: Mapping[str, object]) -> None:
@@ -143,7 +137,7 @@ def _commented_keys(fields: Mapping[str, FieldInfo], *, active: bool = True) -> 
         extra = field.json_schema_extra
         shown = isinstance(extra, dict) and extra.get("shown")
         set_here = field.is_required() or shown or field.get_default() is not None
-        example = _literal((field.examples or [None])[0])
+        example = literal((field.examples or [None])[0])
         start = f"{'' if active and set_here else '# '}{field.alias or name} = {example}"
         line = f"{start:<38}  # {field.description}"
         lines += [line] if len(line) <= 100 else [f"# {field.description}", start]

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from asperity.errors import InputError
-from asperity.sweeps.store.dataset import Results, dataset_of, open_results
+from asperity.sweeps.store.dataset import dataset_of
+from asperity.sweeps.store.store import Store
 from asperity.sweeps.store.variables import FLAGS
 from asperity.sweeps.study.columns import Column, reasons
 from asperity.writing import aside, ending_of
@@ -54,21 +55,21 @@ def export(
     """
     target = Path(file)
     writer = _WRITERS[ending_of(target, _WRITERS)]
-    found = open_results(store)
+    found = Store.open(store)
     found.refuse_empty()
     with aside(target, force=force) as path:
         writer(found, path)
     return target
 
 
-def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:
+def blocks(store: Store) -> Iterator[dict[str, np.ndarray]]:
     """The table in pieces of one task, in order: arrays of one length by the columns' names.
 
     Axes and float measures are SI numbers, NaN where one does not apply; outcomes and reasons are
     words; whether the first impact captures is an object array of booleans and None. What has
     several values a case has a column for each, with its number from 1 in the name.
     """
-    study, store = found.study, found.store
+    study = store.study
     for number in range(study.tasks):
         cases = study.task(number)
         table = dict(study.values(cases.start, cases.stop))
@@ -81,11 +82,11 @@ def blocks(found: Results) -> Iterator[dict[str, np.ndarray]]:
         yield table
 
 
-def units(found: Results) -> dict[str, str]:
+def units(store: Store) -> dict[str, str]:
     """SI units of the table's columns by name; "" for words."""
-    table = {axis.key: axis.unit for axis in found.study.axes}
-    for column in found.study.columns:
-        names = _names(column, found.study.width(column.along) if column.along else 0)
+    table = {axis.key: axis.unit for axis in store.study.axes}
+    for column in store.study.columns:
+        names = _names(column, store.study.width(column.along) if column.along else 0)
         table |= dict.fromkeys(names, column.unit)
     return table
 
@@ -111,13 +112,13 @@ def _in_words(column: Column, values: np.ndarray) -> dict[str, np.ndarray]:
     return {column.name: values}
 
 
-def _csv(found: Results, path: Path) -> None:
+def _csv(store: Store, path: Path) -> None:
     """Numbers with all their digits; nothing where one does not apply."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        heads = units(found).items()
+        heads = units(store).items()
         writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in heads])
-        for table in blocks(found):
+        for table in blocks(store):
             columns = (_written(values) for values in table.values())
             writer.writerows(zip(*columns, strict=True))
 
@@ -133,7 +134,7 @@ def _written(values: np.ndarray) -> list[Any]:
     return ["" if value < 0 else value for value in values.tolist()]
 
 
-def _parquet(found: Results, path: Path) -> None:
+def _parquet(store: Store, path: Path) -> None:
     """A row group for each task or more, units in the columns' metadata, null for none."""
     try:
         pyarrow, parquet = map(importlib.import_module, ("pyarrow", "pyarrow.parquet"))
@@ -143,9 +144,9 @@ def _parquet(found: Results, path: Path) -> None:
         ) from None
     schema = None
     with contextlib.ExitStack() as stack:
-        for table in blocks(found):
+        for table in blocks(store):
             if schema is None:
-                schema = _schema(pyarrow, found, table)
+                schema = _schema(pyarrow, store, table)
                 writer = stack.enter_context(parquet.ParquetWriter(path, schema))
             columns = [
                 pyarrow.array(values, type=field.type, from_pandas=True, mask=_absent(values))
@@ -159,29 +160,29 @@ def _absent(values: np.ndarray) -> np.ndarray | None:
     return values < 0 if values.dtype.kind == "i" and bool(np.any(values < 0)) else None
 
 
-def _schema(pyarrow: Any, found: Results, table: dict[str, np.ndarray]) -> Any:
+def _schema(pyarrow: Any, store: Store, table: dict[str, np.ndarray]) -> Any:
     """Types and units of the table's columns."""
     fields = []
-    for name, unit in units(found).items():
+    for name, unit in units(store).items():
         kind = table[name].dtype
         if name == "captured":
             held = pyarrow.bool_()
         else:
             held = pyarrow.string() if kind.kind == "O" else pyarrow.from_numpy_dtype(kind)
         fields.append(pyarrow.field(name, held, metadata={"unit": unit} if unit else None))
-    about = {"study": found.study.canonical, "fingerprint": found.study.fingerprint}
+    about = {"study": store.study.canonical, "fingerprint": store.study.fingerprint}
     return pyarrow.schema(fields, metadata=about)
 
 
-def _netcdf(found: Results, path: Path) -> None:
-    made = dataset_of(found, found.columns)
+def _netcdf(store: Store, path: Path) -> None:
+    made = dataset_of(store, store.columns)
     try:
         made.to_netcdf(path, engine="netcdf4", format="NETCDF4")
     except RuntimeError as error:  # what netCDF's library makes of a full disk
         raise OSError(str(error)) from error
 
 
-_WRITERS: dict[str, Callable[[Results, Path], None]] = {
+_WRITERS: dict[str, Callable[[Store, Path], None]] = {
     ".csv": _csv,
     ".parquet": _parquet,
     ".nc": _netcdf,

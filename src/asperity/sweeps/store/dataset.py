@@ -4,103 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asperity.config.problems import did_you_mean
-from asperity.errors import InputError
-from asperity.sweeps.store.store import REPAIR, Store
+from asperity.sweeps.store.store import Store
 from asperity.sweeps.store.variables import Variable, attributes, coordinates
 from asperity.sweeps.study.columns import FAILED, Column, reasons
-from asperity.sweeps.study.study import Study, parse
-from asperity.units import shown
+from asperity.sweeps.study.study import Study
 
 if TYPE_CHECKING:
     import xarray
-
-
-@dataclass(frozen=True)
-class Results:
-    """A store that was opened for reading.
-
-    Parameters
-    ----------
-    study
-        The study that it belongs to.
-    store
-        The store.
-    """
-
-    study: Study
-    store: Store
-
-    @property
-    def path(self) -> str:
-        """Its folder."""
-        return str(self.store.path)
-
-    @property
-    def columns(self) -> dict[str, Column]:
-        """Its columns by name."""
-        return {column.name: column for column in self.study.columns}
-
-    def checked(self, names: Iterable[str]) -> list[str]:
-        """Names of columns, once each.
-
-        Raises
-        ------
-        InputError
-            Where the study has not kept one of them, or its array is missing.
-        """
-        wanted = list(dict.fromkeys(names))
-        for name in wanted:
-            if name not in self.columns:
-                raise InputError(
-                    f"{self.path}: a column must be one of {', '.join(self.columns)}; "
-                    f"got {shown(name)}{did_you_mean(name, self.columns)}",
-                    file=self.path,
-                )
-            if name not in self.store.arrays:
-                raise InputError(
-                    f"{self.path}: must hold an array {name}; it is missing - {REPAIR}",
-                    file=self.path,
-                )
-        return wanted
-
-    def refuse_empty(self) -> None:
-        """Refuse a store in which nothing is computed yet.
-
-        Raises
-        ------
-        InputError
-            Where no task is finished.
-        """
-        if not self.store.done:
-            raise InputError(
-                f"{self.path}: must hold results; none is computed yet - `asperity sweep STUDY "
-                "--resume` goes on",
-                file=self.path,
-            )
-
-
-def open_results(path: str | os.PathLike[str]) -> Results:
-    """Open a store for reading.
-
-    Parameters
-    ----------
-    path
-        The folder, e.g. ``"study.zarr"``.
-
-    Raises
-    ------
-    InputError
-        Where there is none, it is no store of a study, or one of a newer schema.
-    """
-    store = Store.open(Path(path))
-    return Results(parse(store.text, file=os.fspath(path)), store)
 
 
 def open_study(
@@ -128,16 +42,16 @@ def open_study(
     InputError
         Where it is no store, a column is unknown, or a chunk is damaged.
     """
-    found = open_results(path)
+    store = Store.open(path)
     if columns is None:
-        columns = [name for name in found.columns if name != "reason"]
-    return dataset_of(found, ("outcome", *columns))
+        columns = [name for name in store.columns if name != "reason"]
+    return dataset_of(store, ("outcome", *columns))
 
 
-def dataset_of(found: Results, names: Iterable[str]) -> xarray.Dataset:
+def dataset_of(store: Store, names: Iterable[str]) -> xarray.Dataset:
     """Some columns of an open store as a dataset; see `open_study`."""
-    values = {name: found.store.column(name) for name in found.checked(names)}
-    return dataset_in(found.study, values)
+    values = {name: store.column(name) for name in store.checked(names)}
+    return dataset_in(store.study, values)
 
 
 def dataset_in(study: Study, values: Mapping[str, np.ndarray]) -> xarray.Dataset:

@@ -8,16 +8,18 @@ where or in which order the tasks were computed.
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import math
+import os
 import shutil
-from collections.abc import Collection, Mapping, Set
+from collections.abc import Collection, Iterable, Mapping, Set
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numcodecs.zstd import Zstd  # type: ignore[import-untyped]
 
+from asperity.config.problems import did_you_mean
 from asperity.errors import InputError
 from asperity.sweeps.store.array import (
     LEVEL,
@@ -32,9 +34,9 @@ from asperity.sweeps.store.array import (
 )
 from asperity.sweeps.store.manifest import Manifest, manifest_of
 from asperity.sweeps.store.whole_files import beside, clear, put, put_all, settle, told
-
-if TYPE_CHECKING:
-    from asperity.sweeps.study.study import Study
+from asperity.sweeps.study.columns import Column
+from asperity.sweeps.study.study import Study, parse
+from asperity.units import shown
 
 REPAIR = "`asperity sweep STUDY --repair` computes it again"
 """What to do about a chunk that is not what was written."""
@@ -120,7 +122,13 @@ class Store:
         return cls(path, group.arrays, group.text, manifest)
 
     @classmethod
-    def open(cls, path: str | Path, study: Study | None = None, *, writable: bool = False) -> Store:
+    def open(
+        cls,
+        path: str | os.PathLike[str],
+        study: Study | None = None,
+        *,
+        writable: bool = False,
+    ) -> Store:
         """A store that is there.
 
         Parameters
@@ -167,6 +175,60 @@ class Store:
     def fingerprint(self) -> str:
         """Of the study."""
         return self.manifest.fingerprint
+
+    @functools.cached_property
+    def study(self) -> Study:
+        """The study.
+
+        Raises
+        ------
+        InputError
+            Where this version of the program cannot read it.
+        """
+        return parse(self.text, file=str(self.path))
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        """What the study keeps of each case, by name."""
+        return {column.name: column for column in self.study.columns}
+
+    def checked(self, names: Iterable[str]) -> list[str]:
+        """Names of columns, once each.
+
+        Raises
+        ------
+        InputError
+            Where the study has not kept one of them, or its array is missing.
+        """
+        wanted = list(dict.fromkeys(names))
+        for name in wanted:
+            if name not in self.columns:
+                raise InputError(
+                    f"{self.path}: a column must be one of {', '.join(self.columns)}; "
+                    f"got {shown(name)}{did_you_mean(name, self.columns)}",
+                    file=str(self.path),
+                )
+            if name not in self.arrays:
+                raise InputError(
+                    f"{self.path}: must hold an array {name}; it is missing - {REPAIR}",
+                    file=str(self.path),
+                )
+        return wanted
+
+    def refuse_empty(self) -> None:
+        """Refuse a store in which nothing is computed yet.
+
+        Raises
+        ------
+        InputError
+            Where no task is finished.
+        """
+        if not self.done:
+            raise InputError(
+                f"{self.path}: must hold results; none is computed yet - `asperity sweep STUDY "
+                "--resume` goes on",
+                file=str(self.path),
+            )
 
     @property
     def done(self) -> Set[int]:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
-
+from asperity.config.case_text import literal
 from asperity.sweeps.study.axes import Axis
 from asperity.sweeps.study.definition import StudyDefinition
-from asperity.sweeps.study.keys import Value
 
 
 def text(study: StudyDefinition) -> str:
@@ -14,7 +12,7 @@ def text(study: StudyDefinition) -> str:
     lines = [
         "schema = 1",
         f"name = {literal(study.base_name)}",
-        f"keep = [{', '.join(map(literal, study.keep))}]",
+        f"keep = {literal(list(study.keep))}",
         f"keep_impacts = {study.keep_impacts}",
         f"motions = {literal(study.motions)}",
         "",
@@ -26,16 +24,6 @@ def text(study: StudyDefinition) -> str:
         lines += ["", "[sample]", f"method = {literal(sample.method)}"]
         lines += [f"size = {sample.size}", f"seed = {sample.seed}"]
     return "\n".join([*lines, "", *_base(study), ""])
-
-
-def literal(value: Value) -> str:
-    """A value in TOML's notation."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        # JSON's escapes are TOML's too, but for the one that JSON leaves out.
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    return repr(value)
 
 
 def _axis(axis: Axis) -> list[str]:

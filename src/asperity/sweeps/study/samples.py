@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import warnings
 from typing import Annotated, Literal
 
 import numpy as np
@@ -70,7 +71,7 @@ class Sample(Table):
         """
         if self.method == "latin":
             return _latin(self.size, dimensions, self.seed)[start:stop]
-        return _sobol(start, stop, _directions((self.size - 1).bit_length(), dimensions, self.seed))
+        return _sobol(start, stop, dimensions, self.seed)
 
 
 @functools.lru_cache(maxsize=1)
@@ -82,29 +83,13 @@ def _latin(size: int, dimensions: int, seed: int) -> np.ndarray:
     return points
 
 
-@functools.lru_cache(maxsize=8)
-def _directions(bits: int, dimensions: int, seed: int) -> np.ndarray:
-    """First point of a Sobol sequence, and what each bit of a point's number changes in it.
-
-    The sequence in Gray code order is linear over the bits of the number: point n is the first
-    one with the differences of points 2^j for each set bit j of n, by exclusive or (Antonov and
-    Saleev 1979). So any point is found without those before it. Shape (bits + 1, dimensions).
-    """
+def _sobol(start: int, stop: int, dimensions: int, seed: int) -> np.ndarray:
     from scipy.stats import qmc
 
-    engine = qmc.Sobol(dimensions, scramble=True, bits=_BITS, rng=seed)
-    found = [engine.random(1)[0]]
-    for bit in range(bits):
-        engine.fast_forward((1 << bit) - engine.num_generated)
-        found.append(engine.random(1)[0])
-    whole = (np.array(found) * SOBOL_LIMIT).astype(np.uint32)
-    whole[1:] ^= whole[0]
-    return whole
-
-
-def _sobol(start: int, stop: int, directions: np.ndarray) -> np.ndarray:
-    numbers = np.arange(start, stop, dtype=np.uint32)[:, None]
-    points = np.repeat(directions[:1], stop - start, axis=0)
-    for bit, change in enumerate(directions[1:]):
-        points ^= change * ((numbers >> np.uint32(bit)) & np.uint32(1))
-    return points / SOBOL_LIMIT
+    engine = qmc.Sobol(dimensions, bits=_BITS, rng=seed)
+    if start:
+        engine.fast_forward(start)
+    with warnings.catch_warnings():  # of a first part whose size is no power of two
+        warnings.simplefilter("ignore", UserWarning)
+        points: np.ndarray = engine.random(stop - start)
+    return points
