@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from asperity.cli.terminal import tell
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError
 from asperity.materials.gases import ATMOSPHERE, GASES, Gas
 from asperity.materials.liquids import LIQUIDS, ROOM_TEMPERATURE, Liquid
 from asperity.materials.solids import ADHESION, SOLIDS, Adhesion, Solid
 from asperity.results.record_layout import plain
 from asperity.results.summary import WIDTH, amount
-from asperity.units import shown
 from asperity.writing import aside, told
 
 _SOLID = (9, 7, 15, 12, 11)
@@ -81,11 +80,11 @@ def list_materials(names: Sequence[str] = (), *, as_json: bool) -> None:
     paired = dict.fromkeys(name for entry in ADHESION for name in entry.pair)
     known = {**SOLIDS, **LIQUIDS, **GASES, **paired}
     for name in names:
-        if name not in known:
-            raise InputError(
-                f"a material must be one of the catalogue, which `asperity materials` lists; "
-                f"got {shown(name)}{did_you_mean(name, known)}"
-            )
+        among(
+            name,
+            known,
+            "a material must be one of the catalogue, which `asperity materials` lists",
+        )
     solids = [entry for entry in SOLIDS.values() if not names or entry.name in names]
     liquids = [entry for entry in LIQUIDS.values() if not names or entry.name in names]
     gases = [entry for entry in GASES.values() if not names or entry.name in names]

@@ -40,7 +40,6 @@ class _Request(NamedTuple):
     """What to compute, where to, and by whom."""
 
     study: Study
-    file: str
     path: Path
     shard: Shard | None
     workers: int | None
@@ -115,14 +114,8 @@ def _request(
 
     shard = None if part is None else merge.shard(part)
     path = Path(output or f"{Path(study).stem}.zarr")
-    return _Request(
-        read(study),
-        study,
-        path if shard is None else shard.store(path),
-        shard,
-        workers,
-        scheduler,
-    )
+    path = path if shard is None else shard.store(path)
+    return _Request(read(study), path, shard, workers, scheduler)
 
 
 def _refuse_huge(study: Study, yes: bool) -> None:

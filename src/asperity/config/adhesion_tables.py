@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, model_validator
 from asperity.config import fields
 from asperity.config.base_table import Table, need
 from asperity.config.fields import entry
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError
 from asperity.materials import liquids as catalogue
 from asperity.units import shown
@@ -170,14 +170,9 @@ class Capillary(Table):
             size = (own["molar_volume"] / catalogue.AVOGADRO) ** (1.0 / 3.0)
             size = known.molecule_size if known else size
             return catalogue.Liquid(self.liquid, **own, source="the case file", molecule_size=size)
-        if known is None:
-            raise InputError(
-                "`liquid` must be a name of the catalogue, or come with `tension` and "
-                f"`molar_volume`; got {shown(self.liquid)}"
-                f"{did_you_mean(self.liquid, catalogue.LIQUIDS)}",
-                key="liquid",
-            )
+        rule = "`liquid` must be a name of the catalogue, or come with `tension` and `molar_volume`"
+        among(self.liquid, catalogue.LIQUIDS, rule, key="liquid")
         try:
-            return dataclasses.replace(known.at(self.temperature), **own)
+            return dataclasses.replace(catalogue.LIQUIDS[self.liquid].at(self.temperature), **own)
         except InputError as error:
             raise InputError(str(error), key="temperature") from error

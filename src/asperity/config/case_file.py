@@ -14,7 +14,6 @@ from asperity.config import case_text, problems
 from asperity.config.replacing import named
 from asperity.config.schema import Case
 from asperity.errors import InputError
-from asperity.units import shown
 
 SIZE_LIMIT = 1 << 20
 """Largest size of a case [bytes]: 1 MiB."""
@@ -163,12 +162,8 @@ def builtin(name: str) -> Case:
     InputError
         Where there is none of this name.
     """
-    if name not in BUILTINS:
-        raise InputError(
-            f"case must be one of {', '.join(BUILTINS)}, or a file as in `asperity run FILE.toml`; "
-            f"got {shown(name)}{problems.did_you_mean(name, BUILTINS)}",
-            key="case",
-        )
+    rule = f"case must be one of {', '.join(BUILTINS)}, or a file as in `asperity run FILE.toml`"
+    problems.among(name, BUILTINS, rule, key="case")
     return named(load(builtin_text(name), file=f"{name}.toml"), name)
 
 

@@ -9,10 +9,9 @@ from pydantic import model_validator
 from asperity.config import fields
 from asperity.config.base_table import Table
 from asperity.config.fields import entry
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError, refuse_all
 from asperity.materials.gases import GASES
-from asperity.units import shown
 
 _NAMED = ("pressure", "temperature")
 _BY_NUMBER = ("viscosity", "slip_length")
@@ -65,12 +64,12 @@ class Gas(Table):
             for key in needed
             if getattr(self, key) is None
         )
-        if self.name is not None and self.name not in GASES:
-            raise InputError(
+        if self.name is not None:
+            rule = (
                 "`name` must be a gas of the catalogue, or be replaced by `viscosity` and "
-                f"`slip_length`; got {shown(self.name)}{did_you_mean(self.name, GASES)}",
-                key="name",
+                "`slip_length`"
             )
+            among(self.name, GASES, rule, key="name")
         self.film()
         return self
 

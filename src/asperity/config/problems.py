@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -33,6 +33,37 @@ def did_you_mean(word: str, options: Iterable[str]) -> str:
         return f" - it is called '{renamed}' now"
     near = nearest(word, options)
     return "" if near is None else f" - did you mean '{near}'?"
+
+
+def among(
+    name: str,
+    known: Collection[str],
+    rule: str,
+    *,
+    key: str | None = None,
+    file: str | None = None,
+) -> None:
+    """Refuse a name that is none of those known, with the one that was meant.
+
+    Parameters
+    ----------
+    name
+        What was given.
+    known
+        The names that there are.
+    rule
+        What it must be.
+    key, file
+        What is at fault, as `InputError` takes it.
+
+    Raises
+    ------
+    InputError
+        Where it is none of them.
+    """
+    if name not in known:
+        hint = did_you_mean(str(name), known)
+        raise InputError(f"{rule}; got {shown(name)}{hint}", key=key, file=file)
 
 
 def nearest(word: str, options: Iterable[str]) -> str | None:

@@ -10,7 +10,6 @@ from asperity.config.limits import refuse_outside
 from asperity.config.tables import CaseTables
 from asperity.errors import InputError, check_each, refuse_all
 from asperity.materials import solids as catalogue
-from asperity.units import shown
 
 
 def check_rules(case: CaseTables) -> None:
@@ -90,12 +89,9 @@ def _known_material(case: CaseTables, part: str) -> None:
     """Refuse the name of a material that neither the case nor the catalogue has."""
     known = [*case.materials, *catalogue.SOLIDS]
     name = getattr(case, part).material
-    if name is not None and name not in known:
-        raise InputError(
-            "`material` must be a name of the catalogue or of a [materials.NAME] table; "
-            f"got {shown(name)}{problems.did_you_mean(name, known)}",
-            key=f"{part}.material",
-        )
+    if name is not None:
+        rule = "`material` must be a name of the catalogue or of a [materials.NAME] table"
+        problems.among(name, known, rule, key=f"{part}.material")
 
 
 def _elastic_somewhere(case: CaseTables) -> None:

@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError, SimulationError
 from asperity.sweeps.study.columns import FAILED, MEASURES, Column
 from asperity.sweeps.study.study import Study
-from asperity.units import shown
 
 Evaluate = Callable[[Mapping[str, np.ndarray]], Mapping[str, np.ndarray]]
 """Axes' values by key, shape (cases,) -> columns by name, shape (cases, [width])."""
@@ -212,12 +211,7 @@ def measured(name: str) -> Column:
         Where there is none of this name.
     """
     known = {column.name: column for column in MEASURES}
-    if name not in known:
-        raise InputError(
-            f"`measure` must be one of {', '.join(known)}; got {shown(name)}"
-            f"{did_you_mean(name, known)}",
-            key="measure",
-        )
+    among(name, known, f"`measure` must be one of {', '.join(known)}", key="measure")
     return known[name]
 
 

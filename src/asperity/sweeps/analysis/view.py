@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError
 from asperity.results.summary import amount
 from asperity.sweeps.study.definition import CASE
@@ -110,12 +110,8 @@ def measure_named(dataset: xarray.Dataset, name: str, option: str = "measure") -
         Where it holds none of this name.
     """
     known = measures_of(dataset)
-    if name not in known:
-        raise InputError(
-            f"`{option}` must be kept by the study: one of {', '.join(known)}; "
-            f"got {shown(name)}{did_you_mean(name, known)}",
-            key=option,
-        )
+    rule = f"`{option}` must be kept by the study: one of {', '.join(known)}"
+    among(name, known, rule, key=option)
     return name
 
 
@@ -263,12 +259,8 @@ def _unit(values: xarray.DataArray) -> str:
 def _axis(dataset: xarray.Dataset, key: str, option: str) -> xarray.DataArray:
     """An axis of the study that is still free."""
     known = [name for name in axes_of(dataset) if dataset[name].ndim]
-    if key not in known:
-        raise InputError(
-            f"`{option}` must name an axis of the study: {', '.join(known)}; "
-            f"got {shown(key)}{did_you_mean(key, known)}",
-            key=option,
-        )
+    rule = f"`{option}` must name an axis of the study: {', '.join(known)}"
+    among(key, known, rule, key=option)
     return dataset[key]
 
 
@@ -276,12 +268,8 @@ def _nearest(axis: xarray.DataArray, text: str) -> int:
     """Index of the value of an axis that is nearest to a text."""
     if not is_number(axis):
         names = [words(value) for value in axis.values]
-        if text not in names:
-            raise InputError(
-                f"`at` must give {axis.name} one of its values, {', '.join(names)}; "
-                f"got {shown(text)}{did_you_mean(text, names)}",
-                key="at",
-            )
+        rule = f"`at` must give {axis.name} one of its values, {', '.join(names)}"
+        among(text, names, rule, key="at")
         return names.index(text)
     unit, values = _unit(axis), axis.values.astype(float)
     wanted = _number(text, str(axis.name)) if unit == "1" else quantity(text, unit, str(axis.name))

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from numcodecs.zstd import Zstd  # type: ignore[import-untyped]
 
-from asperity.config.problems import did_you_mean
+from asperity.config.problems import among
 from asperity.errors import InputError
 from asperity.sweeps.store.array import (
     LEVEL,
@@ -36,7 +36,6 @@ from asperity.sweeps.store.manifest import Manifest, manifest_of
 from asperity.sweeps.store.whole_files import beside, clear, put, put_all, settle, told
 from asperity.sweeps.study.columns import Column
 from asperity.sweeps.study.study import Study, parse
-from asperity.units import shown
 
 REPAIR = "`asperity sweep STUDY --repair` computes it again"
 """What to do about a chunk that is not what was written."""
@@ -202,12 +201,8 @@ class Store:
         """
         wanted = list(dict.fromkeys(names))
         for name in wanted:
-            if name not in self.columns:
-                raise InputError(
-                    f"{self.path}: a column must be one of {', '.join(self.columns)}; "
-                    f"got {shown(name)}{did_you_mean(name, self.columns)}",
-                    file=str(self.path),
-                )
+            rule = f"{self.path}: a column must be one of {', '.join(self.columns)}"
+            among(name, self.columns, rule, file=str(self.path))
             if name not in self.arrays:
                 raise InputError(
                     f"{self.path}: must hold an array {name}; it is missing - {REPAIR}",

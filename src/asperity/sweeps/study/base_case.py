@@ -6,7 +6,7 @@ from pathlib import Path
 
 from asperity.config import BUILTINS, Case, Output, builtin, load_file
 from asperity.config.case_file import beside
-from asperity.config.problems import check, did_you_mean
+from asperity.config.problems import among, check
 from asperity.errors import InputError
 from asperity.sweeps.study.study_file import StudyTable
 from asperity.units import shown
@@ -56,10 +56,9 @@ def _found(base: object, folder: Path) -> tuple[Case, str]:
 
 
 def _builtin(name: str) -> Case:
-    if name not in BUILTINS:
-        raise InputError(
-            f"`base` must be a built-in case ({', '.join(BUILTINS)}) or a case file beside the "
-            f"study, such as 'drop.toml'; got {shown(name)}{did_you_mean(name, BUILTINS)}",
-            key="base",
-        )
+    rule = (
+        f"`base` must be a built-in case ({', '.join(BUILTINS)}) or a case file beside the study, "
+        "such as 'drop.toml'"
+    )
+    among(name, BUILTINS, rule, key="base")
     return builtin(name)

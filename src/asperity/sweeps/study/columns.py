@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from asperity.config.base_table import Table
-from asperity.config.problems import did_you_mean, tables_of
+from asperity.config.problems import among, tables_of
 from asperity.config.tables import CaseTables
 from asperity.errors import ENDS, InputError, Outcome
 from asperity.units import shown
@@ -136,12 +136,7 @@ def columns(keep: Iterable[str], *, motions: bool) -> tuple[Column, ...]:
     known = {column.name: column for column in MEASURES}
     kept: dict[str, Column] = {}
     for name in keep:
-        if name not in known:
-            raise InputError(
-                f"`keep` must name measures ({', '.join(known)}); "
-                f"got {shown(name)}{did_you_mean(str(name), known)}",
-                key="keep",
-            )
+        among(name, known, f"`keep` must name measures ({', '.join(known)})", key="keep")
         if name in kept:
             twice = f"`keep` must name a measure once; got {shown(name)} twice"
             raise InputError(twice, key="keep")
