@@ -157,7 +157,7 @@ def test_arrays_of_any_real_kind_and_order_are_read(tmp_path, kind):
     path = tmp_path / "a.npy"
     np.save(path, np.asfortranarray(values) if kind == "F" else values.astype(kind))
     np.testing.assert_array_equal(
-        read_surface(path, size=SIZE, unit="m").heights, values.astype(float)
+        read_surface(path, size=SIZE, unit="m").topography.heights, values.astype(float)
     )
 
 
