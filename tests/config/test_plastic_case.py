@@ -260,10 +260,10 @@ BAD = [
     (SMOOTH + YIELDS + WATER + 'model = "constant-volume"', "capillary.model (line 17): `model` "
      "must be 'equilibrium', 'kelvin-filling' or 'none'", "got 'constant-volume'"),
     (SMOOTH + YIELDS + WATER + 'model = "equilibrium"\nformation_time = "1 us"',
-     "capillary.formation_time (line 18): `formation_time` must be absent", "got 1e-06 s"),
+     "capillary.formation_time (line 18): `formation_time` must be absent", "got '1e-06 s'"),
     (with_key("counterface", 'deformation = "rigid"') + YIELDS + ROUGH + "[publication]",
-     "plasticity.model (line 11): [plasticity] must not be given with a [publication] table",
-     "got model = 'kogut-etsion'"),
+     "plasticity.model (line 11): [plasticity] must be absent with [publication]",
+     "got 'kogut-etsion'"),
 ]  # fmt: skip
 
 

@@ -83,7 +83,7 @@ def test_menisci_that_take_time_are_refused_beside_a_spring():
 
 def test_the_publication_has_no_spring():
     case = asperity.load("published")
-    with pytest.raises(InputError, match="whose body is free"):
+    with pytest.raises(InputError, match="its body is free"):
         case.replace({"suspension.stiffness": "1 N/m", "suspension.rest_gap": "0 nm"})
 
 

@@ -167,7 +167,7 @@ def test_the_counterface_carries_the_waves_not_the_body(problem):
             "`density` must be given for the counterface with [waves] model = 'hunter'",
         ),
         ({"capillary.formation_time": "1 us"}, "`formation_time` must be absent with [waves]"),
-        ({"gas": None, "publication": {}}, "[waves] must not be given with a [publication] table"),
+        ({"gas": None, "publication": {}}, "[waves] must be absent with [publication]"),
     ],
 )
 def test_what_waves_cannot_be_computed_from_is_refused(changes, words):

@@ -29,6 +29,9 @@ class Plasticity(Table):
     """Asperities that yield; without this table every contact is elastic."""
 
     loss: ClassVar[str] = "plastic"
+    excludes: ClassVar[dict[str, str]] = {
+        "capillary.formation_time": "its menisci would need a memory of their own"
+    }
 
     model: Literal["none", "kogut-etsion", "jackson-green", "thornton-ning"] = entry(
         "",
@@ -77,12 +80,7 @@ class Plasticity(Table):
 
     def _refuse_tables(self, case: Any) -> None:
         """Refuse the tables that the law has no room for."""
-        if case.publication is not None:
-            raise InputError(
-                "[plasticity] must not be given with a [publication] table, whose asperities are "
-                f"elastic; got model = '{self.model}'",
-                key="plasticity.model",
-            )
+        super().check_beside(case)
         self._refuse_adhesion(case.adhesion, smooth=case.roughness is None)
         self._refuse_liquid(case.capillary)
         if case.roughness is not None and case.roughness.source == "summits":
@@ -116,18 +114,12 @@ class Plasticity(Table):
             )
 
     def _refuse_liquid(self, capillary: Capillary) -> None:
-        """Refuse menisci that need a memory of their own beside that of the yielded contacts."""
+        """Refuse bridges that need a memory of their own beside that of the yielded contacts."""
         if capillary.model == "constant-volume":
             raise InputError(
                 "`model` must be 'equilibrium', 'kelvin-filling' or 'none' with [plasticity] model "
                 f"= '{self.model}'; got 'constant-volume'",
                 key="capillary.model",
-            )
-        if capillary.model != "none" and capillary.formation_time:
-            raise InputError(
-                f"`formation_time` must be absent with [plasticity] model = '{self.model}'; got "
-                f"{capillary.formation_time:.6g} s",
-                key="capillary.formation_time",
             )
 
 

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from asperity.config.base_table import Table
 from asperity.config.fields import Number, entry
+from asperity.errors import InputError, refuse_all
 
 
 class Publication(Table):
     """Assumptions of the publication that are not physics; its case alone has this table."""
+
+    excludes: ClassVar[dict[str, str]] = {
+        "roughness.files": "it knows Gaussian heights and one radius alone",
+        "capillary.formation_time": "it replaces the other models",
+        "capillary.adsorbed_film_thickness": "it replaces the other models",
+        "plasticity": "its asperities are elastic",
+        "gas": "it leaves the gas out",
+        "waves": "it leaves waves out",
+        "viscoelasticity": "it has no bulk that creeps",
+        "suspension": "its body is free",
+    }
 
     attraction_during_retraction_only: bool = entry(
         "", "Whether adhesion and menisci pull only while the bodies part.", True, default=True
@@ -27,3 +39,25 @@ class Publication(Table):
     bands: Annotated[int, Number("[1, 10000]", whole=True)] = entry(
         "1", "Number N_s of the bands of menisci, eq. 13.", 100, default=100
     )
+
+    def check_beside(self, case: Any) -> None:
+        if case.roughness is None:
+            raise InputError(
+                "a [roughness] table must be given with [publication]; got none", key="publication"
+            )
+        super().check_beside(case)
+        wanted = (
+            ("counterface.deformation", case.counterface.deformation, ("rigid",)),
+            ("adhesion.model", case.adhesion.model, ("dmt", "none")),
+            ("capillary.model", case.capillary.model, ("equilibrium", "none")),
+            ("capillary.formation", case.capillary.formation, ("on-contact",)),
+        )
+        refuse_all(
+            InputError(
+                f"`{key.split('.')[1]}` must be {' or '.join(map(repr, allowed))} with a "
+                f"[publication] table, which replaces the other models; got {value!r}",
+                key=key,
+            )
+            for key, value, allowed in wanted
+            if value not in allowed
+        )

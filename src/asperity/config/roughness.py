@@ -22,6 +22,8 @@ REALISATIONS = 1000
 BESIDE = 256
 """Single bodies beside a mean of few asperities, where a case leaves `placement` open."""
 
+_NO_OTHER = "they are not solved with it"
+
 NUMBERS = ("asperity_density", "asperity_radius", "rms_height")
 
 
@@ -100,6 +102,9 @@ class Roughness(Table):
         "1", "With a placement but 'mean': seed of the places; 0.", 0, default=None
     )
 
+    excludes: ClassVar[dict[str, str]] = dict.fromkeys(
+        ("capillary.formation_time", "viscoelasticity", "publication"), _NO_OTHER
+    )
     of_files: ClassVar[tuple[str, ...]] = (
         "source", "size", "unit", "channel", "missing", "form_removal", "line_levelling",
         "direction", "degree", "s_filter", "l_filter", "radius_classes",
@@ -181,17 +186,10 @@ class Roughness(Table):
     def check_beside(self, case: Any) -> None:
         if not self.single_bodies:
             return
-        others = {
-            "capillary.model": case.capillary.model == "kelvin-filling",
-            "capillary.formation_time": bool(case.capillary.formation_time),
-            "viscoelasticity.model": acts(case.viscoelasticity),
-            "publication": case.publication is not None,
-        }
-        found = [
-            InputError(f"{_BESIDE[key]} with single bodies (`placement`): {_NO_OTHER}", key=key)
-            for key, there in others.items()
-            if there
-        ]
+        found = [*self._excluded(case, "single bodies (`placement`)")]
+        if case.capillary.model == "kelvin-filling":
+            rule = "must not be 'kelvin-filling' with single bodies (`placement`)"
+            found.append(InputError(f"`model` {rule}: {_NO_OTHER}", key="capillary.model"))
         slowing = {
             "[gas]": case.gas is not None,
             "[waves]": acts(case.waves),
@@ -206,12 +204,3 @@ class Roughness(Table):
             rule = "`placement` must be 'random' with [plasticity], whose tips are all alike"
             found.append(InputError(f"{rule}; got 'measured'", key="roughness.placement"))
         refuse_all(found)
-
-
-_BESIDE = {
-    "capillary.model": "`model` must not be 'kelvin-filling'",
-    "capillary.formation_time": "`formation_time` must be absent",
-    "viscoelasticity.model": "`model` must be 'none' in [viscoelasticity]",
-    "publication": "a [publication] table must be absent",
-}
-_NO_OTHER = "they are not solved with it"

@@ -8,7 +8,7 @@ from asperity.config import problems
 from asperity.config.base_table import Table
 from asperity.config.limits import refuse_outside
 from asperity.config.tables import CaseTables
-from asperity.errors import InputError, check_each, refuse_all
+from asperity.errors import InputError, check_each
 from asperity.materials import solids as catalogue
 
 
@@ -23,7 +23,6 @@ def check_rules(case: CaseTables) -> None:
     check_each(lambda: _known_material(case, "body"), lambda: _known_material(case, "counterface"))
     tables = [value for _, value in case if isinstance(value, Table)]
     check_each(
-        lambda: _publication_beside(case),
         lambda: _elastic_somewhere(case),
         lambda: _bounded_liquid(case),
         lambda: _delayed_liquid(case),
@@ -44,45 +43,6 @@ def _falls(case: CaseTables) -> None:
             "got 0 m/s^2",
             key="impact.gravity",
         )
-
-
-def _publication_beside(case: CaseTables) -> None:
-    """Refuse models that a [publication] table leaves no room for."""
-    if case.publication is None:
-        return
-    if case.roughness is None:
-        raise InputError(
-            "a [roughness] table must be given with [publication]; got none", key="publication"
-        )
-    if case.roughness.files is not None:
-        raise InputError(
-            "`files` must be absent with a [publication] table, which knows Gaussian heights "
-            "and one radius alone",
-            key="roughness.files",
-        )
-    if case.gas is not None:
-        raise InputError(
-            "[gas] must not be given with a [publication] table, which leaves the gas out",
-            key="gas",
-        )
-    wanted = (
-        ("counterface.deformation", case.counterface.deformation, ("rigid",)),
-        ("adhesion.model", case.adhesion.model, ("dmt", "none")),
-        ("capillary.model", case.capillary.model, ("equilibrium", "none")),
-        ("capillary.formation", case.capillary.formation, ("on-contact",)),
-        ("capillary.formation_time", case.capillary.formation_time, (None,)),
-        ("capillary.adsorbed_film_thickness", case.capillary.adsorbed_film_thickness, (None,)),
-    )
-    refuse_all(
-        InputError(
-            f"`{key.split('.')[1]}` must be "
-            f"{'absent' if allowed == (None,) else ' or '.join(map(repr, allowed))} with a "
-            f"[publication] table, which replaces the other models; got {value!r}",
-            key=key,
-        )
-        for key, value, allowed in wanted
-        if value not in allowed
-    )
 
 
 def _known_material(case: CaseTables, part: str) -> None:

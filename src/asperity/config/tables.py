@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from asperity.config.adhesion_tables import Adhesion, Capillary
-from asperity.config.base_table import Table, acts
+from asperity.config.base_table import Table
 from asperity.config.bodies import Body, Counterface, Material
 from asperity.config.fields import Quantity, entry
 from asperity.config.gas import Gas
@@ -38,6 +38,9 @@ class Suspension(Table):
     """A spring and a dashpot between the body and a base at rest; without this table it is free."""
 
     loss: ClassVar[str] = "damping"
+    excludes: ClassVar[dict[str, str]] = {
+        "capillary.formation_time": "a motion with menisci that take time knows no spring"
+    }
 
     stiffness: Annotated[float, Quantity("N/m", 1e-9, 1e9)] = entry(
         "N/m", "Stiffness of the spring.", "1 N/m"
@@ -58,23 +61,7 @@ class Suspension(Table):
         return "damped" if self.damping > 0.0 else "spring"
 
     def check_beside(self, case: Any) -> None:
-        if case.publication is not None:
-            raise InputError(
-                "[suspension] must not be given with a [publication] table, whose body is free",
-                key="suspension",
-            )
-        if acts(case.viscoelasticity):
-            raise InputError(
-                "[suspension] must not be given with [viscoelasticity] model = "
-                f"'{case.viscoelasticity.model}', whose motion in time knows no spring",
-                key="suspension",
-            )
-        if case.capillary.model != "none" and case.capillary.formation_time:
-            raise InputError(
-                "`formation_time` must be absent with [suspension]: a motion with menisci that "
-                f"take time knows no spring; got {shown(f'{case.capillary.formation_time:.6g} s')}",
-                key="capillary.formation_time",
-            )
+        super().check_beside(case)
         if case.impact is not None:
             self._check_release(case, case.impact)
 

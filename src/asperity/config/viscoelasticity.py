@@ -16,6 +16,13 @@ class Viscoelasticity(Table):
     """A bulk that creeps under the contact; without this table it is elastic."""
 
     loss: ClassVar[str] = "viscous"
+    excludes: ClassVar[dict[str, str]] = {
+        "suspension": "its motion in time knows no spring",
+        "gas": "its motion in time knows no drag",
+        "waves": "its motion in time knows no drag",
+        "plasticity": "the two are not solved together",
+        "capillary.formation_time": "its menisci form at once",
+    }
 
     model: Literal["none", "standard-linear-solid"] = entry(
         "",
@@ -44,48 +51,18 @@ class Viscoelasticity(Table):
         return need(self, ("relaxed_modulus_ratio", "relaxation_time"))
 
     def check_beside(self, case: Any) -> None:
-        if self.model == "none":
+        super().check_beside(case)
+        if not acts(self):
             return
         with_it = f"with [viscoelasticity] model = '{self.model}'"
-        _refuse_other_losses(case, with_it)
         if case.counterface.deformation == "rigid":
             raise InputError(
                 f"`deformation` must be 'half-space' {with_it}: a rigid bulk has nothing that "
                 "creeps; got 'rigid'",
                 key="counterface.deformation",
             )
-        time = case.capillary.formation_time
-        if case.capillary.model != "none" and time:
-            raise InputError(
-                f"`formation_time` must be absent {with_it}; got {time:.6g} s",
-                key="capillary.formation_time",
-            )
         if case.roughness is None:
             _refuse_pulls(case, with_it)
-
-
-def _refuse_other_losses(case: Any, with_it: str) -> None:
-    """Refuse what takes energy in another way, and what has no bulk."""
-    if case.publication is not None:
-        raise InputError(
-            f"a [publication] table must be absent {with_it}: it has no bulk that creeps",
-            key="publication",
-        )
-    if case.gas is not None:
-        raise InputError(
-            f"a [gas] table must be absent {with_it}, whose motion knows no drag", key="gas"
-        )
-    if acts(case.waves):
-        raise InputError(
-            f"`model` must be 'none' in [waves] {with_it}, whose motion knows no drag; got "
-            f"'{case.waves.model}'",
-            key="waves.model",
-        )
-    if acts(case.plasticity):
-        raise InputError(
-            f"`model` must be 'none' in [plasticity] {with_it}; got '{case.plasticity.model}'",
-            key="plasticity.model",
-        )
 
 
 def _refuse_pulls(case: Any, with_it: str) -> None:
