@@ -152,10 +152,7 @@ CASE = asperity.load("published-exact")
 
 def regime_at(humidity, **changes):
     case = CASE.replace({"capillary.humidity": humidity, **changes})
-    return liquid_state(
-        radius=resolve(case).liquid_radius, span=resolve(case).liquid_span, tip_radius=0.25e-9,
-        spacing=(1.69e16) ** -0.5, central=40e-9, rms_height=10.5e-9,
-    ).regime  # fmt: skip
+    return liquid_state(resolve(case), central=40e-9)[0]
 
 
 def test_regimes_follow_each_other_from_dry_to_flooded():

@@ -1,6 +1,7 @@
 """The adhesion map in the limits that are known, the choice of the law, and verdicts."""
 
 from math import pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,6 @@ from asperity.regimes import (
     Frame,
     Place,
     Regime,
-    Situation,
     adhesion_map,
     choose_adhesion,
     hertz_load,
@@ -183,15 +183,22 @@ def test_a_border_within_a_factor_of_one_and_a_half_is_named(border):
     assert f"{ELASTICITY_PER_TABOR * border:.3g}" in text
 
 
-def situation(**changes):
-    regime = Regime(0.02, 0.0232, 0.5, 7e3, "dmt")
-    usual = Situation(regime, True, 25e-9, 70e-9, 30.0, 1e-9, 0.28e-9)
-    return usual._replace(**changes)
+DMT = Regime(0.02, 0.0232, 0.5, 7e3, "dmt")
+
+
+def said(regime=DMT, kelvin_radius=1e-9):
+    inputs = SimpleNamespace(
+        asperities=SimpleNamespace(spacing=70e-9), tip_radius=25e-9, yields=False,
+        liquid=SimpleNamespace(molecule_size=0.28e-9), kelvin_radius=kelvin_radius,
+        liquid_radius=kelvin_radius, structure=SimpleNamespace(liquid="equilibrium"),
+    )  # fmt: skip
+    return verdicts(inputs, regime, 30.0)
 
 
 def test_every_number_that_does_not_apply_says_why():
     nothing = Regime(None, None, None, None, "none")
-    found = verdicts(Situation(nothing, False, 1e-6, None, 1.0, 0.0, None))
+    smooth = SimpleNamespace(asperities=None, tip_radius=1e-6, liquid=None, liquid_radius=0.0)
+    found = verdicts(smooth, nothing, 1.0)
     missing = {name: one.verdict for name, one in found.items() if one.value is None}
     assert set(missing) == set(found) - {"adhesion_law", "liquid_regime"}
     assert all(missing.values())
@@ -199,27 +206,26 @@ def test_every_number_that_does_not_apply_says_why():
 
 
 def test_the_state_of_the_liquid_is_said_with_its_reason():
-    dmt = Regime(0.02, 0.0232, 0.5, 7e3, "dmt")
-    regime = dmt._replace(liquid_regime="coalesced", liquid_regime_reason="7 nm reach 6 nm")
-    found = verdicts(situation(regime=regime, kelvin_radius=7e-9))["liquid_regime"]
+    regime = DMT._replace(liquid_regime="coalesced", liquid_regime_reason="7 nm reach 6 nm")
+    found = said(regime=regime, kelvin_radius=7e-9)["liquid_regime"]
     assert (found.value, found.verdict) == ("coalesced", "7 nm reach 6 nm")
 
 
 def test_menisci_wider_than_their_tips_are_called_so():
-    ratio = verdicts(situation(kelvin_radius=30e-9))["kelvin_radius_over_tip_radius"]
+    ratio = said(kelvin_radius=30e-9)["kelvin_radius_over_tip_radius"]
     assert ratio.value == pytest.approx(1.2)
     assert "wider than their tips" in ratio.verdict
 
 
 def test_load_says_whether_adhesion_counts_beside_contact():
-    heavy = verdicts(situation())["load_parameter"].verdict
-    light = verdicts(situation(regime=Regime(0.02, 0.0232, 0.5, 3.0, "dmt")))["load_parameter"]
-    unknown = verdicts(situation(regime=Regime(None, None, 0.5, 300.0, "jkr")))["load_parameter"]
+    heavy = said()["load_parameter"].verdict
+    light = said(regime=Regime(0.02, 0.0232, 0.5, 3.0, "dmt"))["load_parameter"]
+    unknown = said(regime=Regime(None, None, 0.5, 300.0, "jkr"))["load_parameter"]
     assert "negligible" in heavy
     assert "counts" in light.verdict
     assert "`adhesion.equilibrium_spacing` decides" in unknown.verdict
 
 
 def test_a_chosen_law_comes_with_its_reason():
-    law = verdicts(situation(regime=Regime(0.02, 0.02, None, 1.0, "dmt", "because")))
+    law = said(regime=Regime(0.02, 0.02, None, 1.0, "dmt", "because"))
     assert law["adhesion_law"] == ("dmt", "", "chosen: because")

@@ -18,7 +18,7 @@ from .dimensionless_numbers import (
     tabor_number,
 )
 from .loaded_asperities import loaded_asperities, mean_is_enough
-from .verdicts import Situation, Verdict, missed, verdicts
+from .verdicts import Verdict, missed, verdicts
 
 __all__ = [
     "BORDER_FACTOR",
@@ -30,7 +30,6 @@ __all__ = [
     "Frame",
     "Place",
     "Regime",
-    "Situation",
     "Verdict",
     "adhesion_map",
     "choose_adhesion",

@@ -8,7 +8,6 @@ from __future__ import annotations
 from math import erfc, exp, pi, sqrt
 
 import numpy as np
-from scipy.special import erfcx
 
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
@@ -100,9 +99,7 @@ def covered_share(rough: Asperities, separation: float) -> float:
     if rough.summits is not None and rough.facts is not None and rough.facts["source"] == "summits":
         overlap = (rough.summits.heights - separation).clip(0.0)
         return rough.asperity_density * pi * float((overlap * rough.summits.radii).mean())
-    reduced = (separation - rough.mean_height) / rough.rms_height
-    tail = exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - 0.5 * reduced * erfc(reduced / sqrt(2.0))
-    return rough.asperity_density * pi * rough.asperity_radius * rough.rms_height * tail
+    return rough.asperity_density * pi * rough.asperity_radius * tails(rough, separation)[1]
 
 
 def mean_overlap(rough: Asperities, separation: float) -> float:
@@ -111,10 +108,24 @@ def mean_overlap(rough: Asperities, separation: float) -> float:
         heights = rough.summits.heights
         over = heights[heights > separation] - separation
         return float(over.mean()) if over.size else 0.0
-    reduced = (separation - rough.mean_height) / rough.rms_height
-    # The density of the normal distribution over its tail, by which underflows cancel.
-    ratio = sqrt(2.0 / pi) / float(erfcx(reduced / sqrt(2.0)))
-    return rough.rms_height * max(ratio - reduced, 0.0)
+    share, overlap, _ = tails(rough, separation)
+    return overlap / share if share > 0.0 else 0.0
+
+
+def tails(rough: Asperities, separation: float) -> tuple[float, float, float]:
+    """Repeated tail integrals of Gaussian heights at a separation [m], as `Heights.tail` has them.
+
+    Returns
+    -------
+    tuple
+        T_1, the share that touches at one place; T_2 [m], the mean of all overlaps there, or the
+        number that touches under a whole rigid paraboloid; T_3 [m^2], the overlaps under it.
+    """
+    rms = rough.rms_height
+    reduced = (separation - rough.mean_height) / rms
+    first = 0.5 * erfc(reduced / sqrt(2.0))
+    second = max(exp(-0.5 * reduced**2) / sqrt(2.0 * pi) - reduced * first, 0.0)
+    return first, rms * second, 0.5 * rms**2 * (first - reduced * second)
 
 
 def _asperities(inputs: Inputs, rough: Asperities, central: float) -> list[str]:

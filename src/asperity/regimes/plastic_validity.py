@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._jax import jax, jnp
 from ..asperity_laws import plastic_law
 from ..inputs import Inputs
-from ..laws.law import as_float64
-from ..laws.plastic import PlasticContact
 from ..materials.solids import Solid, named
-from ..numerics.compilation import AT_ONCE, Program
-from ..surfaces.heights import Gaussian
+from .model_domain import tails
 
 FITTED = 110.0
 """Overlap over that of yield up to which the laws were fitted."""
@@ -66,11 +62,9 @@ def _beyond(inputs: Inputs, central: float) -> list[str]:
         return []
     # Where nothing yields, the share is told by Kogut and Etsion's law.
     name = inputs.structure.plasticity if inputs.yields else "kogut-etsion"
-    law = plastic_law(inputs, name)
-    heights = Gaussian(rough.rms_height, rough.mean_height)
-    overlap, contacting, beyond, whole = (
-        float(x) for x in _tails(law, heights, as_float64(central))
-    )
+    overlap = float(plastic_law(inputs, name).yield_overlap)
+    _, contacting, whole = tails(rough, central)
+    _, beyond, _ = tails(rough, central + overlap)
     share = beyond / contacting if contacting > 0.0 else 0.0
     if share < SHARE:
         return []
@@ -87,18 +81,6 @@ def _beyond(inputs: Inputs, central: float) -> list[str]:
             f"were fitted up to {FITTED:g} times, on tips much larger than the overlap"
         )
     return out
-
-
-def _counted(
-    law: PlasticContact, heights: Gaussian, central: jax.Array
-) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
-    """Overlap at yield [m], asperities that touch and that yield, and the former's overlaps."""
-    overlap = jnp.asarray(law.yield_overlap)
-    contacting, beyond = heights.tail(2, central), heights.tail(2, central + overlap)
-    return overlap, contacting, beyond, heights.tail(3, central)
-
-
-_tails = Program(_counted, AT_ONCE)
 
 
 def _not_judged(inputs: Inputs) -> list[str]:

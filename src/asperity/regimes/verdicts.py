@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isinf
 from typing import NamedTuple
 
+from ..inputs import Inputs
 from .boundaries import hertz_load, region
 from .choice import DMT_BELOW, JKR_ABOVE
 from .dimensionless_numbers import Regime
@@ -36,46 +37,6 @@ class Verdict(NamedTuple):
     verdict: str
 
 
-class Situation(NamedTuple):
-    """The numbers that verdicts rest on.
-
-    Attributes
-    ----------
-    regime
-        The dimensionless numbers.
-    rough
-        Whether the body has asperities.
-    tip_radius
-        Radius of one asperity, or of the smooth body [m].
-    spacing
-        Mean distance of asperities [m]; None for a smooth body.
-    contacting
-        Expected number of contacting asperities at closest approach of the first impact.
-    kelvin_radius
-        Radius of curvature of the liquid [m]: Kelvin's, or less where an adsorbed film bounds
-        it; 0 without menisci, infinite in saturated vapour without a film.
-    bounded
-        Whether a film bounds it.
-    on_tips
-        Whether the liquid forms menisci on the tips, not a filling of the surface.
-    yields
-        Whether the case lets its asperities yield.
-    molecule_size
-        Size of a molecule of the liquid [m]; None without menisci.
-    """
-
-    regime: Regime
-    rough: bool
-    tip_radius: float
-    spacing: float | None
-    contacting: float
-    kelvin_radius: float
-    molecule_size: float | None
-    bounded: bool = False
-    on_tips: bool = True
-    yields: bool = False
-
-
 def missed(contacting: float) -> str:
     """What it means that fewer than one asperity is expected to touch.
 
@@ -89,23 +50,32 @@ def missed(contacting: float) -> str:
     return "about half of single bodies touch none and the others one or two"
 
 
-def verdicts(situation: Situation) -> dict[str, Verdict]:
-    """A verdict on each number, by the number's name."""
-    regime = situation.regime
+def verdicts(inputs: Inputs, regime: Regime, contacting: float) -> dict[str, Verdict]:
+    """A verdict on each number, by the number's name.
+
+    Parameters
+    ----------
+    inputs
+        The quantities of a case.
+    regime
+        Its dimensionless numbers.
+    contacting
+        Expected number of contacting asperities at closest approach of the first impact.
+    """
     reason = regime.adhesion_reason
     return {
         "tabor_number": _tabor(regime),
         "elasticity_parameter": _elasticity(regime),
-        "load_parameter": _load(situation),
+        "load_parameter": _load(regime, contacting),
         "adhesion_law": Verdict(
             regime.adhesion_law, "", f"chosen: {reason}" if reason else "as the case says"
         ),
-        "plasticity_index": _plasticity(situation),
-        "contacting_asperities": _touching(situation),
+        "plasticity_index": _plasticity(inputs, regime.plasticity_index),
+        "contacting_asperities": _touching(inputs, contacting),
         "loaded_asperities": _loaded(regime.loaded_asperities),
-        "kelvin_radius": _kelvin(situation),
-        "kelvin_radius_over_spacing": _over_spacing(situation),
-        "kelvin_radius_over_tip_radius": _over_tip(situation),
+        "kelvin_radius": _kelvin(inputs),
+        "kelvin_radius_over_spacing": _over_spacing(inputs),
+        "kelvin_radius_over_tip_radius": _over_tip(inputs),
         "liquid_regime": Verdict(regime.liquid_regime, "", regime.liquid_regime_reason),
     }
 
@@ -139,11 +109,10 @@ def _elasticity(regime: Regime) -> Verdict:
     return Verdict(value, "1", f"the adhesion map's region at this load: {region(value, load)}")
 
 
-def _load(situation: Situation) -> Verdict:
-    regime = situation.regime
+def _load(regime: Regime, contacting: float) -> Verdict:
     value, elasticity = regime.load_parameter, regime.elasticity_parameter
     if value is None:
-        touches = situation.contacting > 0.0
+        touches = contacting > 0.0
         why = "the case has no adhesion" if touches else "nothing touches at closest approach"
         return Verdict(None, "1", why)
     # Without a range the limit is known only to lie between those of rigid and of soft bodies.
@@ -159,28 +128,22 @@ def _load(situation: Situation) -> Verdict:
     return Verdict(value, "1", said)
 
 
-def _plasticity(situation: Situation) -> Verdict:
-    value = situation.regime.plasticity_index
+def _plasticity(inputs: Inputs, value: float | None) -> Verdict:
     if value is None:
-        why = (
-            "neither material has a hardness or yield strength"
-            if situation.rough
-            else "the body is smooth"
-        )
-        return Verdict(None, "1", why)
+        unknown = "neither material has a hardness or yield strength"
+        return Verdict(None, "1", unknown if inputs.asperities else "the body is smooth")
     if value < ELASTIC_BELOW:
         said = f"below {ELASTIC_BELOW:g}: asperities stay elastic"
     elif value <= 1.0:
         said = f"between {ELASTIC_BELOW:g} and 1: some asperities yield under load"
     else:
         said = "above 1: asperities yield, "
-        said += "as they do here" if situation.yields else "and the models keep them elastic"
+        said += "as they do here" if inputs.yields else "and the models keep them elastic"
     return Verdict(value, "1", said)
 
 
-def _touching(situation: Situation) -> Verdict:
-    value = situation.contacting
-    if not situation.rough:
+def _touching(inputs: Inputs, value: float) -> Verdict:
+    if inputs.asperities is None:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
     if value < 1.0:
         return Verdict(value, "1", f"below 1: {missed(value)}; only means over many are told")
@@ -196,37 +159,39 @@ def _loaded(value: float | None) -> Verdict:
     return Verdict(value, "1", said)
 
 
-def _kelvin(situation: Situation) -> Verdict:
-    value, molecule = situation.kelvin_radius, situation.molecule_size
-    if value == 0.0 or molecule is None:
+def _kelvin(inputs: Inputs) -> Verdict:
+    value = inputs.liquid_radius
+    if value == 0.0 or inputs.liquid is None:
         return Verdict(None, "m", "no menisci: dry")
     if isinf(value):
         return Verdict(None, "m", "infinite: the vapour is saturated")
+    molecule = inputs.liquid.molecule_size
     said = f"{value / molecule:.2g} molecules of {molecule * 1e9:.2g} nm"
     if value < molecule:
         said = f"less than a molecule ({molecule * 1e9:.2g} nm): no continuum"
-    bound = "; bounded by the adsorbed film, below Kelvin's" * situation.bounded
-    return Verdict(value, "m", said + bound)
+    if value < inputs.kelvin_radius:
+        said += "; bounded by the adsorbed film, below Kelvin's"
+    return Verdict(value, "m", said)
 
 
-def _over_spacing(situation: Situation) -> Verdict:
-    value, spacing = situation.kelvin_radius, situation.spacing
+def _over_spacing(inputs: Inputs) -> Verdict:
+    value, rough = inputs.liquid_radius, inputs.asperities
     if value == 0.0 or isinf(value):
-        return Verdict(None, "1", _kelvin(situation).verdict)
-    if spacing is None:
+        return Verdict(None, "1", _kelvin(inputs).verdict)
+    if rough is None:
         return Verdict(None, "1", "the body is smooth: its one meniscus has no neighbour")
-    said = f"of {spacing * 1e9:.3g} nm between asperities: menisci "
-    said += "stay apart" if value < spacing else "merge"
-    return Verdict(value / spacing, "1", said)
+    said = f"of {rough.spacing * 1e9:.3g} nm between asperities: menisci "
+    said += "stay apart" if value < rough.spacing else "merge"
+    return Verdict(value / rough.spacing, "1", said)
 
 
-def _over_tip(situation: Situation) -> Verdict:
-    value = situation.kelvin_radius
+def _over_tip(inputs: Inputs) -> Verdict:
+    value = inputs.liquid_radius
     if value == 0.0 or isinf(value):
-        return Verdict(None, "1", _kelvin(situation).verdict)
-    if not situation.on_tips:
+        return Verdict(None, "1", _kelvin(inputs).verdict)
+    if inputs.structure.liquid == "kelvin-filling" and inputs.asperities is not None:
         return Verdict(None, "1", "the liquid fills the surface, whatever its tips")
-    ratio = value / situation.tip_radius
+    ratio = value / inputs.tip_radius
     if ratio < NARROW_BELOW:
         said = f"below {NARROW_BELOW:g}: menisci are narrow beside their tips, as their law assumes"
     elif ratio < 1.0:

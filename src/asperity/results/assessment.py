@@ -55,23 +55,10 @@ def assessment_of(name: str, problem: Problem, motion: Motion) -> Assessment:
     at_depth = AtDepth.of(motion)
     check_surface(problem, at_depth)
     regime = regime_of(problem, at_depth)
-    inputs = problem.inputs
-    rough, liquid = inputs.asperities, inputs.liquid
-    situation = regimes.Situation(
-        regime=regime,
-        rough=rough is not None,
-        tip_radius=inputs.tip_radius,
-        spacing=None if rough is None else rough.spacing,
-        contacting=at_depth.contacting,
-        kelvin_radius=inputs.liquid_radius,
-        molecule_size=None if liquid is None else liquid.molecule_size,
-        bounded=inputs.liquid_radius < inputs.kelvin_radius,
-        on_tips=inputs.structure.liquid != "kelvin-filling" or rough is None,
-        yields=inputs.yields,
-    )
+    said = regimes.verdicts(problem.inputs, regime, at_depth.contacting)
     warnings = warnings_of(problem, regime, at_depth, motion)
     warnings += slow_menisci(problem, motion)
-    return Assessment(name, regime, regimes.verdicts(situation), warnings)
+    return Assessment(name, regime, said, warnings)
 
 
 def measured_warnings(
@@ -116,17 +103,9 @@ def regime_of(problem: Problem, at_depth: AtDepth) -> regimes.Regime:
     if work and contacting > 0.0:
         load = regimes.load_parameter(at_depth.elastic, contacting, work, tip)
     elasticity = None if tabor is None else regimes.ELASTICITY_PER_TABOR * tabor
-    liquid = liquid_state(
-        radius=inputs.liquid_radius,
-        span=inputs.liquid_span,
-        tip_radius=tip,
-        spacing=None if rough is None else rough.spacing,
-        central=at_depth.central,
-        rms_height=inputs.surface_rms_height,
-    )
     return regimes.Regime(
         tabor, elasticity, plasticity, load, inputs.structure.adhesion, inputs.adhesion_reason,
-        liquid.regime, liquid.reason, None if rough is None else contacting,
+        *liquid_state(inputs, at_depth.central), None if rough is None else contacting,
         None if rough is None else regimes.loaded_asperities(
             rough, contacting, at_depth.central, measured=inputs.structure.heights == "summits"
         ),
