@@ -350,6 +350,11 @@ class Inputs:
         return self.structure.plasticity != "none"
 
     @property
+    def surface_facts(self) -> dict[str, Any] | None:
+        """What the files of measured surfaces were found to be; None for a case of numbers."""
+        return None if self.asperities is None else self.asperities.facts
+
+    @property
     def chosen_release(self) -> bool:
         """Whether the body is let go from where the solver chooses."""
         return self.release is not None and self.release.separation is None

@@ -126,7 +126,7 @@ def explore(
     stiffness = None if held is None else held.stiffness
     drawn, _ = quasi_static_curve(solution.contact, motion.table, motion.impacts, stiffness)
     report(1.0, "done")
-    return result, Curve(case, name, **drawn, warnings=result.warnings)
+    return result, Curve(case, name, **drawn, warnings=result.warnings, surface=result.surface)
 
 
 def critical_velocity(
@@ -262,7 +262,7 @@ def _curve_of(case: Case, name: str, problem: Problem, report: Report) -> Curve:
     if problem.inputs.placement is not None:
         warnings.append("this is the mean over all bodies; `asperity run` has single ones")
     report(1.0, "done")
-    return Curve(case, name, **drawn, warnings=warnings)
+    return Curve(case, name, **drawn, warnings=warnings, surface=problem.inputs.surface_facts)
 
 
 def assess(

@@ -23,6 +23,7 @@ from asperity.surfaces.files.write_surface import write_topography
 from asperity.surfaces.generation.generate import self_affine
 from asperity.surfaces.heights import Gaussian
 from asperity.surfaces.preparation.prepare import Preparation, prepared
+from fake_result import loading
 
 MADE = self_affine(
     (128, 128), (10e-9, 10e-9), hurst=0.8, rolloff=240e-9, cutoff=50e-9, rms_height=2e-9, seed=4
@@ -197,6 +198,9 @@ def test_a_record_is_not_run_again_on_a_surface_that_has_changed(case, solved, t
     found = call("run", record, "-o", tmp_path / "out")
     assert found.exit_code == 2
     assert "surface.nc, which has changed since" in found.stderr
+    curve = tmp_path / "curve.nc"
+    curve.write_bytes(netcdf_record.encode(dataclasses.replace(loading(case=there), surface=facts)))
+    assert "surface.nc, which has changed since" in call("run", curve).stderr
 
 
 def test_a_changed_file_is_read_anew(tmp_path):

@@ -9,8 +9,6 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from asperity.plots import plastic_laws, style
-
 PAGE = Path(__file__).parents[2] / "docs" / "gallery.md"
 POISSON, INDENTATION = 0.3, 2.8  # of steel; hardness over yield strength
 HARDNESS = INDENTATION * 295e6 * (1.0 - POISSON**2) / 207e9  # over the contact modulus
@@ -143,25 +141,3 @@ def test_the_fits_end_where_the_page_says(gallery):
 def test_of_other_solids_jackson_and_green_carry_what_the_page_says(hardness, more):
     loads = [pressed(law(hardness), 12.6)[0] for law in (KogutEtsion, JacksonGreen)]
     assert loads[1] / loads[0] - 1.0 == pytest.approx(more, abs=5e-3)
-
-
-def test_the_picture_is_one_column_wide_and_its_letters_lie_apart(gallery):
-    figure = plastic_laws.figure(gallery["index"], gallery["curves"], fitted=13.0)
-    assert figure.get_figwidth() * 25.4 == pytest.approx(style.COLUMN)
-    figure.canvas.draw()
-    width, height = figure.canvas.get_width_height()
-    upper, lower = (axes.get_tightbbox() for axes in figure.axes)
-    for box in (upper, lower):
-        assert box.x0 >= -1.0
-        assert box.y0 >= -1.0
-        assert box.x1 <= width + 1.0
-        assert box.y1 <= height + 1.0
-    assert not upper.overlaps(lower)
-    names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert names == ["Hertz", *gallery["curves"], "beyond the fits"]
-    assert all("[-]" in axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes)
-
-
-def test_nothing_is_shaded_where_the_fits_hold_everywhere(gallery):
-    figure = plastic_laws.figure(gallery["index"], gallery["curves"], fitted=200.0)
-    assert [len(axes.patches) for axes in figure.axes] == [0, 0]

@@ -249,7 +249,7 @@ def test_files_of_the_wrong_kind_are_refused(tmp_path: Path):
         read_tables(str(tmp_path / "none.csv"))
     with pytest.raises(InputError, match="must be a file"):
         read_tables(str(tmp_path))
-    with pytest.raises(InputError, match="must be a file"):
+    with pytest.raises(InputError, match="must be a regular file"):
         read_tables("/dev/zero")
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping, Sequence
-from itertools import cycle
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -16,7 +15,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from asperity.results.colours import colour
 from asperity.results.summary import scaled
 
 COLUMN, PAGE = 85.0, 170.0
@@ -32,8 +30,6 @@ _MARGINS = {"left": 14.0, "right": 3.0, "top": 9.0, "bottom": 11.0}
 _GAP = 17.0
 _HEIGHT = 42.0
 _ONE_ROW = 3
-_TINTS = ("motion", "unloading", "apex", "gas")
-_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)))
 _MARKER_SCALE = 1.5
 _MARKED = 40
 
@@ -170,25 +166,6 @@ def dots(axes: Axes, number: np.ndarray, values: np.ndarray, tint: str, name: st
 def label(quantity: str, unit: str) -> str:
     """An axis label, e.g. ``separation [nm]``."""
     return f"{quantity} [{unit}]"
-
-
-def lines(axes: Axes, curves: Mapping[str, tuple[np.ndarray, np.ndarray]], number: str) -> None:
-    """Several laws over one number: a colour and a dash each, named for the legend.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Its horizontal axis becomes logarithmic, from end to end of the laws.
-    curves : mapping of str to pairs of numpy.ndarray
-        By the name of a law: the number, ascending, and what the law gives.
-    number : str
-        What the number is, with its unit.
-    """
-    for (name, (x, y)), tint, dashes in zip(curves.items(), cycle(_TINTS), cycle(_DASHES)):
-        axes.plot(x, y, color=colour(tint), ls=dashes, label=name)
-    ends = [float(end) for x, _ in curves.values() for end in (x[0], x[-1])]
-    axes.set(xscale="log", xlim=(min(ends), max(ends)), xlabel=number)
-    plain_numbers(axes.xaxis)
 
 
 def legend_above(axes: Axes, rows: int | None = None) -> None:

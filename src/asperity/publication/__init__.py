@@ -4,5 +4,5 @@
 `comparison`: printed beside computed. `audit`: its claims, one by one. `figures`,
 `surface_figures`, `figure_data`: the data of its figures. `report`: all this in words.
 
-Nothing else imports this room but pictures and commands; it may be deleted without harm to them.
+Nothing else imports this room but pictures and commands.
 """

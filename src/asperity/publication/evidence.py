@@ -95,7 +95,7 @@ class Evidence:
         """Compute the variants, two at a time: each kind of contact compiles anew."""
         with ThreadPoolExecutor(2) as pool:
             motions = {
-                name: pool.submit(solve, variant, name=name, stop=stop)
+                name: pool.submit(solve, variant, name=name, stop=stop, critical=False)
                 for name, variant in _variants(case).items()
             }
             off = pool.submit(_printed_off, stop)

@@ -6,10 +6,10 @@ import csv
 import importlib.resources
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
-from pathlib import Path
 from typing import NamedTuple
 
 from ..config import Case
+from ..config.case_file import read_text
 from ..errors import InputError
 from ..units import shown
 
@@ -27,9 +27,6 @@ QUANTITIES = {
     "time_to_rest": Quantity("time_to_rest_us", "stiction time", "s"),
     "power_loss": Quantity("power_loss_1e-4_nW", "power loss", "W"),
 }
-
-SIZE_LIMIT = 1 << 20
-"""Largest size of a file of tables [bytes]."""
 
 _COLUMNS = {
     "asperity_radius_nm": (-9, 1e-3, 1e6),
@@ -105,19 +102,7 @@ def read_tables(file: str | None = None) -> list[Entry]:
     if file is None:
         source = importlib.resources.files(__package__) / "published_tables.csv"
         return _entries(source.read_text(encoding="utf-8"), "published_tables.csv")
-    path = Path(file)
-    try:
-        if path.exists() and not path.is_file():
-            raise InputError(f"{file}: tables must be a file; got a folder or device", file=file)
-        if path.exists() and path.stat().st_size > SIZE_LIMIT:
-            raise InputError(f"{file}: tables must be at most 1 MiB", file=file)
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: tables must be text; got a binary file", file=file) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{file}: cannot be read: {reason}", file=file) from None
-    return _entries(text, file)
+    return _entries(read_text(file, "tables"), file)
 
 
 def _entries(text: str, file: str) -> list[Entry]:

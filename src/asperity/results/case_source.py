@@ -77,7 +77,7 @@ def source_of(given: str | os.PathLike[str]) -> Source:
 
         record = read(name)
         assert record.input_sha256 is not None
-        _check_surfaces(name, getattr(record, "surface", None))
+        _check_surfaces(name, record.surface)
         case = named(record.case, record.name)
         return Source(case, record.input_sha256, name, record.case_file)
     try:

@@ -36,5 +36,5 @@ _SPARE = ("#661100", "#A05195", "#5B8C5A")  # of mechanisms of one's own
 
 
 def colour(name: str) -> str:
-    """The colour of a quantity; one of a few spare ones for an unknown."""
-    return COLOURS.get(name) or _SPARE[sum(map(ord, name)) % len(_SPARE)]
+    """The colour of a quantity; of an unknown one a spare colour, which its loss has too."""
+    return COLOURS.get(name) or _SPARE[sum(map(ord, name.removeprefix("lost_"))) % len(_SPARE)]

@@ -199,7 +199,7 @@ def result_of(
         measures=_plain(measures, made),
         realisations=realisations,
         ledger=_ledger(solution.contact, motion, body, made),
-        surface=None if inputs.asperities is None else inputs.asperities.facts,
+        surface=inputs.surface_facts,
         warnings=[
             *measured_warnings(problem, regime, at_depth, motion, measures._asdict()),
             *slow_menisci(problem, motion, solution.trajectory),

@@ -80,6 +80,7 @@ def _decode(content: bytes, name: str) -> Result | Curve:
         "name": Path(str(said["name"])).name or "record",
         "input_sha256": str(said["input_sha256"]),
         "case_file": said.get("case_file"),
+        "surface": json.loads(said["surface"]) if "surface" in said else None,
     }
     if said[record_layout.KIND] == "curve":
         return _curve(arrays, said, shared)
@@ -99,7 +100,6 @@ def _result(
         energies={key: values for key, values in _below(arrays, "energy_").items() if values.ndim},
         events={key: arrays.get(key, nothing) for key in record_layout.EVENTS},
         **{key: json.loads(said[key]) for key in record_layout.PARTS},
-        surface=json.loads(said["surface"]) if "surface" in said else None,
         realisations=_realisations(arrays),
     )
 

@@ -119,8 +119,8 @@ def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
         found["outcome"] = result.outcome.value
         for part in PARTS:
             found[part] = json.dumps(plain(getattr(result, part)), allow_nan=False)
-        if result.surface is not None:
-            found["surface"] = json.dumps(plain(result.surface), allow_nan=False)
+    if result.surface is not None:
+        found["surface"] = json.dumps(plain(result.surface), allow_nan=False)
     return found
 
 

@@ -118,6 +118,8 @@ class CurveData:
         SHA-256 of the text that the case was read from; without it, of the resolved case's.
     case_file : str, optional
         Path of the case's file, or which built-in case it is; None of a case made in Python.
+    surface : dict, optional
+        Measured surfaces, as a result has them.
     """
 
     case: Case
@@ -138,3 +140,4 @@ class CurveData:
     jumps: dict[str, Any] | None = None
     input_sha256: str | None = None
     case_file: str | None = None
+    surface: dict[str, Any] | None = None

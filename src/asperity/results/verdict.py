@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _TAKERS = {
     "adhesion": "dry adhesion takes",
     "capillary": "menisci take",
+    "damping": "the dashpot takes",
     "gas": "the gas film takes",
     "instability": "jumps of the surface take",
     "plastic": "yielding takes",
