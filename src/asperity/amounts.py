@@ -10,6 +10,10 @@ _PREFIXES = {
 }  # fmt: skip
 
 
+_PREFIXED = ("m", "s", "N", "J", "W", "Pa", "m/s", "m/s^2", "J/m^2", "N/m", "Pa s")
+"""Units that take a prefix; of others, such as 1/m^2, the number has an exponent instead."""
+
+
 def scaled(value: float, unit: str, digits: int = 4) -> tuple[float, str]:
     """What to divide by, and the unit with its prefix, to show a value between 1 and 1000.
 
@@ -18,7 +22,7 @@ def scaled(value: float, unit: str, digits: int = 4) -> tuple[float, str]:
     value : float
         A typical value, in ``unit``.
     unit : str
-        SI unit without a prefix; an empty one takes none.
+        SI unit without a prefix.
     digits : int
         How many are shown.
 
@@ -27,7 +31,7 @@ def scaled(value: float, unit: str, digits: int = 4) -> tuple[float, str]:
     tuple
         E.g. ``(1e-9, "nm")`` for 4.6e-8 m. ASCII: "u" for micro.
     """
-    if not unit or not math.isfinite(value) or value == 0.0:
+    if unit not in _PREFIXED or not math.isfinite(value) or value == 0.0:
         return 1.0, unit
     # A value that rounds to 1000 takes the next prefix.
     power = 3 * math.floor(math.log10(abs(value) * (1.0 + 0.5 * 0.1**digits)) / 3)
@@ -36,10 +40,13 @@ def scaled(value: float, unit: str, digits: int = 4) -> tuple[float, str]:
 
 
 def amount(value: float | None, unit: str = "", digits: int = 4) -> str:
-    """A value with its unit at some digits, e.g. ``45.9 nm``; ``-`` where there is none."""
+    """A value with its unit at some digits, e.g. ``45.9 nm``; ``-`` where there is none.
+
+    Plain numbers have the unit ``""`` or ``"1"``; angles are shown in degrees.
+    """
     if value is None or not math.isfinite(value):
         return "-"
-    if value == 0.0:
-        return f"0 {unit}".strip()
-    factor, prefixed = scaled(value, unit, digits)
-    return f"{value / factor:.{digits}g} {prefixed}".strip()
+    if unit == "rad":
+        value, unit = math.degrees(value), "deg"
+    factor, prefixed = scaled(value, "" if unit == "1" else unit, digits)
+    return f"{value / factor + 0.0:.{digits}g} {prefixed}".strip()  # no -0

@@ -125,7 +125,7 @@ def _row(name: str, one: Verdict) -> list[str]:
     if isinstance(one.value, str):
         value = LAW_NAMES.get(one.value, one.value)
     else:
-        value = amount(one.value, one.unit.replace("1", ""))
+        value = amount(one.value, one.unit)
     head = f"  {label:<{_NAMES}}{value:<{_VALUES}}"
     return textwrap.wrap(
         one.verdict, WIDTH, initial_indent=head, subsequent_indent=" " * (2 + _NAMES + _VALUES)

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from pydantic import BaseModel
 
 from asperity.amounts import amount
 from asperity.config.case_text import ordered, unit_of
 from asperity.config.html_table import card
 from asperity.config.tables import CaseTables
-
-_PREFIXED = ("m", "Pa", "J/m^2", "N/m", "m/s", "s", "Pa s")
-"""Units that take a prefix."""
 
 
 def sentence(case: CaseTables) -> str:
@@ -69,10 +64,4 @@ def value_text(value: object, unit: str) -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         return ", ".join(map(str, value))
-    if not isinstance(value, float):
-        return str(value)
-    if unit == "rad":
-        return f"{math.degrees(value):.4g} deg"
-    if unit in _PREFIXED:
-        return amount(value, unit)
-    return f"{value:.5g}" if unit in ("", "1") else f"{value:.5g} {unit}"
+    return amount(value, unit, 5) if isinstance(value, float) else str(value)

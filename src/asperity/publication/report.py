@@ -7,7 +7,6 @@ import io
 import json
 import textwrap
 from collections.abc import Collection, Iterable
-from math import degrees
 from typing import Any
 
 from ..results.summary import WIDTH, amount
@@ -62,8 +61,7 @@ def _tables(done: Reproduction) -> list[str]:
     """Published beside what is used or computed, a line for each quantity or surface."""
     lines = ["Table 1: published / used"]
     for row in done.table_1:
-        unit = "" if row["unit"] == "1" else row["unit"]
-        published, used = (_plain(row[side], unit) for side in ("published", "used"))
+        published, used = (amount(row[side], row["unit"]) for side in ("published", "used"))
         lines.append(f"  {row['quantity']:<36}{published:>16} / {used}")
     lines.append("")
     for table in dict.fromkeys(row["table"] for row in done.rows):
@@ -80,13 +78,6 @@ def _tables(done: Reproduction) -> list[str]:
             lines.append(_line([amount(x, "m") for x in surface], cells))
         lines.append("")
     return lines
-
-
-def _plain(value: float | None, unit: str) -> str:
-    """Of an odd unit, which takes no prefix, the number with its exponent."""
-    if value is not None and unit == "rad":
-        return f"{degrees(value):.4g} deg"
-    return amount(value, unit) if unit in ("", "Pa") else f"{value:.4g} {unit}"
 
 
 def _line(left: Iterable[str], cells: Iterable[str]) -> str:

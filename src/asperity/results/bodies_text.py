@@ -58,7 +58,7 @@ def _spread(quantiles: Sequence[float], unit: str, mean: float | None) -> str:
     def told(value: float) -> str:
         if unit == "1" and 0.9995 <= value < 1.0:
             return restitution_text(value)
-        return amount(value, "" if unit == "1" else unit) if isfinite(value) else "more"
+        return amount(value, unit) if isfinite(value) else "more"
 
     low, median, high = (told(value) for value in quantiles)
     beside = "" if mean is None else f"; mean field: {told(mean)}"

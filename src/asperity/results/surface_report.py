@@ -147,19 +147,19 @@ def _summits(found: Description) -> list[tuple[str, ...]]:
 
     def modelled(name: str, unit: str) -> list[str]:
         values = [getattr(model, name, None) if model else None for model in models]
-        return [_measure(value, unit) for value in values]
+        return [amount(value, unit) for value in values]
 
     rms = tops.rms_height if shape else None
     return [
         ("number", str(tops.count), "-", "-"),
-        ("density", _measure(tops.density, "1/m^2"), *modelled("density", "1/m^2")),
-        ("radius", _measure(tops.radius, "m"), *modelled("radius", "m")),
-        ("mean radius", _measure(tops.mean_radius, "m"), "-", "-"),
-        ("median radius", _measure(tops.median_radius, "m"), "-", "-"),
-        ("mean height", _measure(tops.mean_height, "m"), *modelled("mean_height", "m")),
-        ("rms height", _measure(rms, "m"), *modelled("rms_height", "m")),
-        ("skewness", _measure(shape.skewness if shape else None, ""), *modelled("skewness", "")),
-        ("kurtosis", _measure(shape.kurtosis if shape else None, ""), *modelled("kurtosis", "")),
+        ("density", amount(tops.density, "1/m^2"), *modelled("density", "1/m^2")),
+        ("radius", amount(tops.radius, "m"), *modelled("radius", "m")),
+        ("mean radius", amount(tops.mean_radius, "m"), "-", "-"),
+        ("median radius", amount(tops.median_radius, "m"), "-", "-"),
+        ("mean height", amount(tops.mean_height, "m"), *modelled("mean_height", "m")),
+        ("rms height", amount(rms, "m"), *modelled("rms_height", "m")),
+        ("skewness", amount(shape.skewness if shape else None, ""), *modelled("skewness", "")),
+        ("kurtosis", amount(shape.kurtosis if shape else None, ""), *modelled("kurtosis", "")),
     ]
 
 
@@ -167,10 +167,10 @@ def _moments(found: Description) -> list[Row]:
     moments = found.spectral
     along, across = moments.slopes
     return [
-        ("m0", _measure(moments.m0, "m^2")),
-        ("m2", _measure(moments.m2, "")),
-        ("m4", _measure(moments.m4, "1/m^2")),
-        ("bandwidth m0 m4/m2^2", _measure(moments.bandwidth, "")),
+        ("m0", amount(moments.m0, "m^2")),
+        ("m2", amount(moments.m2, "")),
+        ("m4", amount(moments.m4, "1/m^2")),
+        ("bandwidth m0 m4/m2^2", amount(moments.bandwidth, "")),
         ("rms slope", f"{amount(along)} along x, {amount(across)} along y"),
     ]
 
@@ -195,12 +195,6 @@ def _pixels(found: Description) -> list[str]:
 def _chance(value: float | None) -> str:
     """A p-value; a tiny one is extrapolated, and its digits say nothing."""
     return "below 1e-06" if value is not None and value < _TINY else amount(value)
-
-
-def _measure(value: float | None, unit: str) -> str:
-    """A value with its unit; only a plain length takes a prefix."""
-    shown = amount(value, "m" if unit == "m" else "")
-    return shown if shown == "-" or unit == "m" else f"{shown} {unit}".strip()
 
 
 def rows(named: Sequence[Row], title: str = "") -> list[str]:

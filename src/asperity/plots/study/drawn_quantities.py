@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocato
 
 from asperity.config.key_labels import PERCENT
 from asperity.plots import style
-from asperity.sweeps.analysis.view import PREFIXED, is_number, words
+from asperity.sweeps.analysis.view import is_number, words
 
 if TYPE_CHECKING:
     import xarray
@@ -120,9 +120,7 @@ def _of(values: np.ndarray, name: str, unit: str, *, log: bool) -> Quantity:
     """Values with a prefix to their unit, where it takes one."""
     found = values[np.isfinite(values)]
     typical = np.exp(np.log(found).mean(keepdims=True)) if log else found
-    factor, shown = (
-        style.scale_of(typical, unit=unit) if unit in PREFIXED
-        else (np.pi / 180.0, "deg") if unit == "rad" else (0.01 if unit == "%" else 1.0, unit)
-    )  # fmt: skip
+    others = {"rad": (np.pi / 180.0, "deg"), "%": (0.01, "%")}
+    factor, shown = others.get(unit) or style.scale_of(typical, unit=unit)
     shown = "-" if shown == "1" else shown.replace("^2", "²").replace("^3", "³")
     return Quantity(values / factor, style.label(name, shown), log, (), factor)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,9 +22,6 @@ FEW = 6
 
 MOST_PANELS = 9
 """Most values of an axis that are drawn side by side."""
-
-PREFIXED = ("m", "s", "N", "J", "W", "Pa", "m/s", "m/s^2", "J/m^2", "N/m", "Pa s")
-"""Units that take a prefix in front."""
 
 _BESIDE = ("energy_balance_error", "turning_separation", "turning_time")
 
@@ -77,11 +73,7 @@ def words(value: object, unit: str = "1") -> str:
         return "true" if value else "false"
     if not isinstance(value, (int, float, np.integer, np.floating)):
         return str(value)
-    if unit in PREFIXED:
-        return amount(float(value), unit)
-    if unit == "rad":
-        return f"{math.degrees(value):.4g} deg"
-    return f"{float(value):.4g} {unit}".removesuffix(" 1").rstrip()
+    return amount(float(value), unit)
 
 
 def measures_of(dataset: xarray.Dataset) -> list[str]:
