@@ -1,7 +1,6 @@
 """Case files: what is read is what was written, and what is wrong is said in one line."""
 
 import importlib.resources
-import json
 import math
 import re
 import subprocess
@@ -15,7 +14,8 @@ from hypothesis import strategies as st
 from pydantic import BaseModel, ValidationError
 
 from asperity import config as case_room
-from asperity.config import BUILTINS, FIRST, Body, Case, builtin, load, load_file, template
+from asperity.config import BUILTINS, FIRST, Case, builtin, load, load_file, template
+from asperity.config.bodies import Body
 from asperity.config.problems import tables_of
 from asperity.config.resolve import resolve
 from asperity.config.roughness import NUMBERS
@@ -227,13 +227,6 @@ def test_the_example_of_every_key_is_read(place, name, field):
     assert value == (example if unit in ("", "1") else quantity(example, unit))
 
 
-def test_the_schema_of_a_form_can_be_made():
-    schema = json.loads(json.dumps(Case.model_json_schema()))
-    radius = schema["$defs"]["Body"]["properties"]["radius"]
-    assert (radius["type"], radius["unit"]) == ("string", "m")
-    assert schema["$defs"]["Numerics"]["properties"]["rings"]["maximum"] == 400
-
-
 names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
 radii = st.floats(1e-6, 0.9)
 numbers = st.floats(1e-12, 0.9, allow_subnormal=False)
@@ -280,6 +273,9 @@ def test_replacing_values_checks_them():
         case.replace({"body.raduis": "1 um"})
     with pytest.raises(InputError, match="`radius` is no table"):
         case.replace({"body.radius.x": 1})
+    glass = {"youngs_modulus": "70 GPa", "poisson": 0.2, "density": "2500 kg/m^3"}
+    own = case.replace({"materials": {"no. 5": glass}, "materials.no. 5.density": 2600.0})
+    assert own.materials["no. 5"].density == 2600.0
 
 
 # --- built-in cases ----------------------------------------------------------------------------

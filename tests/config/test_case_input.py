@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.config import SIZE_LIMIT, Case, builtin, load, load_file, template
+from asperity.config import Case, builtin, load, load_file, template
+from asperity.config.case_file import SIZE_LIMIT
 from asperity.config.problems import tables_of
 from asperity.errors import InputError
 

@@ -154,12 +154,12 @@ def test_a_scale_bar_is_a_round_length(most: float, bar: float):
 
 def test_a_map_of_fewer_pixels_keeps_the_mean_and_the_holes():
     heights = np.random.default_rng(0).standard_normal((1290, 64))
-    small = coarse(heights, 640)
+    small = coarse(heights)
     assert small.shape == (645, 64)
     assert small.mean() == pytest.approx(heights.mean(), abs=1e-12)
     heights[:2, 0] = np.nan
     heights[2, 1] = np.nan
-    small = coarse(heights, 640)
+    small = coarse(heights)
     assert np.isnan(small[0, 0])
     assert small[1, 1] == heights[3, 1]
 

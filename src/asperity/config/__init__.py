@@ -10,39 +10,8 @@
 A new key is a field with its unit, meaning and example; form, template and help follow from it.
 """
 
-from asperity.config.adhesion_tables import Adhesion, Capillary
-from asperity.config.bodies import Body, Counterface, Material
-from asperity.config.case_file import (
-    BUILTINS,
-    FIRST,
-    SIZE_LIMIT,
-    builtin,
-    load,
-    load_file,
-    template,
-)
-from asperity.config.publication import Publication
-from asperity.config.roughness import Roughness
-from asperity.config.run_tables import Impact, Numerics, Output
+from asperity.config.case_file import BUILTINS, FIRST, builtin, load, load_file, template
+from asperity.config.run_tables import Output
 from asperity.config.schema import Case
 
-__all__ = [
-    "BUILTINS",
-    "FIRST",
-    "SIZE_LIMIT",
-    "Adhesion",
-    "Body",
-    "Capillary",
-    "Case",
-    "Counterface",
-    "Impact",
-    "Material",
-    "Numerics",
-    "Output",
-    "Publication",
-    "Roughness",
-    "builtin",
-    "load",
-    "load_file",
-    "template",
-]
+__all__ = ["BUILTINS", "FIRST", "Case", "Output", "builtin", "load", "load_file", "template"]

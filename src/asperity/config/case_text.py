@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.config.problems import tables_of
+from asperity.config.problems import place, tables_of
 from asperity.errors import InputError
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -50,16 +50,16 @@ def text_of(tables: Mapping[str, Any]) -> str:
     return "\n".join(_given(tables, ())).strip() + "\n"
 
 
-def _given(tables: Mapping[str, Any], place: tuple[str, ...]) -> list[str]:
+def _given(tables: Mapping[str, Any], around: tuple[str, ...]) -> list[str]:
     inner = {key: value for key, value in tables.items() if isinstance(value, Mapping)}
     lines = [
         f"{_key(key)} = {literal(value)}"
         for key, value in tables.items()
         if key not in inner and value is not None
     ]
-    if place and (lines or not inner):
-        lines = [f"[{'.'.join(_key(part) for part in place)}]", *lines]
-    rest = [line for key, table in inner.items() for line in _given(table, (*place, key))]
+    if around and (lines or not inner):
+        lines = [f"[{'.'.join(_key(part) for part in around)}]", *lines]
+    rest = [line for key, table in inner.items() for line in _given(table, (*around, key))]
     return [*lines, "", *rest] if lines else rest
 
 
@@ -95,7 +95,7 @@ def _key(name: str) -> str:
 def change(tables: dict[str, Any], changes: Mapping[str, object]) -> None:
     """Give tables other values at dotted keys; None removes a key."""
     for dotted, value in changes.items():
-        *above, last = dotted.split(".")
+        *above, last = place(dotted)
         table = tables
         for part in above:
             table = table.setdefault(part, {})

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import Field, GetCoreSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 from asperity.errors import InputError
@@ -55,11 +55,6 @@ class Quantity:
     ) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.read)
 
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"type": "string"}
-
 
 @dataclass(frozen=True)
 class Number:
@@ -106,14 +101,6 @@ class Number:
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.read)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        low, high = self.bounds
-        lower = "minimum" if self.interval.startswith("[") else "exclusiveMinimum"
-        upper = "maximum" if self.interval.endswith("]") else "exclusiveMaximum"
-        return {"type": "integer" if self.whole else "number", lower: low, upper: high}
 
 
 def entry(

@@ -4,21 +4,7 @@ from __future__ import annotations
 
 LABELS = {
     "schema": "version of the schema",
-    "body.shape": "shape of the body",
-    "body.radius": "radius of the body",
-    "body.material": "material of the body",
-    "body.youngs_modulus": "Young's modulus of the body",
-    "body.poisson": "Poisson's ratio of the body",
-    "body.density": "density of the body",
-    "body.hardness": "hardness of the body",
-    "body.yield_strength": "yield strength of the body",
-    "counterface.material": "material of the counterface",
     "counterface.deformation": "deformation of the bulk",
-    "counterface.youngs_modulus": "Young's modulus of the counterface",
-    "counterface.poisson": "Poisson's ratio of the counterface",
-    "counterface.density": "density of the counterface",
-    "counterface.hardness": "hardness of the counterface",
-    "counterface.yield_strength": "yield strength of the counterface",
     "roughness.asperity_density": "asperities per area",
     "roughness.asperity_radius": "tip radius",
     "roughness.files": "measured surfaces",
@@ -115,6 +101,8 @@ def label(key: str) -> str:
     if found is not None:
         return found
     table, _, rest = key.partition(".")
+    if table in ("body", "counterface") and rest:
+        return f"{label(f'materials.{rest}')} of the {table}"
     material, _, last = rest.rpartition(".")
     if table == "materials" and material:
         return f"{label(f'materials.{last}')} of {material}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Collection, Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -190,11 +190,22 @@ def table_of(model: type[BaseModel], place: Place) -> type[BaseModel] | None:
     return model
 
 
+def place(key: str) -> Place:
+    """The tables around a dotted key, and the key; the name of a material may hold dots itself."""
+    table, _, rest = key.partition(".")
+    material, dot, last = rest.rpartition(".")
+    return (table, material, last) if table == "materials" and dot else tuple(key.split("."))
+
+
 def tables_of(annotation: Any) -> list[type[BaseModel]]:
     """The models within a type, e.g. `Roughness` in ``Roughness | None``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [model for part in getattr(annotation, "__args__", ()) for model in tables_of(part)]
+    kinds = [part for part in parts_of(annotation) if isinstance(part, type)]
+    return [kind for kind in kinds if issubclass(kind, BaseModel)]
+
+
+def parts_of(annotation: Any) -> list[Any]:
+    """A type and all that it is made of, down to what its parts are annotated with."""
+    return [annotation, *(inner for part in get_args(annotation) for inner in parts_of(part))]
 
 
 def _line(lines: Mapping[Place, int], place: Place) -> int | None:

@@ -121,7 +121,7 @@ def _key(key: object) -> str:
 
 def _unit(model: type[BaseModel], key: str) -> str:
     """SI unit of a key, as of a field; nothing of an unknown key."""
-    *above, last = key.split(".")
+    *above, last = problems.place(key)
     table = problems.table_of(model, tuple(above))
     field = None if table is None else table.model_fields.get(last)
     return "" if field is None else case_text.unit_of(field)

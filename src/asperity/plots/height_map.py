@@ -73,13 +73,13 @@ def draw_map(
     return axes
 
 
-def coarse(heights: np.ndarray, finest: int = _FINEST) -> np.ndarray:
+def coarse(heights: np.ndarray) -> np.ndarray:
     """A map of as many pixels as a picture shows, each the mean of a block.
 
     A block is missing where more than half of it is; rows and columns that fill no block are
     left out.
     """
-    steps = [max(1, count // finest) for count in heights.shape]
+    steps = [max(1, count // _FINEST) for count in heights.shape]
     if max(steps) == 1:
         return heights
     rows, columns = (count // step for count, step in zip(heights.shape, steps, strict=True))

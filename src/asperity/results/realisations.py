@@ -100,15 +100,13 @@ def quantiles_of(values: np.ndarray) -> list[float]:
     return [float(x) for x in np.quantile(values, QUANTILES, method="inverted_cdf")]
 
 
-def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
+def clopper_pearson(hits: int, trials: int) -> tuple[float, float]:
     """Interval of a probability after some trials; it holds it at least as often as it says.
 
     Parameters
     ----------
     hits, trials
         How often it happened, of how many times.
-    confidence
-        Of the interval.
 
     Notes
     -----
@@ -116,7 +114,7 @@ def clopper_pearson(hits: int, trials: int, confidence: float = CONFIDENCE) -> t
     """
     from scipy.special import betaincinv
 
-    tail = 0.5 * (1.0 - confidence)
+    tail = 0.5 * (1.0 - CONFIDENCE)
     low = betaincinv(hits, trials - hits + 1, tail) if hits else 0.0
     high = betaincinv(hits + 1, trials - hits, 1.0 - tail) if hits < trials else 1.0
     return float(low), float(high)

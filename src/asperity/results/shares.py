@@ -36,10 +36,10 @@ def percentages(parts: Iterable[float], places: int = 1) -> list[float]:
     return [step / unit for step in steps]
 
 
-def share_texts(parts: Iterable[float], places: int = 1) -> list[str]:
+def share_texts(parts: Iterable[float]) -> list[str]:
     """The `percentages` in words, e.g. ``71.3 %``; ``< 0.1 %`` of a part too small to be one."""
     known = list(parts)
     return [
-        f"{share:g} %" if share or not part > 0.0 else f"< {10.0**-places:g} %"
-        for part, share in zip(known, percentages(known, places), strict=True)
+        f"{share:g} %" if share or not part > 0.0 else "< 0.1 %"
+        for part, share in zip(known, percentages(known), strict=True)
     ]

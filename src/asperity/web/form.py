@@ -11,7 +11,7 @@ from asperity.config import Case
 from asperity.config.case_text import ordered, unit_of
 from asperity.config.fields import Number, Quantity
 from asperity.config.key_labels import label
-from asperity.config.problems import tables_of
+from asperity.config.problems import parts_of, tables_of
 
 _LEFT_OUT = ("schema", "output")
 """What a page has no use for."""
@@ -85,7 +85,7 @@ def _key(table: str, name: str, field: FieldInfo) -> dict[str, Any]:
 
 def _limits(field: FieldInfo) -> Quantity | Number | None:
     """What bounds a field's value."""
-    for each in (*field.metadata, *_parts(field.annotation)):
+    for each in (*field.metadata, *parts_of(field.annotation)):
         if isinstance(each, Quantity | Number):
             return each
     return None
@@ -98,7 +98,7 @@ def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[
         return ("whole" if limits.whole else "number"), []
     choices = [
         str(value)
-        for part in _parts(annotation)
+        for part in parts_of(annotation)
         if get_origin(part) is Literal
         for value in get_args(part)
     ]
@@ -107,16 +107,11 @@ def _kind(annotation: Any, limits: Quantity | Number | None) -> tuple[str, list[
     parts = [annotation, *get_args(annotation)]
     if any(part is bool for part in parts):
         return "switch", []
-    if any(get_origin(part) is list for part in _parts(annotation)):
+    if any(get_origin(part) is list for part in parts_of(annotation)):
         return "list", []
     if any(part is int for part in parts):
         return "name or number", []
     return "text", []
-
-
-def _parts(annotation: Any) -> list[Any]:
-    """A type and all that it is made of, down to what its parts are annotated with."""
-    return [annotation, *(inner for part in get_args(annotation) for inner in _parts(part))]
 
 
 def _slider(limits: Quantity | Number | None) -> dict[str, Any] | None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from asperity.config import Case
-from asperity.config.problems import check
+from asperity.config.problems import check, place
 from asperity.errors import InputError
 from asperity.web.form import form
 
@@ -111,33 +111,23 @@ def _keys() -> dict[tuple[str, str], dict[str, Any]]:
 
 def _place(key: str) -> tuple[str, str]:
     """Table and key of a dotted key; of a material of one's own without its name."""
-    table, _, rest = key.partition(".")
-    return table, rest.rpartition(".")[2] if table == "materials" else rest
-
-
-def _path(key: str) -> list[str]:
-    """Names of the tables around a key, and the key."""
-    table, _, rest = key.partition(".")
-    if table == "materials" and "." in rest:
-        name, _, last = rest.rpartition(".")
-        return [table, name, last]
-    return [table, rest] if rest else [table]
+    return place(key)[0], place(key)[-1]
 
 
 def _given(tables: Tables, key: str) -> Any:
     """The value of a key, or a table; None where there is none."""
     found: Any = tables
-    for part in _path(key):
+    for part in place(key):
         found = found.get(part) if isinstance(found, dict) else None
     return found
 
 
 def _with(tables: Tables, key: str, value: Any) -> Tables:
     """The tables with another value of a key, or of a table; None takes it away."""
-    return _changed(tables, _path(key), value)
+    return _changed(tables, place(key), value)
 
 
-def _changed(tables: Any, path: list[str], value: Any) -> Tables:
+def _changed(tables: Any, path: Sequence[str], value: Any) -> Tables:
     first, *rest = path
     given: Tables = tables if isinstance(tables, dict) else {}
     if rest:

@@ -8,9 +8,9 @@ from typing import Any
 from pydantic import BaseModel
 
 from asperity.config import Case, case_text
-from asperity.config.problems import check
+from asperity.config.problems import check, place
 from asperity.errors import InputError
-from asperity.sweeps.study.keys import Key, Value, place
+from asperity.sweeps.study.keys import Key, Value
 
 
 def parts(case: Case) -> dict[str, Any]:

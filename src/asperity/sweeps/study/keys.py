@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import types
 import typing
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from pydantic.fields import FieldInfo
 from asperity.config.base_table import Table
 from asperity.config.case_text import unit_of
 from asperity.config.key_labels import label
-from asperity.config.problems import check, did_you_mean, tables_of
+from asperity.config.problems import check, did_you_mean, parts_of, place, table_of, tables_of
 from asperity.config.schema import Case
 from asperity.errors import InputError
 from asperity.units import shown
@@ -101,15 +100,16 @@ def find(name: str, materials: Iterable[str] = ()) -> Key:
     table = name.partition(".")[0]
     if table in _NOT_VARIED:
         raise InputError(f"must not go over `{name}`: it is {_NOT_VARIED[table]}")
-    own, field, material = tuple(materials), _field(name), _material(name)
+    own, field = tuple(materials), _field(name)
     if field is None:
         raise InputError(_unknown(name, own))
-    if material is not None and material not in own:
+    material = ".".join(place(name)[1:-1])
+    if table == "materials" and material not in own:
         raise InputError(
             f"must go over a material of the base case, which has no [materials.{material}]"
             f"{did_you_mean(material, own)}"
         )
-    inside, unit = _types(field.annotation), unit_of(field)
+    inside, unit = _types(field), unit_of(field)
     if list in inside:
         raise InputError(
             f"must not go over `{name}`, whose value is a list; write a study for each"
@@ -123,7 +123,7 @@ def known(materials: Iterable[str] = ()) -> list[str]:
         f"{table}.{key}"
         for table, model in _tables().items()
         for key, field in model.model_fields.items()
-        if table not in (*_NOT_VARIED, "materials") and list not in _types(field.annotation)
+        if table not in (*_NOT_VARIED, "materials") and list not in _types(field)
     ]
     own = _tables()["materials"].model_fields
     return found + [f"materials.{name}.{key}" for name in materials for key in own]
@@ -146,23 +146,10 @@ def _tables() -> dict[str, type[BaseModel]]:
     return {name: inside[0] for name, field in fields if (inside := tables_of(field.annotation))}
 
 
-def _material(name: str) -> str | None:
-    """Name of the material of a key of [materials.NAME], which may hold dots itself."""
-    table, _, rest = name.partition(".")
-    return rest.rpartition(".")[0] if table == "materials" else None
-
-
-def place(name: str) -> tuple[str, ...]:
-    """Names of the tables around a key, and the key itself."""
-    material = _material(name)
-    above, _, last = name.rpartition(".")
-    return ("materials", material, last) if material is not None else (above, last)
-
-
 def _field(name: str) -> FieldInfo | None:
     """Field of a dotted key; None where there is none."""
-    table, *_, last = place(name)
-    model = _tables().get(table)
+    *above, last = place(name)
+    model = table_of(Case, tuple(above)) if above else None
     return None if model is None else model.model_fields.get(last)
 
 
@@ -178,12 +165,6 @@ def _table_of(name: str) -> type[BaseModel]:
     return create_model("One", __base__=Table, **fields)
 
 
-def _types(annotation: Any) -> set[type]:
+def _types(field: FieldInfo) -> list[Any]:
     """Python's types within that of a field."""
-    origin = typing.get_origin(annotation)
-    if origin is typing.Annotated:
-        return _types(annotation.__origin__)
-    if origin in (typing.Union, types.UnionType):
-        return {one for part in typing.get_args(annotation) for one in _types(part)}
-    found = origin or annotation
-    return {found} if isinstance(found, type) else set()
+    return [typing.get_origin(part) or part for part in parts_of(field.annotation)]

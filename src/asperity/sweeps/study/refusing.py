@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from asperity.config.case_file import refuse_size
+from asperity.config.problems import place
 from asperity.errors import InputError
 from asperity.sweeps.study.columns import OF_BODIES
 from asperity.sweeps.study.definition import StudyDefinition
-from asperity.sweeps.study.keys import place
 
 CASES_LIMIT = 1 << 53
 """Most cases that a study can count: each has a number that a float can hold."""

@@ -6,10 +6,9 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from asperity.config.problems import tables_of
+from asperity.config.problems import place, tables_of
 from asperity.config.tables import CaseTables
 from asperity.sweeps.study.definition import StudyDefinition
-from asperity.sweeps.study.keys import place
 
 QUICK = 4096
 """Cases of a task where the force is a closed form or a sum over heights."""

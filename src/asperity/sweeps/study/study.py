@@ -15,6 +15,7 @@ from pydantic import BaseModel
 
 from asperity.config import Case
 from asperity.config.case_file import read_text
+from asperity.config.problems import place
 from asperity.errors import InputError
 from asperity.sweeps.study import (
     base_case,
@@ -31,7 +32,7 @@ from asperity.sweeps.study.case_variants import changed, parts
 from asperity.sweeps.study.columns import Column
 from asperity.sweeps.study.corners import corners_of
 from asperity.sweeps.study.definition import StudyDefinition
-from asperity.sweeps.study.keys import Value, find, place
+from asperity.sweeps.study.keys import Value, find
 from asperity.sweeps.study.refusing import refuse_unusable
 from asperity.sweeps.study.samples import Sample
 
