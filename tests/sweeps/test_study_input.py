@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.config import SIZE_LIMIT
-from asperity.config.case_file import LINE_LIMIT
+from asperity.config.case_file import LINE_LIMIT, SIZE_LIMIT
 from asperity.errors import InputError
 from asperity.sweeps.study.axis_text import LIST_LIMIT
 from asperity.sweeps.study.study import parse, read
