@@ -187,7 +187,7 @@ def test_bins_of_a_convolution_hold_the_gaussians_share():
     draw = np.random.default_rng(0).standard_normal
     both = convolved(3.0 * draw(200_000), 4.0 * draw(200_000))
     edges = np.linspace(-20.0, 20.0, 41)
-    density = surface_figures.in_bins(both, edges)
+    density = both.in_bins(edges)
     assert float(np.sum(density)) == pytest.approx(1.0, abs=1e-3)
     wanted = np.diff(ndtr(edges / 5.0))
     np.testing.assert_allclose(density, wanted, atol=1e-3)

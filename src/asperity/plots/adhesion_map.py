@@ -13,7 +13,7 @@ from matplotlib.text import Text
 from asperity.plots import style
 from asperity.plots.point_labels import name_points
 from asperity.plots.style import Panel
-from asperity.publication.figure_data import Drawing
+from asperity.publication.figure_data import Drawing, map_lines
 from asperity.regimes import Boundary, Frame, Place, regions
 from asperity.results.colours import colour
 
@@ -42,10 +42,7 @@ def files(
 
 def drawing(boundaries: Sequence[Boundary], places: Sequence[Place]) -> Drawing:
     """The map's data: a series for each line, by the models on its sides, and for each place."""
-    series: dict[str, tuple[np.ndarray, ...]] = {}
-    for line in boundaries:
-        keep = np.isfinite(line.elasticity) & np.isfinite(line.load)
-        series[" | ".join(line.between)] = (line.elasticity[keep], line.load[keep])
+    series = map_lines(boundaries)
     for place in places:
         series[f"case {place.name}"] = (np.array([place.elasticity]), np.array([place.load]))
     title = "Adhesion map (Johnson and Greenwood's, 5 % criteria) with cases on it"

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from asperity.plots import style
-from asperity.publication.surface_figures import in_bins
 from asperity.results.colours import colour
 from asperity.surfaces.description.convolution import HeightDistribution
 from asperity.surfaces.description.describe import Description
@@ -195,7 +194,7 @@ def _convolved(
 ) -> None:
     """The convolution of two distributions about a mean height [m], a point in each bin."""
     middle = 0.5 * (edges[1:] + edges[:-1])
-    density = in_bins(distribution, edges - mean)
+    density = distribution.in_bins(edges - mean)
     axes.plot(middle / factor, density * factor, "o", ms=2.0, mew=0.0, color=colour("unloading"),
               label="convolution")  # fmt: skip
 

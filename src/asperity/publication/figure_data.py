@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..regimes import Boundary
+
 Columns = tuple[np.ndarray, ...]
 
 
@@ -45,6 +47,15 @@ class Drawing(NamedTuple):
             rows = np.column_stack([np.asarray(values, dtype=float) for values in arrays])
             writer.writerows((name, *(f"{value:.9g}" for value in row)) for row in rows)
         return store.getvalue().encode()
+
+
+def map_lines(boundaries: Sequence[Boundary]) -> dict[str, Columns]:
+    """Lines of the adhesion map where they exist, by the models on their sides."""
+    series: dict[str, Columns] = {}
+    for line in boundaries:
+        keep = np.isfinite(line.elasticity) & np.isfinite(line.load)
+        series[" | ".join(line.between)] = (line.elasticity[keep], line.load[keep])
+    return series
 
 
 def map_columns(heights: np.ndarray, steps: Sequence[float]) -> Columns:

@@ -13,7 +13,7 @@ from .. import regimes
 from ..results.result import Result
 from ..surfaces.generation.synthetic import gaussian_surface, length_for_density, summits
 from .evidence import Evidence
-from .figure_data import Columns, Drawing, gaussian, map_columns
+from .figure_data import Columns, Drawing, gaussian, map_columns, map_lines
 
 if TYPE_CHECKING:
     from ..surfaces.measured_surface import Pair
@@ -118,10 +118,7 @@ def _distribution(evidence: Evidence) -> Drawing:
 
 def _map(evidence: Evidence) -> Drawing:
     lines = regimes.adhesion_map(np.logspace(-3.0, 2.0, 160), np.logspace(-2.0, 6.0, 160))
-    series: dict[str, Columns] = {
-        f"{line.between[0]} | {line.between[1]}": _finite(line.elasticity, line.load)
-        for line in lines
-    }
+    series = map_lines(lines)
     lam = np.array([evidence.wet.regime["elasticity_parameter"]])
     series["closest approach"] = (lam, np.array([evidence.wet.regime["load_parameter"]]))
     series["at rest, exact model"] = (lam, np.array([evidence.load_at_rest]))
@@ -131,11 +128,6 @@ def _map(evidence: Evidence) -> Drawing:
         series,
         {},
     )
-
-
-def _finite(*arrays: np.ndarray) -> Columns:
-    keep = np.all([np.isfinite(values) for values in arrays], axis=0)
-    return tuple(values[keep] for values in arrays)
 
 
 def _meniscus(evidence: Evidence) -> Drawing:

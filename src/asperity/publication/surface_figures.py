@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..surfaces.description.convolution import HeightDistribution
 from ..surfaces.measured_surface import Pair
 from .figure_data import Columns, Drawing, gaussian, map_columns
 
@@ -40,7 +39,7 @@ def distribution(found: Pair) -> Drawing:
     half_width = _REACH * shape.rms
     edges = np.linspace(max(low, -half_width), min(high, half_width), _BINS + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    series: dict[str, Columns] = {found.name: (middle, in_bins(both, edges))}
+    series: dict[str, Columns] = {found.name: (middle, both.in_bins(edges))}
     about = {
         "rms height [m]": shape.rms,
         "skewness [-]": shape.skewness,
@@ -48,7 +47,7 @@ def distribution(found: Pair) -> Drawing:
         "Kolmogorov-Smirnov statistic [-]": shape.statistic,
     }
     if peaks is not None:
-        series["summits"] = (middle, in_bins(peaks, edges))
+        series["summits"] = (middle, peaks.in_bins(edges))
         about["summits' rms [m]"] = peaks.rms
     series["Gaussian"] = gaussian(edges[0], edges[-1], shape.rms)
     return Drawing(
@@ -58,18 +57,3 @@ def distribution(found: Pair) -> Drawing:
         series,
         about,
     )
-
-
-def in_bins(distribution: HeightDistribution, edges: np.ndarray) -> np.ndarray:
-    """Mean density [1/m] of a distribution in each bin, from its cumulative one.
-
-    Parameters
-    ----------
-    distribution
-        The distribution.
-    edges
-        Edges [m] of the bins, ascending, shape (bins + 1,).
-    """
-    upper = distribution.heights + 0.5 * distribution.step
-    below = np.interp(edges, upper, distribution.cumulative, left=0.0, right=1.0)
-    return np.asarray(np.diff(below) / np.diff(edges))

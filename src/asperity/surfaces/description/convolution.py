@@ -61,6 +61,18 @@ class HeightDistribution:
         """Probability [-] of a height below the upper edge of each cell."""
         return np.asarray(np.cumsum(self.density)) * self.step
 
+    def in_bins(self, edges: np.ndarray) -> np.ndarray:
+        """Mean density [1/m] in each bin, from the cumulative one.
+
+        Parameters
+        ----------
+        edges
+            Edges [m] of the bins, ascending, shape (bins + 1,).
+        """
+        upper = self.heights + 0.5 * self.step
+        below = np.interp(edges, upper, self.cumulative, left=0.0, right=1.0)
+        return np.asarray(np.diff(below) / np.diff(edges))
+
 
 def convolved(first: np.ndarray, second: np.ndarray) -> HeightDistribution:
     """Distribution of the sum of two independent heights, as in the publication's figure 2.
