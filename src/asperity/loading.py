@@ -18,6 +18,7 @@ from .integration import over_folds, prepared
 from .integration.panel_cuts import RESIDUAL, Unsolved
 from .laws.law import as_float64
 from .numerics.compilation import AT_ONCE, Program
+from .numerics.polynomials import local
 
 _LEAST, _FACTOR, _STEPS = 1e-24, 8.0, 40  # J: energies of curves, until they reach far enough
 _HELD = 2.0  # times the largest force holds a body back that attraction draws in
@@ -109,5 +110,4 @@ def _gained(table: Table, place: float) -> float:
     """Work of the contact force from the top of the table to a place of its approach [J]."""
     panel = int(table.panel_at(as_float64(place)))
     low, high = np.asarray(table.ends)[panel : panel + 2]
-    x = (2.0 * place - low - high) / (high - low)
-    return float(chebval(x, np.asarray(table.works.integral)[0, panel, :, 0]))
+    return float(chebval(local(low, high, place), np.asarray(table.works.integral)[0, panel, :, 0]))

@@ -73,9 +73,9 @@ def test_restitution_of_a_yielding_sphere_is_that_of_thornton_and_ning():
 
 def balance(contact, deepest):
     """Kinetic energy [J] of an impact that reaches a depth, and what is left of it."""
-    formation = contact.formation_loss(ZERO)
+    formation = contact.tip(ZERO).formation_loss
     kinetic = contact.loading_energy(deepest) + formation
-    lost = formation + contact.dissipated(deepest) + contact.rupture_loss(deepest)
+    lost = formation + contact.dissipated(deepest) + contact.tip(deepest).rupture_loss
     return kinetic, kinetic - lost
 
 
@@ -99,7 +99,7 @@ def test_a_sphere_that_yields_and_adheres_leaves_as_its_energies_say():
     # Each loss by its name: the first touch is that of the whole tip.
     deepest = -rows.closest_approach[2:, 0]
     np.testing.assert_allclose(rows.lost[2:, 0, 0], ADHESIVE.dissipated(deepest), rtol=1e-9)
-    bond = ADHESIVE.formation_loss(ZERO) + ADHESIVE.rupture_loss(deepest)
+    bond = ADHESIVE.tip(ZERO).formation_loss + ADHESIVE.tip(deepest).rupture_loss
     np.testing.assert_allclose(rows.lost[2:, 0, 1], bond, rtol=1e-9)
     assert np.max(rows.energy_balance_error) < 1e-12
 
@@ -113,7 +113,7 @@ def test_a_second_impact_keeps_nothing_and_meets_the_flattened_tip():
     assert np.all(np.abs(kept[:, 1] - kept[:, 0]) < 1e-9 * np.asarray(rows.maximum_kinetic[:, 0]))
     assert np.all(rows.closest_approach[:, 1] > rows.closest_approach[:, 0])
     deepest, thrice = -rows.closest_approach[:, 0], made == 3
-    bond = ADHESIVE.formation_loss(deepest) + ADHESIVE.rupture_loss(deepest)
+    bond = ADHESIVE.tip(deepest).formation_loss + ADHESIVE.tip(deepest).rupture_loss
     second = rows.lost[:, 1, 1] - rows.lost[:, 0, 1]
     assert np.any(thrice)
     np.testing.assert_allclose(second[thrice], bond[thrice], rtol=1e-9)

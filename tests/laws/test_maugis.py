@@ -86,7 +86,7 @@ def solved(elasticity, gap):
 def test_contact_solves_both_equations(elasticity):
     law = law_of(elasticity)
     random = np.random.default_rng(int(1000 * elasticity))
-    end = float(law.rupture_gap)
+    end = float(law.kinks[0])
     gaps = np.append(end - DEPTH * random.uniform(0.03, 3.0, 6), -20.0 * DEPTH)
     exact = np.array([solved(elasticity, gap) for gap in gaps])
     np.testing.assert_allclose(force_of(law, gaps), exact, rtol=1e-9, atol=1e-9 * ATTRACTION)
@@ -96,7 +96,7 @@ def test_contact_solves_both_equations(elasticity):
 def test_outside_contact_the_stress_fills_a_disc_that_shrinks(elasticity):
     """g = h_0 - c^2/(2 R) + 4 sigma_0 c/(pi E*) and F = -pi sigma_0 c^2."""
     law = law_of(elasticity)
-    range_, first, last = (float(x) for x in (law.forming_gap, law.rupture_gap, law.breaking_gap))
+    range_, first, last = (float(x) for x in (law.forming_gap, law.kinks[0], law.breaking_gap))
     stress = W / range_
     gaps = np.linspace(first, last, 52)[1:-1]
     outer = np.sqrt(-force_of(law, gaps) / (pi * stress))
@@ -112,7 +112,7 @@ def test_it_is_a_law(elasticity):
 @every_lambda
 def test_force_is_the_slope_of_the_energy_from_deep_inside_to_the_rupture(elasticity):
     law = law_of(elasticity)
-    end, last = float(law.rupture_gap), float(law.breaking_gap)
+    end, last = float(law.kinks[0]), float(law.breaking_gap)
     deep = -DEPTH * np.geomspace(1e-2, 1e6, 60)
     near = end + (last - end) * np.linspace(0.0, 1.0, 60)[1:-1] if last > end else []
     ladder = DEPTH * np.geomspace(1e-7, 1.0, 20)
@@ -125,7 +125,7 @@ def test_force_is_the_slope_of_the_energy_from_deep_inside_to_the_rupture(elasti
 @every_lambda
 def test_work_across_the_beginning_of_contact_is_the_change_of_energy(elasticity):
     law = law_of(elasticity)
-    end, last = float(law.rupture_gap), float(law.breaking_gap)
+    end, last = float(law.kinks[0]), float(law.breaking_gap)
     outer = min(end + 0.3 * DEPTH, last)
     node, weight = np.polynomial.legendre.leggauss(40)
     t = 0.5 * (node + 1.0)
@@ -268,7 +268,7 @@ def slopes():
 @pytest.mark.parametrize("elasticity", [0.05, 0.7, 0.95, 3.0, 20.0])
 def test_slopes_with_every_value_are_those_of_differences(elasticity):
     law = law_of(elasticity)
-    outer = float(0.5 * (law.rupture_gap + law.breaking_gap) if elasticity < 0.9 else 0.0)
+    outer = float(0.5 * (law.kinks[0] + law.breaking_gap) if elasticity < 0.9 else 0.0)
     gaps = jnp.append(jnp.asarray([-4.0, -1.0, 0.1]) * DEPTH, outer)
     value, jacobian = slopes()
     exact = np.asarray(jacobian(jnp.ones(4), law, gaps))

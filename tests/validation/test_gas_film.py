@@ -1,13 +1,16 @@
 """Gas squeezed between a sphere and a plane: drag by the exact series, loss of a drop."""
 
 from functools import cache
-from math import acosh, log, pi, sinh
+from math import acosh, log, pi, sinh, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from asperity.dynamics.gas_film import SqueezeFilm, gas_decrement
+from asperity._jax import jnp
+from asperity.dynamics import Body
+from asperity.dynamics.damped_summits import rebound
+from asperity.dynamics.gas_film import SqueezeFilm
 from figures import Figure, misses
 
 FILE = Path(__file__).parent.parent / "data" / "gas_film.csv"
@@ -45,10 +48,9 @@ def drag(gap):
 def drop(slip, speed, decrement):
     """Loss of a drop in air, and its speed at the rebound, by slip length [nm]."""
     mass = 2200.0 * 4.0 / 3.0 * pi * RADIUS**3
-    found = gas_decrement(
-        release=40e-9, rebound=29.4e-9, mass=mass, gravity=9.81, radius=RADIUS,
-        viscosity=VISCOSITY, slip_length=slip * 1e-9,
-    )  # fmt: skip
+    film, edge = SqueezeFilm(RADIUS, VISCOSITY, slip * 1e-9), 29.4e-9
+    kinetic, apex = rebound(Body(mass, 9.81, 40e-9, drags=(film,)), jnp.asarray(edge))
+    found = log((40e-9 - edge) / (float(apex) - edge)), sqrt(2.0 * float(kinetic) / mass)
     problem, source = f"drop through the gas film, slip {slip:g} nm", "independent integration"
     return (
         Figure(f"{problem}: decrement", source, decrement, found[0], "", 5e-5),

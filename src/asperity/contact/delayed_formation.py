@@ -202,12 +202,6 @@ def _base_of(planes: RoughPlanes) -> RoughPlanes:
         return Layers([_base_of(part) for part in planes.parts])
     if isinstance(planes, Interface):
         return dataclasses.replace(planes, law=_prescribed(planes.law, smooth=False))
-    if planes.yields:
-        raise InputError(
-            "`formation_time` must be absent where asperities yield: which of them have a meniscus "
-            "would need a history in time; take plasticity.model = 'none'",
-            key="capillary.formation_time",
-        )
     if LATE in planes.mechanisms:
         raise InputError(
             "`formation_time` must be absent where the bridges of each class of tip radius would "

@@ -13,6 +13,7 @@ from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real
+from ..numerics.trees import zeros_of
 from .contact import Held, Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
     RingMemory,
@@ -90,22 +91,33 @@ class ElasticContact(DeformingContact):
     def _measured(
         self, separation: jax.Array, thresholds: Thresholds, size: jax.Array, rest: RingEquilibrium
     ) -> State:
-        mesh = ring_mesh(self.rings)
         h = separation + profile_of(self, size) + rest.displacement
+        area = ring_mesh(self.rings).area * size**2
+        state, pressure = self.on_rings(separation, h, thresholds, size)
+        bulk = 0.5 * area @ (pressure * rest.displacement[:-1])
+        return state._replace(stored=state.stored + bulk, error=rest.error, field=rest.displacement)
+
+    def on_rings(
+        self, separation: jax.Array, h: jax.Array, thresholds: Thresholds, size: jax.Array
+    ) -> tuple[State, jax.Array]:
+        """The contact whose mean planes are apart by ``h`` [m] at its rings and the mesh's end.
+
+        Without the energy of its bulk; and the pressure on the rings [Pa].
+        """
+        mesh = ring_mesh(self.rings)
         inside = self.interface.measure(h, thresholds)
-        outside = self.interface.measure(h[-1:], _last(thresholds), integrated=1)
+        last = tuple(b[-1:] for b in thresholds)
+        outside = self.interface.measure(h[-1:], last, integrated=1)
         area = mesh.area * size**2
         around = 2.0 * pi * self.shape.radius
 
         def whole(inner: jax.Array, outer: jax.Array) -> jax.Array:
             return inner[..., :-1] @ area + around * outer[..., 0]
 
-        parts, surface, *counts = jax.tree_util.tree_map(whole, inside, outside)
-        pressure = jnp.sum(inside.parts, axis=0)[:-1]
-        bulk = 0.5 * area @ (pressure * rest.displacement[:-1])
-        state = State.undeformed(separation, (self.components, parts), surface + bulk, *counts)
-        central = jnp.asarray(mesh.axis) @ h[:-1]
-        return state._replace(central=central, error=rest.error, size=size, field=rest.displacement)
+        parts, *rest = jax.tree_util.tree_map(whole, inside, outside)
+        state = State.undeformed(separation, (self.components, parts), *rest)
+        state = state._replace(central=jnp.asarray(mesh.axis) @ h[:-1], size=size)
+        return state, jnp.sum(inside.parts, axis=0)[:-1]
 
     def _branch(self, ends: jax.Array, places: jax.Array, memory: RingMemory) -> State:
         """From outside in, each solution the first guess of the next.
@@ -174,9 +186,8 @@ class ElasticContact(DeformingContact):
         shapes = jax.eval_shape(back)
 
         def nowhere() -> ScanningCurve:
-            blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
             still = jnp.broadcast_to(start, shapes.enter.shape)
-            return ScanningCurve(still, still, blank.states)
+            return ScanningCurve(still, still, zeros_of(shapes.states))
 
         bound = jnp.logical_and(memory.size > 0.0, start < self.interaction_range)
         return jax.lax.cond(bound, back, nowhere)
@@ -258,7 +269,3 @@ class ElasticContact(DeformingContact):
     @property
     def interaction_range(self) -> jax.Array:
         return self.rigid.interaction_range
-
-
-def _last(thresholds: Thresholds) -> Thresholds:
-    return tuple(b[-1:] for b in thresholds)

@@ -17,8 +17,9 @@ from .._jax import jax, jnp
 from ..halfspace import ring_mesh
 from ..interface.rough_planes import Memory as Thresholds
 from ..laws.law import Real
-from ..numerics.krylov import CLOSE, dense_solve, nearly_solved
+from ..numerics.krylov import CLOSE, dense_solve, implicit_solve, nearly_solved
 from ..numerics.roots import fixed_point
+from ..numerics.trees import choose
 from .rough import DeformingContact
 
 _ENOUGH = 1e-13  # relative change left in the separation
@@ -127,7 +128,7 @@ def solve_equilibrium(
         after = _Step(now.h - move, pressure, change, rate, off, now.steps + 1)
         lost = (after.steps == _RESTART) & ~after.enough
         begun = _Step(safe, pressure, one, one, off, after.steps)
-        after = jax.tree_util.tree_map(lambda a, b: jnp.where(lost, a, b), begun, after)
+        after = choose(lost, begun, after)
         return after, jnp.where(after.enough, 0.0, 1.0)
 
     end, _ = fixed_point(step, guess, 0.0, _STEPS)
@@ -182,13 +183,7 @@ def _resting_jvp(primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
         return _displacement(contact, size, pressure)
 
     _, push = eqx.filter_jvp(pushed, primals[:3], tangents[:3])
-    change = jax.lax.custom_linear_solve(
-        lambda x: matrix @ x,
-        push,
-        lambda _, right: dense_solve(matrix, right),
-        lambda _, right: dense_solve(matrix.T, right),
-    )
-    return displacement, change
+    return displacement, implicit_solve(matrix, push)
 
 
 def balance(

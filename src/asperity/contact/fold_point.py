@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from .._jax import jax, jnp
 from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.krylov import dense_solve
+from ..numerics.trees import choose
 from .elastic import ElasticContact
 from .equilibrium import balance, profile_of
 
@@ -14,14 +15,6 @@ _ON_ARC = 5  # steps of Newton's method from a point close by
 _EVALUATIONS = 60  # on the way to a fold
 _FLAT = 1e-6  # of the slope at its start: there the separation is the fold's to its square
 _FIRST = 0.05  # of the distance to the place beyond the fold: the first step to it
-
-Tree = TypeVar("Tree")
-
-
-def choose(first: jax.Array, one: Tree, other: Tree) -> Tree:
-    """One of two trees of arrays."""
-    chosen: Tree = jax.tree_util.tree_map(lambda a, b: jnp.where(first, a, b), one, other)
-    return chosen
 
 
 class _Arc(NamedTuple):

@@ -13,6 +13,7 @@ from ..errors import SimulationError
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
 from ..laws.law import Real, quantity
+from ..numerics.trees import choose
 from .contact import Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
     ContinuationPath,
@@ -22,7 +23,6 @@ from .continuation import (
 )
 from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, solve_equilibrium
-from .fold_point import choose
 from .folds import folds_of
 from .landing import fit, settle
 from .profile import Sphere

@@ -18,10 +18,11 @@ from ..interface.rough_planes import Memory as Thresholds
 from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.krylov import dense_solve
 from ..numerics.roots import fixed_point
+from ..numerics.trees import choose
 from .continuation import ContinuationPath, first_size, with_table
 from .elastic import ElasticContact
 from .equilibrium import RingEquilibrium, balance, pressed, profile_of
-from .fold_point import choose, fold_point
+from .fold_point import fold_point
 from .landing import bounded_size, fit, on_other_mesh, settle
 
 _EVEN, _WIDENING = 0.25, 0.02  # rms heights between places that are followed, and of the separation

@@ -14,9 +14,9 @@ from .asperity_table import AGAIN, Asperities
 class PressedSummits(NamedTuple):
     """Summits, and how deep each was pressed before.
 
-    A tip that has yielded is flatter, and stands back by its residual overlap. Like the mean of
-    :mod:`~asperity.interface.plastic_means`, one that was pressed pulls by the laws beside contact
-    as a tip of the larger radius does, and as if it were whole until it turns.
+    A tip that has yielded is flatter, and stands back by its residual overlap. As in
+    :mod:`~asperity.interface.plastic_interface`, one that was pressed pulls by the laws beside
+    contact as a tip of the larger radius does, and as if it were whole until it turns.
 
     Attributes
     ----------

@@ -22,7 +22,7 @@ from .contact import (
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .rough import RoughContact
-from .scanning_curve import first_out_of_reach, pieces_to
+from .scanning_curve import lowest_place, pieces_to
 
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
@@ -136,20 +136,18 @@ class RigidContact(RoughContact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder, energy = self._energies(release, potential)
-        level = energy[0] + kinetic
-        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
+        ladder = _LADDER * self.interface.scale.rms
+        return lowest_place(self._work, ladder, release, kinetic, potential)
 
     def most_gained(self, release: jax.Array, potential: Potential) -> jax.Array:
         """The most that a body gains by falling from its release [J]: no less than 0."""
-        ladder, energy = self._energies(release, potential)
+        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
+        energy = self._work(ladder) + potential(ladder)
         return energy[0] - jnp.min(jnp.where(ladder <= release, energy, energy[0]))
 
-    def _energies(self, release: jax.Array, potential: Potential) -> tuple[jax.Array, jax.Array]:
-        """Separations, the release first, and the potential energy of contact and body there."""
-        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
-        stored = self._measure * self.interface.work_of_approach(ladder, integrated=1)
-        return ladder, stored + potential(ladder)
+    def _work(self, places: jax.Array) -> jax.Array:
+        """Work [J] of the first approach to separations [m]."""
+        return self._measure * self.interface.work_of_approach(places, integrated=1)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         return rough_panels(self, low, high, self.resolved.panels)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from .._jax import jax, jnp
+from .contact import Potential
 
 STEPS = 36
 """Panels on each side of a non-smooth point."""
@@ -65,6 +67,24 @@ def _apart(places: jax.Array, given: jax.Array) -> jax.Array:
     places = jnp.sort(jnp.where(near, given[0], places))
     close = jnp.diff(places, prepend=-jnp.inf) < _NARROWEST * jnp.abs(places)
     return jnp.where(close, given[0], places)
+
+
+def lowest_place(
+    work: Callable[[jax.Array], jax.Array],
+    ladder: np.ndarray | jax.Array,
+    release: jax.Array,
+    kinetic: jax.Array,
+    potential: Potential,
+) -> jax.Array:
+    """The first place of a ``ladder`` [m] that a body cannot reach.
+
+    It leaves ``release`` [m] with ``kinetic`` [J], in a ``potential``; coming from there to places
+    takes the ``work`` [J] on the contact, at least.
+    """
+    places = jnp.append(release, ladder)
+    energy = work(places) + potential(places)
+    level = energy[0] + kinetic
+    return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), places[1:], release)
 
 
 def first_out_of_reach(

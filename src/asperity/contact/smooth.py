@@ -11,10 +11,10 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..interface.rough_planes import losses_of
-from ..laws.law import Law, terms
+from ..laws.law import Law, components_of, terms
 from .contact import Contact, Held, Potential, State
 from .resolution import Resolution
-from .scanning_curve import STEPS, first_out_of_reach, panels_around
+from .scanning_curve import STEPS, lowest_place, panels_around
 
 Flags = jax.Array
 
@@ -50,16 +50,13 @@ class SmoothContact(Contact):
 
     @property
     def components(self) -> tuple[str, ...]:
-        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
-        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+        return components_of(terms(self.law))
 
     def branches(self) -> tuple[Flags, ...]:
-        combinations = product((0.0, 1.0), repeat=len(self.mechanisms))
-        return tuple(jnp.asarray(bits[::-1], dtype=float) for bits in combinations)
+        return combinations(len(self.mechanisms))
 
     def branch_of(self, memory: Flags, unloading: jax.Array) -> jax.Array:
-        weights = 2 ** np.arange(len(self.mechanisms))
-        return jnp.sum(jnp.where(memory > 0.5, weights, 0))
+        return number_of(memory)
 
     def state(self, separation: jax.Array, memory: Flags) -> State:
         flags = self.update_memory(memory, separation)
@@ -92,11 +89,8 @@ class SmoothContact(Contact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, LADDER)
-        stored = jax.vmap(lambda d: self.state(d, self.initial_memory()).stored)(ladder)
-        energy = stored + potential(ladder)
-        level = energy[0] + kinetic
-        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
+        work = jax.vmap(lambda d: self.state(d, self.initial_memory()).stored)
+        return lowest_place(work, LADDER, release, kinetic, potential)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """The kinks of all laws, with panels that narrow to each."""
@@ -105,6 +99,16 @@ class SmoothContact(Contact):
     @property
     def interaction_range(self) -> jax.Array:
         return reduce(jnp.maximum, [law.interaction_range for law in terms(self.law)])
+
+
+def combinations(bonds: int) -> tuple[Flags, ...]:
+    """All combinations of so many bonds that hold or not."""
+    return tuple(jnp.asarray(bits[::-1], float) for bits in product((0.0, 1.0), repeat=bonds))
+
+
+def number_of(flags: Flags) -> jax.Array:
+    """Which of the :func:`combinations` some flags are."""
+    return jnp.sum(jnp.where(flags > 0.5, 2 ** np.arange(flags.size), 0))
 
 
 def kinks_of(law: Law) -> jax.Array:

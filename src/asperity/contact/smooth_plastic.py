@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from itertools import product
 
 import equinox as eqx
-import numpy as np
 
 from .._jax import jax, jnp
-from ..errors import InputError
 from ..interface.residual_profile import flatness
 from ..interface.rough_planes import losses_of
-from ..laws.law import Law, Sum, terms
+from ..laws.law import Law, Sum, components_of, refuse_twice, terms
 from ..laws.plastic import AdhesiveThorntonNing, PlasticContact
 from .contact import Held, Potential, State, YieldingContact
 from .resolution import Resolution
-from .scanning_curve import STEPS, first_out_of_reach, panels_around
-from .smooth import LADDER, gaps_of
+from .scanning_curve import STEPS, lowest_place, panels_around
+from .smooth import LADDER, combinations, gaps_of, number_of
 
 PLASTIC = "plastic"
 """Mechanism of the work that the body keeps."""
@@ -73,13 +70,7 @@ class SmoothPlasticContact(YieldingContact):
     left: tuple[Pressed, jax.Array] | None = None
 
     def __check_init__(self) -> None:
-        contained = {"elastic", *self._adhesion}
-        for law in terms(self.law):
-            for name in sorted(contained & law.counts):
-                raise InputError(
-                    f"{type(law).__name__} and {type(self.contact).__name__} both contain the "
-                    f"{name} force; it would count twice"
-                )
+        refuse_twice((self.contact, {"elastic", *self._adhesion}), laws=terms(self.law))
 
     @property
     def _hysteretic(self) -> tuple[Law, ...]:
@@ -95,8 +86,7 @@ class SmoothPlasticContact(YieldingContact):
 
     @property
     def components(self) -> tuple[str, ...]:
-        names = {name for law in terms(self.law) for name in law.counts or {law.mechanism}}
-        return ("elastic", *sorted(names.union(self._adhesion)))
+        return components_of(terms(self.law), ("elastic", *self._adhesion))
 
     def initial_memory(self) -> Pressed:
         return jnp.asarray(jnp.inf), jnp.zeros(len(self.mechanisms) - 1)
@@ -112,14 +102,11 @@ class SmoothPlasticContact(YieldingContact):
         if self.left is None:
             return (self.initial_memory(),)
         lowest = self.left[0][0]
-        combinations = product((0.0, 1.0), repeat=len(self.mechanisms) - 1)
-        return tuple((lowest, jnp.asarray(bits[::-1], dtype=float)) for bits in combinations)
+        return tuple((lowest, flags) for flags in combinations(len(self.mechanisms) - 1))
 
     def branch_of(self, memory: Pressed, unloading: jax.Array) -> jax.Array:
         lowest, flags = memory
-        weights = 2 ** np.arange(len(self.mechanisms) - 1)
-        bonds = jnp.sum(jnp.where(flags > 0.5, weights, 0))
-        return jnp.where(jnp.isinf(lowest), 0, 1 + bonds)
+        return jnp.where(jnp.isinf(lowest), 0, 1 + number_of(flags))
 
     def state(self, separation: jax.Array, memory: Pressed) -> State:
         lowest, flags = self.update_memory(memory, separation)
@@ -173,11 +160,11 @@ class SmoothPlasticContact(YieldingContact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        ladder = jnp.append(release, LADDER)
-        states = jax.vmap(lambda d: self.state(d, self.initial_memory()))(ladder)
-        energy = states.stored + states.bonds @ self.losses()[0] + potential(ladder)
-        level = energy[0] + kinetic
-        return first_out_of_reach(energy[1:], level + 1e-9 * jnp.abs(level), ladder[1:], release)
+        def work(places: jax.Array) -> jax.Array:
+            states = jax.vmap(lambda d: self.state(d, self.initial_memory()))(places)
+            return states.stored + states.bonds @ self.losses()[0]
+
+        return lowest_place(work, LADDER, release, kinetic, potential)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """All kinks, before and after the first impact, with panels that narrow to each."""

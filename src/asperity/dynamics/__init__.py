@@ -6,9 +6,9 @@
 `suspension`: one mechanism each.
 `phase`, `turning_point`, `phase_time`: one phase by the energy integral; `drag`, `damped_phase`,
 `damped_turning_point`, `resolved_pieces`, `overdamped`: the same with drag.
-`stepped_motion`: the loop over impacts of motions in time, of `delayed_bounce` (by `stepped_phase`,
+`stepped_motion`: the loop over impacts of motions in time, of `delayed_bounce` (by
 `time_stepping`, `time_collocation`) and on `viscoelastic` half-spaces.
-`stepped_record`: the records of such motions.
+`stepped_phase`, `stepped_record`: the records of such motions.
 `curve_table`, `scanning_table`: force curves as Chebyshev polynomials.
 `single_impact` (by `summit_path`, with drag `damped_summits`), `coupled_impact`, `coupled_path`:
 first impacts of single bodies, on a rigid bulk and on a half-space.

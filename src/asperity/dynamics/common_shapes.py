@@ -13,7 +13,7 @@ import numpy as np
 from .._jax import jax
 from .curve_table import Pieces, Quantities, Table
 from .instability import Jumps
-from .record import Body, Impacts, Motion, Phase
+from .record import Body, Impacts, Motion, Phase, Progress
 
 _ROWS = 256  # of impacts at least: more than most motions have
 _BRANCHES, _LAWS = 2, 3  # at least, and in multiples
@@ -27,8 +27,8 @@ def without_curves(motion: Motion) -> Motion:
     impacts = jax.tree_util.tree_map(filled_up, impacts)
     lost = np.sum(impacts.lost, axis=1, keepdims=True)
     impacts = impacts._replace(bonds=np.zeros((lost.size, 0)), lost=lost)
-    end = motion.end._replace(memory=none, lost=none, bonds=none)
-    return motion._replace(impacts=impacts, end=end, table=none)
+    over = Progress.over(motion.end.time, motion.end.outcome, motion.end.made)
+    return motion._replace(impacts=impacts, end=over, table=none)
 
 
 def with_phases(motion: Motion, body: Body) -> tuple[Table, Impacts]:

@@ -6,13 +6,14 @@ free is lost, besides what the bond itself loses.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, SummitEquilibrium
+from ..numerics.trees import choose
 from .external_forces import Load
 
 _CLOSE = 1e-10  # of the shortest length of a law: how near a bond is to its change
@@ -22,8 +23,6 @@ _MOST = 4096  # steps
 _AT_ONE = 32  # changes at one separation: more, where summits force one another on and off
 _BEYOND = 1e-3  # of a step, by which a body then goes on
 _BETWEEN = np.linspace(0.0, 1.0, 17)[1:]  # of a step, where the least value of a cubic is sought
-
-Tree = TypeVar("Tree")
 
 
 class _Point(NamedTuple):
@@ -171,7 +170,7 @@ class _Motion(NamedTuple):
         new = self.coupled.equilibrium(separation, bonded ^ chosen, state.gaps + state.rates * move)
         freed = path.freed + jnp.where(changes, state.energy - new.energy, 0.0)
         there = self.point(separation, new, freed)
-        last = _select(choice.good, here, path.last)
+        last = choose(choice.good, here, path.last)
         outward = path.outward | turns
         missed = jnp.where(choice.good, path.missed, path.separation)
         begun = jnp.where(outward, jnp.inf, -jnp.inf)
@@ -184,14 +183,14 @@ class _Motion(NamedTuple):
             bonded=bonded ^ chosen,
             state=new,
             outward=outward,
-            last=_select(changes | choice.stuck, there, last),
+            last=choose(changes | choice.stuck, there, last),
             missed=jnp.where(choice.acts | choice.stuck, begun, missed),
             freed=freed,
             lost=path.lost + jnp.sum(jnp.where(chosen & bonded, summits.lost, 0.0), axis=1),
             least=jnp.where(counted, jnp.minimum(path.least, least), path.least),
             tension=jnp.where(counted, jnp.maximum(path.tension, tension), path.tension),
             turning_point=jnp.where(turns, path.separation, path.turning_point),
-            at_turn=_select(turns, state, path.at_turn),
+            at_turn=choose(turns, state, path.at_turn),
             bonded_at_turn=jnp.where(turns, bonded, path.bonded_at_turn),
             arrived=choice.acts & ~changes & ~turns,
             sound=path.sound & (state.solved | ~choice.good),
@@ -203,12 +202,6 @@ class _Motion(NamedTuple):
 def _ahead(path: Path) -> jax.Array:
     """1 outwards, -1 inwards."""
     return jnp.where(path.outward, 1.0, -1.0)
-
-
-def _select(condition: jax.Array, chosen: Tree, other: Tree) -> Tree:
-    """One of two alike trees of arrays."""
-    selected: Tree = jax.tree_util.tree_map(lambda a, b: jnp.where(condition, a, b), chosen, other)
-    return selected
 
 
 def _left_to_bonds(

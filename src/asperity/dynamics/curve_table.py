@@ -307,7 +307,6 @@ def read_row(table: Table, branch: int, place: float) -> np.ndarray:
     """The same for numbers, without compiling anything."""
     ends = np.asarray(table.ends)
     panel = int(np.sum(ends[1:-1] < place))
-    low, high = ends[panel], ends[panel + 1]
-    x = (2.0 * place - low - high) / (high - low) if high > low else 0.0
+    x = local(ends[panel], ends[panel + 1], place)
     row: np.ndarray = chebyshev.chebval(x, np.asarray(table.values)[branch, panel])
     return row

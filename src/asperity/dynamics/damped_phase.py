@@ -10,9 +10,10 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..laws.law import Real
 from ..numerics.compilation import kept
+from ..numerics.trees import choose
 from .curve_table import Pieces
 from .damped_turning_point import turning_place
-from .drag import POINTS, SHARES, DampedPiece, PieceMotion, move_on, whole_of
+from .drag import POINTS, SHARES, DampedPiece, Piece, PieceMotion, move_on, whole_of
 from .external_forces import Load
 from .phase import TurningPoint, Work, work_along
 from .phase_time import time_along
@@ -27,7 +28,20 @@ _PUSHED = 1e-6  # of the largest force: what may push a body on that turns all t
 
 
 class PhaseProgress(NamedTuple):
-    """A body on its way through a phase."""
+    """A body on its way over pieces, until it turns.
+
+    Attributes
+    ----------
+    kinetic, time, dissipated
+        Kinetic energy [J], time since the start [s] and energy taken by each drag [J] where it
+        entered the last piece; where it passed all, at their end.
+    going
+        Whether it has passed all pieces so far.
+    piece
+        Number of the last.
+    maximum_kinetic
+        Largest kinetic energy so far [J].
+    """
 
     kinetic: jax.Array
     time: jax.Array
@@ -85,7 +99,7 @@ def integrate_phase(body: Body, pieces: Pieces, kinetic: jax.Array) -> DampedPha
         Kinetic energy at the start [J].
     """
     work = work_along(pieces, kinetic, body.load)
-    now, entered = _over_pieces(body, work, lambda now, *_: (now.kinetic, now.time, now.dissipated))
+    now, entered = _along(body, work, lambda now, *_: (now.kinetic, now.time, now.dissipated))
     piece = DampedPiece.of(work, now.piece)
     found = jnp.logical_not(now.going)
     stop = turning_place(body, piece, now.kinetic)
@@ -107,22 +121,37 @@ def integrate_phase(body: Body, pieces: Pieces, kinetic: jax.Array) -> DampedPha
     return DampedPhase(turn, duration, lost, *entered, jnp.asarray(False), followed, stopped)
 
 
+SomePiece = TypeVar("SomePiece", bound=Piece)
 Seen = TypeVar("Seen")
 
 
-def _over_pieces(
-    body: Body, work: Work, see: Callable[[PhaseProgress, DampedPiece, PieceMotion], Seen]
+def over_pieces(
+    body: Body,
+    piece_at: Callable[[jax.Array], SomePiece],
+    count: int,
+    kinetic: jax.Array,
+    see: Callable[[PhaseProgress, SomePiece, PieceMotion], Seen],
 ) -> tuple[PhaseProgress, Seen]:
     """From piece to piece until the body turns, and what is seen of each on the way.
 
     What is seen of empty pieces, and of those beyond the turn, is as if they took no time.
+
+    Parameters
+    ----------
+    body
+        The body, with its drags.
+    piece_at, count
+        The piece of a number, and how many there are.
+    kinetic
+        Kinetic energy where the first is entered [J].
+    see
+        What to see of a piece, by the progress so far and the motion on it.
     """
-    kinetic = work.kinetic[0]
     none = jnp.zeros(len(body.drags))
     first = PhaseProgress(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
 
     def over(now: PhaseProgress, k: jax.Array) -> tuple[PhaseProgress, Seen]:
-        piece = DampedPiece.of(work, k)
+        piece = piece_at(k)
         active = now.going & (piece.leave != piece.enter)
         end = jnp.where(active, piece.leave, piece.enter)  # beyond its turn a body stays
         still = PieceMotion.none(body, now.kinetic)
@@ -140,10 +169,17 @@ def _over_pieces(
                 now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)
             ),
         )
-        seen = jax.tree_util.tree_map(lambda a, b: jnp.where(active, a, b), moved, still)
-        return after, see(now, piece, seen)
+        return after, see(now, piece, choose(active, moved, still))
 
-    return jax.lax.scan(over, first, jnp.arange(work.pieces.low.shape[0]))
+    return jax.lax.scan(over, first, jnp.arange(count))
+
+
+def _along(
+    body: Body, work: Work, see: Callable[[PhaseProgress, DampedPiece, PieceMotion], Seen]
+) -> tuple[PhaseProgress, Seen]:
+    """The same over the pieces that work is done along."""
+    count = work.pieces.low.shape[0]
+    return over_pieces(body, lambda k: DampedPiece.of(work, k), count, work.kinetic[0], see)
 
 
 def _pushed_back(piece: DampedPiece, place: jax.Array, load: Load) -> jax.Array:
@@ -209,7 +245,7 @@ def follow(body: Body, pieces: Pieces, kinetic: jax.Array) -> tuple[jax.Array, .
         times = now.time + jnp.append(moved.time, moved.duration)
         return places, times, speeds, dissipated, piece.drags(body, places, speeds).T
 
-    return _over_pieces(body, work_along(pieces, kinetic, body.load), see)[1]
+    return _along(body, work_along(pieces, kinetic, body.load), see)[1]
 
 
 def cut(pieces: Pieces, unloading: jax.Array, place: jax.Array) -> Pieces:
@@ -238,5 +274,5 @@ def kinetic_and_time_at(
         work = work_along(passed, kinetic, body.load)
         return work.kinetic[-1], time_along(work, (passed.enter, passed.leave), body.mass)
     passed = cut(resolved(body, pieces, kinetic, phase.spent)[0], unloading, place)
-    now, _ = _over_pieces(body, work_along(passed, kinetic, body.load), lambda *_: ())
+    now, _ = _along(body, work_along(passed, kinetic, body.load), lambda *_: ())
     return jnp.where(now.going, now.kinetic, 0.0), now.time

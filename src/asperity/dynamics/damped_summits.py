@@ -10,10 +10,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
 from ..numerics.compilation import Program
+from .damped_phase import PhaseProgress, over_pieces
 from .damped_turning_point import turn_on
 from .drag import PieceMotion, move_on
 from .external_forces import Along, Load
@@ -79,64 +79,22 @@ def damped_kinetic_apart(
     return jnp.where(moved.passed, moved.kinetic, 0.0)
 
 
-class Passage(NamedTuple):
-    """A body on its way over pieces, until it stops.
-
-    Attributes
-    ----------
-    kinetic
-        Kinetic energy [J] where it entered the last.
-    taken
-        Energy taken by each drag [J] until there.
-    time
-        Time until there [s].
-    piece
-        Number of the last.
-    passed
-        Whether it passed all: then ``kinetic`` and the others are of their end.
-    """
-
-    kinetic: jax.Array
-    taken: jax.Array
-    time: jax.Array
-    piece: jax.Array
-    passed: jax.Array
-
-
 def _over(
     body: Body, path: SummitPath | None, ends: jax.Array, kinetic: jax.Array
-) -> tuple[Passage, jax.Array]:
+) -> tuple[PhaseProgress, jax.Array]:
     """From one of the ``ends`` [m] to the next, with a kinetic energy [J] at the first.
 
     And the kinetic energy with which each piece is entered [J].
     """
-    start = Passage(
-        kinetic, jnp.zeros(len(body.drags)), jnp.zeros(()), jnp.asarray(0), jnp.asarray(True)
-    )
 
-    def over(now: Passage, k: jax.Array) -> tuple[Passage, jax.Array]:
-        piece = SummitPiece(path, ends[k], ends[k + 1])
-        active = now.passed & (piece.enter != piece.leave)
-        stop = jnp.where(active, piece.leave, piece.enter)
-        still = PieceMotion.none(body, now.kinetic)
-        moved = jax.lax.cond(
-            unvmap_any(active), lambda: move_on(body, piece, now.kinetic, stop), lambda: still
-        )
-        on = now.passed & moved.passed
-        after = Passage(
-            jnp.where(on, moved.kinetic, now.kinetic),
-            now.taken + jnp.where(on, moved.lost, 0.0),
-            now.time + jnp.where(on, moved.duration, 0.0),
-            jnp.where(now.passed, k, now.piece),
-            on,
-        )
-        return after, now.kinetic
+    def piece_at(k: jax.Array) -> SummitPiece:
+        return SummitPiece(path, ends[k], ends[k + 1])
 
-    return jax.lax.scan(over, start, jnp.arange(ends.size - 1))
+    return over_pieces(body, piece_at, ends.size - 1, kinetic, lambda now, *_: now.kinetic)
 
 
 def _turned(
-    body: Body, path: SummitPath | None, ends: jax.Array, now: Passage
+    body: Body, path: SummitPath | None, ends: jax.Array, now: PhaseProgress
 ) -> tuple[jax.Array, PieceMotion]:
     """Where on its last piece a body stops [m], and how it gets there from where it entered."""
     return turn_on(body, SummitPiece(path, ends[now.piece], ends[now.piece + 1]), now.kinetic)
@@ -171,14 +129,14 @@ def arrive_damped(body: Body, path: SummitPath, launch: Launch, top: jax.Array) 
     now, entered = _over(body, path, ends, launch.kinetic)
     place, moved = _turned(body, path, ends, now)
     unknown = jnp.isnan(free.turning_point)
-    met = now.passed | (now.piece >= flight.size - 1) | unknown
+    met = now.going | (now.piece >= flight.size - 1) | unknown
     back = SummitPiece(path, top, place).push(place, body.load) > 0.0
     back = jnp.where(met, back, body.load.force(place) < 0.0)
     return Arrival(
         before=jnp.where(met, entered[flight.size - 1], 0.0),
-        turning_point=jnp.where(now.passed | unknown, free.turning_point, place),
+        turning_point=jnp.where(now.going | unknown, free.turning_point, place),
         kinetic=jnp.zeros(()),
-        taken=now.taken + jnp.where(now.passed, 0.0, moved.lost),
+        taken=now.dissipated + jnp.where(now.going, 0.0, moved.lost),
         met=met,
         stays=~back & ~unknown,
     )
@@ -209,22 +167,37 @@ def leave_damped(body: Body, outward: Outward, kinetic: jax.Array) -> Departure:
     last = SummitPiece(outward.path, ends[now.piece], ends[now.piece + 1])
     pushes = [last.push(place, body.load) for place in (last.enter, last.leave)]
     held = jnp.minimum(*pushes) <= 0.0
-    return Departure(~now.passed & held, jnp.where(now.passed, now.kinetic, 0.0), now.taken)
+    return Departure(~now.going & held, jnp.where(now.going, now.kinetic, 0.0), now.dissipated)
+
+
+def _rise(body: Body, start: jax.Array, kinetic: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Apex [m] of a body that leaves with a kinetic energy [J], and when it is there [s]."""
+    height = body.load.apex_height(start, kinetic)
+    ends = _apart(body, start, start + jnp.where(jnp.isfinite(height), height, 0.0))
+    up, _ = _over(body, None, ends, kinetic)
+    apex, moved = _turned(body, None, ends, up)
+    return jnp.where(up.going, ends[-1], apex), up.time + jnp.where(up.going, 0.0, moved.duration)
+
+
+def _rebound(body: Body, place: jax.Array) -> tuple[jax.Array, jax.Array]:
+    down, _ = _over(body, None, _apart(body, body.release, place), body.kinetic)
+    return down.kinetic, _rise(body, place, down.kinetic)[0]
+
+
+rebound = Program(_rebound)
+"""Kinetic energy [J] of a body that falls to a place [m], and its apex [m] where it comes back from
+there with all of it."""
 
 
 def _flight(body: Body, start: jax.Array, kinetic: jax.Array) -> tuple[jax.Array, jax.Array]:
     load = body.load
-    height = load.apex_height(start, kinetic)
-    ends = _apart(body, start, start + jnp.where(jnp.isfinite(height), height, 0.0))
-    up, _ = _over(body, None, ends, kinetic)
-    apex, moved = _turned(body, None, ends, up)
-    apex, last = jnp.where(up.passed, ends[-1], apex), jnp.where(up.passed, 0.0, moved.duration)
+    apex, rising = _rise(body, start, kinetic)
     down, _ = _over(body, None, _apart(body, apex, start), jnp.zeros(()))
     # Where drag stops it on its way down, weight or spring bring it to its summits all the same.
     still = jnp.where(load.force(start) > 0.0, 0.0, jnp.nan)
-    back = jnp.where(down.passed, down.kinetic, still)
-    returns = jnp.isfinite(height) & (kinetic > 0.0)
-    time = up.time + last + down.time
+    back = jnp.where(down.going, down.kinetic, still)
+    returns = jnp.isfinite(load.apex_height(start, kinetic)) & (kinetic > 0.0)
+    time = rising + down.time
     return jnp.where(returns, back, jnp.nan), jnp.where(returns, time, jnp.inf)
 
 

@@ -8,6 +8,7 @@ import equinox as eqx
 
 from .._jax import jax, jnp
 from ..numerics.roots import fixed_point, root_between
+from ..numerics.trees import choose
 from .drag import Piece, PieceMotion, move_on
 from .record import Body
 
@@ -51,7 +52,7 @@ def turn_on(body: Body, piece: Piece, kinetic: jax.Array) -> tuple[jax.Array, Pi
         part = jnp.where(alive, _NEARLY, 0.5)  # it moves on nearly to the end, or there by halves
         target = jnp.where(turns, target, inside + part * (outside - inside))
         outside = jnp.where(there, inside, outside)
-        until = jax.tree_util.tree_map(lambda a, b: jnp.where(alive, a, b), moved, until)
+        until = choose(alive, moved, until)
         return (inside, outside, target, until), jnp.abs(outside - inside)
 
     middle = 0.5 * (piece.enter + piece.leave)

@@ -14,6 +14,7 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..laws.law import Real
+from ..numerics.krylov import implicit_solve
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from ..numerics.roots import fixed_point
 from .curve_table import CENTRAL, FORCE
@@ -290,19 +291,8 @@ def _reduced_speeds_jvp(primals, tangents):  # type: ignore[no-untyped-def]
     sound = close & jnp.all(u > 0.0)  # else nothing moves, or nothing is solved
     matrix = jnp.where(sound, jnp.diag(2.0 * u) + _UNTIL * drag, jnp.eye(POINTS))
     push = jnp.where(sound, dshare - _UNTIL @ (ddrag * u), 0.0)
-    moved = jax.lax.custom_linear_solve(
-        lambda x: matrix @ x,
-        push,
-        lambda _, right: _solved(matrix, right),
-        lambda _, right: _solved(matrix.T, right),
-    )
-    return (u, close), (moved, np.zeros(close.shape, jax.dtypes.float0))
+    return (u, close), (implicit_solve(matrix, push), np.zeros(close.shape, jax.dtypes.float0))
 
 
 def _missed(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = _UNTIL) -> jax.Array:
     return u**2 + until @ (drag * u) - share
-
-
-@jax.custom_batching.sequential_vmap
-def _solved(matrix: jax.Array, right: jax.Array) -> jax.Array:
-    return jnp.linalg.solve(matrix, right[:, None])[:, 0]

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..numerics.polynomials import ANTIDERIVATIVE
+from ..numerics.polynomials import ANTIDERIVATIVE, local
 from .curve_table import FORCE, RATE, TIME_NODES, Table
 from .record import Body
 
@@ -62,14 +62,14 @@ class _Curves(NamedTuple):
         half = 0.5 * (inner.high - inner.low)
         own = np.einsum("kn,fpn->fpk", ANTIDERIVATIVE, inner.values[..., FORCE]) * half[..., None]
         entered, left = (
-            _sum(own, _local(inner.low, inner.high, at)) for at in (inner.enter, inner.leave)
+            _sum(own, local(inner.low, inner.high, at)) for at in (inner.enter, inner.leave)
         )
         gained = left - entered - load.potential_gain(inner.enter, inner.leave - inner.enter)
         kinetic = phases.kinetic[:, None] + np.cumsum(np.pad(gained, ((0, 0), (1, 0))), axis=1)
         # Of panels that meet where the branch begins, the one ahead.
         at = np.sum(bound(last, begin) == begin, axis=1, keepdims=True)
         at = np.minimum(at, low.shape[1] - 1)
-        here = _local(
+        here = local(
             np.take_along_axis(low, at, axis=1), np.take_along_axis(high, at, axis=1), begin
         )
         before = _sum(np.take_along_axis(work, at[..., None], axis=1), here)
@@ -89,7 +89,7 @@ class _Curves(NamedTuple):
         low, high, kinetic, zero, work = (
             _pick(leaf, index) for leaf in (self.low, self.high, self.kinetic, self.zero, self.work)
         )
-        x = _local(low[..., None], high[..., None], places)
+        x = local(low[..., None], high[..., None], places)
         climbed = load.potential_gain(zero[..., None], places - zero[..., None])
         found: np.ndarray = kinetic[..., None] + _sum(work[:, :, None], x) - climbed
         return found
@@ -98,7 +98,7 @@ class _Curves(NamedTuple):
         """Their rows at one place [m] each, shape (phases, n, rows)."""
         low, high, values = (_pick(leaf, index) for leaf in (self.low, self.high, self.values))
         # A place is rounded by its distance from the start, which a narrow panel may not allow.
-        x = np.clip(_local(low, high, places), -1.0, 1.0)
+        x = np.clip(local(low, high, places), -1.0, 1.0)
         return _sum(np.moveaxis(values, 2, -1), x[..., None])
 
 
@@ -151,13 +151,6 @@ def _sum(coefficients: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Sums of Chebyshev polynomials, the coefficients' last axis the degree."""
     found: np.ndarray = chebyshev.chebval(x, np.moveaxis(coefficients, -1, 0), tensor=False)
     return found
-
-
-def _local(low: np.ndarray, high: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Coordinate in [-1, 1] of a place in an interval; 0 where the interval is empty."""
-    width = high - low
-    filled = width > 0.0
-    return np.where(filled, (2.0 * place - low - high) / np.where(filled, width, 1.0), 0.0)
 
 
 def _like(shape: np.ndarray, column: np.ndarray) -> np.ndarray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import pi
 from typing import ClassVar
 
-import numpy as np
-
 from .._jax import jax, jnp
 from ..laws.law import Real, quantity
 from .external_forces import Along, Drag
@@ -74,58 +72,3 @@ class SqueezeFilm(Drag):
         gap = jnp.maximum(jnp.asarray(separation, dtype=jnp.float64), self.closest)
         film = 6.0 * pi * self.viscosity * self.radius**2 / gap
         return film * slip_factor(gap, self.slip_length)
-
-
-def gas_decrement(
-    *,
-    release: float,
-    rebound: float,
-    mass: float,
-    gravity: float,
-    radius: float,
-    viscosity: float,
-    slip_length: float,
-) -> tuple[float, float]:
-    """Logarithmic decrement of the first rebound that the gas alone causes, and impact speed.
-
-    Parameters
-    ----------
-    release, rebound
-        Separations [m] of the release at rest and of an elastic rebound.
-    mass, gravity
-        Of the sphere [kg], [m/s^2].
-    radius, viscosity, slip_length
-        As for :class:`SqueezeFilm`.
-
-    Returns
-    -------
-    The decrement ln(X_0/X_1) of heights above the rebound, and the speed there [m/s].
-    """
-    from scipy.integrate import solve_ivp
-
-    # In nanometres and microseconds.
-    unit, clock = 1e-9, 1e-6
-    film = SqueezeFilm(radius, viscosity, slip_length)
-    drag = jax.jit(lambda separation: jnp.asarray(film.drag(separation)))
-
-    def rate(_: float, y: np.ndarray) -> list[float]:
-        damping = float(drag(y[0] * unit)) / mass * clock
-        return [y[1], -gravity * clock**2 / unit - damping * y[1]]
-
-    def lands(_: float, y: np.ndarray) -> float:
-        return float(y[0] - rebound / unit)
-
-    def turns(_: float, y: np.ndarray) -> float:
-        return float(y[1])
-
-    lands.terminal, lands.direction = True, -1.0  # type: ignore[attr-defined]
-    turns.terminal, turns.direction = True, -1.0  # type: ignore[attr-defined]
-
-    def until(event, start: list[float]) -> np.ndarray:  # type: ignore[no-untyped-def]
-        answer = solve_ivp(rate, (0.0, 1e6), start, "DOP853", events=event, rtol=1e-9, atol=1e-12)
-        state: np.ndarray = answer.y_events[0][0]
-        return state
-
-    speed = -until(lands, [release / unit, 0.0])[1]
-    top = until(turns, [rebound / unit, speed])[0]
-    return float(np.log((release - rebound) / (top * unit - rebound))), float(speed * unit / clock)

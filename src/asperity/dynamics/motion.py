@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from equinox.internal import unvmap_any
 
@@ -10,6 +10,7 @@ from .._jax import jax, jnp
 from ..contact.contact import Contact, Held, YieldingContact
 from ..errors import Tolerance
 from ..laws.law import Real
+from ..numerics.trees import choose, zeros_of
 from .curve_table import (
     CENTRAL,
     CONTACTING,
@@ -118,17 +119,13 @@ def integrate_impacts(
     shapes = jax.eval_shape(one, begun.progress, None)[1]
 
     def none(progress: Progress, _: None) -> tuple[Progress, Impacts]:
-        empty = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
-        return progress, empty
+        return progress, zeros_of(shapes)
 
     def step(progress: Progress, _: None) -> tuple[Progress, Impacts]:
         active = progress.outcome == IN_MOTION
         after, row = jax.lax.cond(unvmap_any(active), one, none, progress, None)
-        keep = lambda new, old: jnp.where(active, new, old)  # noqa: E731
-        return (
-            jax.tree_util.tree_map(keep, after, progress),
-            row._replace(made=jnp.logical_and(active, row.made)),
-        )
+        row = row._replace(made=jnp.logical_and(active, row.made))
+        return choose(active, after, progress), row
 
     return jax.lax.scan(step, begun.progress, None, length=impacts)
 
@@ -226,9 +223,7 @@ def _no_rise(fall: _Ended, rise: _Ended) -> _Ended:
     stay = here._replace(
         phase=rise[1].phase._replace(stop=rise[1].phase.start), pull_work=jnp.zeros(())
     )
-    choose = lambda a, b: jnp.where(here.stopped, a, b)  # noqa: E731
-    kept = jax.tree_util.tree_map(choose, (after, stay), rise)
-    return cast("_Ended", kept)
+    return choose(here.stopped, (after, stay), rise)
 
 
 def _impact(contact: Contact, body: Body, begun: Begun, limits: Limits) -> tuple[Progress, Impacts]:

@@ -8,6 +8,7 @@ import numpy as np
 from equinox.internal import unvmap_any
 
 from .._jax import jax, jnp
+from ..numerics.trees import choose, zeros_of
 from .curve_table import Pieces
 from .damped_phase import DampedPhase, integrate_phase, slow_at, spent_at
 from .drag import DampedPiece, move_on
@@ -86,9 +87,7 @@ def come_to_rest(
     lost = whole.dissipated[here] + moved.lost
     crept = (stop, whole.times[here] + moved.duration, lost.at[taker].add(moved.kinetic))
     turned = (turn, whole.duration, whole.lost)
-    turn, duration, lost = jax.tree_util.tree_map(
-        lambda a, b: jnp.where(at_rest, a, b), crept, turned
-    )
+    turn, duration, lost = choose(at_rest, crept, turned)
     followed = at_rest | whole.followed
     whole = whole._replace(
         turn=turn, duration=duration, lost=lost, at_rest=at_rest, followed=followed
@@ -116,14 +115,12 @@ def _followed(
     never = jnp.asarray(jnp.nan)
     if not body.damped_apart or body.forces:
         return attempt(never)
-    blank = jax.tree_util.tree_map(
-        lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), jax.eval_shape(attempt, never)
-    )
+    blank = zeros_of(jax.eval_shape(attempt, never))
 
     def again(carry: tuple[_Followed, jax.Array, jax.Array], _: None) -> tuple[Any, None]:
         before, spent, done = carry
         found = jax.lax.cond(unvmap_any(~done), lambda: attempt(spent), lambda: before)
-        found = jax.tree_util.tree_map(lambda a, b: jnp.where(done, a, b), before, found)
+        found = choose(done, before, found)
         finer, _, whole, _ = found
         near = _above_rest(body, finer, whole.turn, rest, unloading)[2]
         number, sharp = _braked(body, finer, kinetic, whole)

@@ -11,6 +11,7 @@ from numpy.polynomial import Chebyshev, chebyshev
 from .._jax import jax
 from ..contact.contact import Contact, interaction_range_of
 from ..numerics.compilation import AT_ONCE, Program
+from ..numerics.polynomials import local
 from .common_shapes import common_phases, common_table
 from .curve_table import CENTRAL, FORCE, STORED, Table, quantities
 from .jumps import Segment, jumps
@@ -128,8 +129,7 @@ def _read(pieces: list[_Piece], places: np.ndarray) -> np.ndarray:
     for k in np.unique(index):
         here = index == k
         low, high, values = pieces[k]
-        local = (2.0 * places[here] - low - high) / (high - low)
-        rows[here] = chebyshev.chebval(local, values[:, :width]).T
+        rows[here] = chebyshev.chebval(local(low, high, places[here]), values[:, :width]).T
     return rows
 
 

@@ -156,6 +156,12 @@ class Progress(NamedTuple):
     outcome: jax.Array
     made: jax.Array
 
+    @classmethod
+    def over(cls, time: jax.Array, outcome: jax.Array, made: jax.Array) -> Progress:
+        """Where a motion ended, without what would be needed to go on."""
+        none: Any = ()
+        return cls(none, none, none, time, none, none, none, none, none, outcome, made)
+
 
 @kept
 class Begun(NamedTuple):
@@ -209,7 +215,7 @@ class Impacts(NamedTuple):
         Largest kinetic energy on the first way in, on a spring of the first impact [J]; the same
         in all rows.
     fall, rise
-        The two phases.
+        The two phases; empty of motions stepped in time, which have a trajectory.
     """
 
     made: jax.Array

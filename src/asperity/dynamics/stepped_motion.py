@@ -14,13 +14,13 @@ from ..contact.contact import Contact
 from ..contact.delayed_formation import DelayedContact
 from ..contact.elastic import ElasticContact
 from ..contact.viscoelastic import Relaxation
-from ..errors import Outcome
+from ..errors import InputError, Outcome
 from .curve_table import Table
 from .delayed_bounce import DelayedBounce
 from .record import Body, Limits, Motion
 from .static_equilibrium import Reference
-from .stepped_phase import TURNED, Ended, Samples
-from .stepped_record import Ledger, SteppedImpact, SteppedPhase
+from .stepped_phase import TURNED, Ended, Samples, SteppedPhase
+from .stepped_record import Ledger, SteppedImpact
 from .stepped_series import Trajectory
 from .viscoelastic.fitted_mesh import fitted_bounce
 from .viscoelastic.rough_phase import RoughBounce
@@ -60,7 +60,14 @@ def integrate_stepped(
     ------
     Ended
         If it is stopped before the first impact is over.
+    InputError
+        If the body has a spring, or a drag that steps in time do not know: that of one film beside
+        menisci that take time is all.
     """
+    known = isinstance(mechanism, DelayedContact) and len(body.drags) == 1 and body.damped_apart
+    if body.forces or (body.drags and not known):
+        names = ", ".join([*(force.name for force in body.forces), *body.mechanisms])
+        raise InputError(f"a motion that is stepped in time knows no {names}")
 
     def asked() -> None:
         if stop is not None and stop.is_set():

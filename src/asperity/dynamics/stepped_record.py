@@ -10,41 +10,19 @@ import numpy as np
 from .._jax import jax, jnp
 from ..contact.contact import Contact
 from ..errors import ENDS, Outcome
-from ..numerics.polynomials import NODES
 from .curve_table import (
     ATTRACTION,
-    CENTRAL,
     CONTACTING,
     FORCE,
     STORED,
-    Pieces,
     Table,
     quantities,
 )
-from .instability import Jumps
 from .motion_end import LEAST_LOSS, EndRules
-from .record import Body, Impacts, Limits, Motion, Phase, Progress
+from .record import IN_MOTION, Body, Impacts, Limits, Motion, Progress
 from .static_equilibrium import Reference
-from .stepped_phase import AT_REST, FAILED, LEFT, STOPPED, Samples
+from .stepped_phase import AT_REST, FAILED, LEFT, STOPPED, Samples, SteppedPhase
 from .stepped_series import Trajectory
-
-
-class SteppedPhase(NamedTuple):
-    """A phase of an impact, from one turning point to the next.
-
-    Attributes
-    ----------
-    end
-        How it ends: TURNED, LEFT, AT_REST, FAILED or STOPPED.
-    samples
-        Its samples, without its start.
-    pull_work
-        Work against the attractive forces [J]; None where the samples give it.
-    """
-
-    end: str
-    samples: Samples
-    pull_work: float | None = None
 
 
 class SteppedImpact(NamedTuple):
@@ -150,9 +128,10 @@ class Ledger(NamedTuple):
         largest = self.maximum_kinetic(done[0])
         rows = [self._row(one, origin, largest) for one in done]
         impacts: Impacts = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *rows)
-        motion = Motion(
-            impacts, self._progress(done, outcome), table, reference, jnp.asarray(origin)
-        )
+        code = ENDS.index(outcome) if outcome in ENDS else IN_MOTION
+        time = done[-1].end.time[0]
+        over = Progress.over(*(jnp.asarray(x) for x in (time, code, len(done))))
+        motion = Motion(impacts, over, table, reference, jnp.asarray(origin))
         phases = [phase.samples for one in done for phase in (one.fall, one.rise)]
         return motion, Trajectory.of(self.body, done[0].begin, phases)
 
@@ -177,47 +156,10 @@ class Ledger(NamedTuple):
             "energy_balance_error": np.max(np.abs(energy - origin)),
             "pull_work": np.asarray(work),
             "maximum_kinetic": np.asarray(largest),
-            "fall": self._phase(one.begin, middle),
-            "rise": self._phase(middle, end),
+            "fall": (),  # it is drawn from its samples, not from pieces
+            "rise": (),
         }
         return Impacts(**columns)
-
-    def _phase(self, start: Samples, stop: Samples) -> Phase:
-        """What a phase started from; it is drawn from its samples, not from pieces."""
-        layout = quantities(self.contact)
-        none: Any = np.zeros(0)
-        values: Any = np.zeros((0, NODES, layout.components.stop))
-        columns: dict[str, Any] = {
-            "start": start.separation[0],
-            "stop": stop.separation[0],
-            "kinetic": self.kinetic(start)[0],
-            "begun": start.time[0],
-            "branch": np.asarray(0),
-            "inner": Pieces(none, none, none, none, values),
-            "lost": start.lost[0],
-            "bonds": start.rows[0, layout.bonds],
-            "jumps": Jumps(none, none),
-            "spent": np.asarray(np.nan),
-        }
-        return Phase(**columns)
-
-    def _progress(self, done: Sequence[SteppedImpact], outcome: Outcome) -> Progress:
-        # Without its memory: nothing goes on from there.
-        last = done[-1].end
-        end: dict[str, Any] = {
-            "memory": self.contact.initial_memory(),
-            "place": last.separation[0],
-            "kinetic": self.kinetic(last)[0],
-            "time": last.time[0],
-            "lost": last.lost[0],
-            "bonds": last.rows[0, quantities(self.contact).bonds],
-            "central": last.rows[0, CENTRAL],
-            "first": self.height(done[0]),
-            "impact_energy": self.maximum_kinetic(done[0]),
-            "outcome": ENDS.index(outcome) if outcome in ENDS else -1,
-            "made": len(done),
-        }
-        return Progress(**jax.tree_util.tree_map(jnp.asarray, end))
 
 
 def _pull_work(samples: Samples) -> float:

@@ -19,6 +19,7 @@ from ..contact.delayed_formation import DelayedContact
 from ..laws.law import Real
 from ..numerics.compilation import kept
 from ..numerics.roots import fixed_point
+from ..numerics.trees import zeros_of
 from .curve_table import rows_of
 from .external_forces import Along
 from .record import Body
@@ -140,8 +141,7 @@ def step(contact: DelayedContact, body: Body, here: BodyState, span: Real) -> Co
         return (after, forces), jnp.max(jnp.abs(change)) / scale
 
     start = jnp.full(STAGES + 1, here.acceleration)
-    shapes = jax.eval_shape(newton, (start, None))[0][1]
-    blank = jax.tree_util.tree_map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+    blank = zeros_of(jax.eval_shape(newton, (start, None))[0][1])
     (acceleration, forces), change = fixed_point(newton, (start, blank), _CLOSE, _STEPS)
     places = path(acceleration[1:])
     followed = _Path(places[0], places[1], acceleration, places[2])

@@ -10,6 +10,7 @@ from equinox.internal import unvmap_any
 from .._jax import jax, jnp
 from ..numerics.polynomials import DERIVATIVE, chebyshev_sum, local
 from ..numerics.roots import root_between
+from ..numerics.trees import choose
 from .curve_table import ENERGY_SAMPLES
 from .external_forces import Load
 from .phase import Ahead, TurningPoint, kinetic_along
@@ -72,9 +73,7 @@ def _piece(ahead: Ahead, piece: jax.Array) -> _Piece:
         p.low[k], p.high[k], integral, p.values[k, :, 0],
         work.kinetic[k] - chebyshev_sum(integral, first), p.enter[k], work.load,
     )  # fmt: skip
-    return jax.tree_util.tree_map(
-        lambda near, far: jnp.where(piece < ahead.pieces, near, far), inner, outer
-    )
+    return choose(piece < ahead.pieces, inner, outer)
 
 
 class _Bracket(NamedTuple):

@@ -1,7 +1,7 @@
 """What a viscoelastic half-space remembers of where it was pressed, along a radius.
 
-The Maxwell springs of the foundation (see :mod:`.foundation`) are extended by z(x). Between two
-radii at which the edge of contact has turned, z is smooth in an angle psi,
+The Maxwell springs of the foundation (see :mod:`.viscoelastic_paraboloid`) are extended by z(x).
+Between two radii at which the edge of contact has turned, z is smooth in an angle psi,
 x = low + (high - low) sin^2(psi/2), since the edge passes each radius but the turns at a speed.
 """
 
@@ -65,7 +65,6 @@ class ResidualIndentation:
         self.whole = first, second
         self._ends = ends.tolist()
         powers = [(c @ _TO_SERIES.T @ _TO_POWERS.T)[..., ::-1] for c in (z, once, twice)]
-        self._z = powers[0]
         self._pieces = list(zip(*(c.reshape(-1, _NODES).tolist() for c in powers), strict=True))
 
     @property
@@ -97,25 +96,7 @@ class ResidualIndentation:
 
     def over(self, radius: np.ndarray) -> np.ndarray:
         """Extension z at many radii."""
-        z = np.zeros_like(radius)
-        inside = radius < self.outer
-        if not inside.any():
-            return z
-        x, radii, ends = radius[inside], np.array(self.radii), np.array(self._ends)
-        number = np.clip(np.searchsorted(radii, x, side="right") - 1, 0, radii.size - 2)
-        low, high = radii[number], radii[number + 1]
-        share, rest = np.clip([x - low, high - x], 0.0, None) / (high - low)
-        angle = np.where(
-            share < 0.5, 2.0 * np.arcsin(np.sqrt(share)), np.pi - 2.0 * np.arcsin(np.sqrt(rest))
-        )
-        panel = np.clip(np.searchsorted(ends, angle, side="right") - 1, 0, ends.size - 2)
-        begin, end = ends[panel], ends[panel + 1]
-        local = (2.0 * angle - begin - end) / (end - begin)
-        value = np.zeros_like(x)
-        for c in np.moveaxis(self._z[number, panel], -1, 0):
-            value = value * local + c
-        z[inside] = value
-        return z
+        return np.array([self.at(each)[0] for each in radius.tolist()])
 
     def _find(self, radius: float) -> tuple[tuple[list[float], ...], float, float]:
         """Polynomials at a radius, the place on their panel, and the slope of that place."""

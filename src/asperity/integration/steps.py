@@ -18,6 +18,7 @@ from ..dynamics import Begun, Body, Impacts, Progress, Table, integrate_impacts,
 from ..dynamics.curve_table import ATTRACTION, CENTRAL, CONTACTING, FORCE, outer_row
 from ..dynamics.release import at_release
 from ..numerics.compilation import AT_ONCE, QUICKLY, Options, Program
+from ..numerics.trees import choose
 from ..results import conversion
 from ..results.first_contact import FirstContact, first_contact, passing_at
 from ..results.measures import Measures, measure
@@ -75,7 +76,7 @@ def _impacts(
         found = jax.lax.cond(
             unvmap_any(now), lambda: _first_impact(table, impacts, body), lambda: first
         )
-        first = jax.tree_util.tree_map(lambda a, b: jnp.where(now, a, b), found, first)
+        first = choose(now, found, first)
         passing = None
         if body.damped_apart:
             passing = passing_at(body, table, impacts, first.contact.end)

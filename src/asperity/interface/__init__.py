@@ -6,7 +6,7 @@
 `height_quadrature`: means over heights of laws without a closed form.
 `panel_table`, `branch_pressure`: means over the separation, read from polynomials on panels.
 `radius_classes`, `class_bonds`, `major_branches`, `measured_summits`: summits of several radii.
-`plastic_interface`, `plastic_means`, `virgin_loading`, `residual_profile`: asperities that yield.
+`plastic_interface`, `virgin_loading`, `residual_profile`: asperities that yield.
 `layers`: interfaces side by side, such as asperities and liquid on the surface.
 
 An interface knows a separation and a memory, and no body. What acts on one asperity alone is a

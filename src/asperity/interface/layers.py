@@ -7,8 +7,7 @@ from functools import reduce
 from typing import Any
 
 from .._jax import jax, jnp
-from ..errors import InputError
-from ..laws.law import Law
+from ..laws.law import Law, components_of, refuse_twice
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
 from .rough_planes import Means, Memory, RoughPlanes, Scale
@@ -35,10 +34,7 @@ class Layers(RoughPlanes):
     parts: tuple[RoughPlanes, ...]
 
     def __init__(self, parts: Sequence[RoughPlanes]) -> None:
-        counted = [name for part in parts for law in part.laws for name in law.counts]
-        twice = sorted({name for name in counted if counted.count(name) > 1})
-        if twice:
-            raise InputError(f"two layers contain the {twice[0]} force; it would count twice")
+        refuse_twice(laws=[law for part in parts for law in part.laws])
         self.parts = tuple(parts)
 
     @property
@@ -55,8 +51,7 @@ class Layers(RoughPlanes):
 
     @property
     def components(self) -> tuple[str, ...]:
-        names = {name for part in self.parts for name in part.components}
-        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+        return components_of((), [name for part in self.parts for name in part.components])
 
     @property
     def panel_lengths(self) -> PanelLengths:

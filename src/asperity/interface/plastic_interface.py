@@ -9,13 +9,13 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..errors import InputError
-from ..laws.law import Law, Real, quantity, terms
+from ..laws.law import Law, Real, components_of, quantity, refuse_twice, terms
 from ..laws.plastic import PlasticContact
+from ..numerics.trees import choose
 from ..surfaces.heights.distribution import Heights
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
 from .named_means import asked_powers, bond_gaps, means_of
-from .plastic_means import Asperities, means_at
 from .residual_profile import HIGHEST, Flattened, contact_means, flatten, in_reach, power_means
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 from .virgin_loading import NODES, Loaded, first_loading
@@ -25,7 +25,6 @@ PLASTIC = "plastic"
 
 _FEW_NODES = 4  # where a bound is asked for alone
 _MISSED = 0.01  # of it, at most
-_LADDER = 28  # panels on which contacts spring back that are not tabulated
 
 
 class PlasticInterface(RoughPlanes):
@@ -36,8 +35,8 @@ class PlasticInterface(RoughPlanes):
     contact
         Elastic-plastic contact of one asperity.
     law
-        Laws of finite range beside it that pull in contact as at touch, each on the tip as it was
-        left; :class:`~asperity.laws.Sum` of none for none.
+        Laws beside it that pull in contact as at touch, each on the tip as it was left, and are
+        sums of truncated powers; :class:`~asperity.laws.Sum` of none for none.
     heights
         Distribution of the heights before anything touched.
     density
@@ -48,7 +47,8 @@ class PlasticInterface(RoughPlanes):
     Raises
     ------
     InputError
-        If a law contains the elastic force.
+        If a law contains the elastic force, or is no sum of truncated powers of whole exponents
+        up to 2.
 
     Notes
     -----
@@ -74,11 +74,12 @@ class PlasticInterface(RoughPlanes):
     pressed: Flattened | None = None
 
     def __check_init__(self) -> None:
+        refuse_twice((self.contact, ("elastic",)), laws=self.laws)
         for law in self.laws:
-            if "elastic" in law.counts:
+            if not _in_powers(law):
                 raise InputError(
-                    f"{type(law).__name__} and {type(self.contact).__name__} both contain the "
-                    "elastic force; it would count twice"
+                    "a law beside a contact that yields must be truncated powers of exponents 0 "
+                    f"to {HIGHEST}; {type(law).__name__} is not"
                 )
 
     @property
@@ -101,7 +102,7 @@ class PlasticInterface(RoughPlanes):
     @property
     def components(self) -> tuple[str, ...]:
         """The contact's too, whether it yields or not."""
-        return ("elastic", *super().components)
+        return components_of(self.laws, ("elastic",))
 
     @property
     def interaction_range(self) -> jax.Array:
@@ -122,11 +123,8 @@ class PlasticInterface(RoughPlanes):
 
     @property
     def unloading_panels(self) -> jax.Array:
-        if self.pressed is not None:
-            return self.pressed.unloading_panels
-        last = 2.0 * jnp.asarray(self.heights.rms)
-        first = jnp.minimum(0.3 * self.contact.yield_overlap, 0.05 * last)
-        return first * (last / first) ** (np.arange(_LADDER) / (_LADDER - 1))
+        assert self.pressed is not None  # the contact has had its first impact
+        return self.pressed.unloading_panels
 
     def has_yielded(self, memory: Memory) -> jax.Array:
         return jnp.any(memory[0] < jnp.inf)
@@ -141,10 +139,7 @@ class PlasticInterface(RoughPlanes):
         return super().rejoining(memory[1:], unloading)
 
     def work_of_approach(self, separation: jax.Array, integrated: int = 0) -> jax.Array:
-        if not self._in_powers:
-            means = self.measure(separation, self.initial_memory(), integrated)
-        else:
-            means = self._approached(separation, integrated, _FEW_NODES)
+        means = self._approached(separation, integrated, _FEW_NODES)
         work = means.energy + means.bonds[0]
         return work - _MISSED * jnp.abs(work)
 
@@ -166,8 +161,6 @@ class PlasticInterface(RoughPlanes):
         return Means(*(jnp.moveaxis(x, 0, -1).reshape(*x.shape[1:], *shape) for x in each))
 
     def first_approach(self, separation: jax.Array, integrated: int = 0) -> Means:
-        if not self._in_powers:
-            return super().first_approach(separation, integrated)
         return self._approached(separation, integrated, NODES)
 
     def _approached(self, separation: jax.Array, integrated: int, nodes: int) -> Means:
@@ -192,14 +185,8 @@ class PlasticInterface(RoughPlanes):
             sums[ask.name] = sums.get(ask.name, 0.0) + value
         return self._means(sums, self._kept(loaded.dissipated, loaded.gained), separation)
 
-    def flattened(self, memory: Memory, integrated: int) -> Flattened | None:
-        """What a first approach leaves, tabulated; its closest approach is in the memory.
-
-        None where a law is no sum of truncated powers, whose means are then integrated anew at
-        every separation.
-        """
-        if not self._in_powers:
-            return None
+    def flattened(self, memory: Memory, integrated: int) -> Flattened:
+        """What a first approach leaves, tabulated; its closest approach is in the memory."""
         gaps = [law.breaking_gap for law in self.hysteretic]
         interaction_range = jnp.max(
             jnp.stack([self.last_kink, *(jnp.asarray(gap, float) for gap in gaps)])
@@ -210,16 +197,6 @@ class PlasticInterface(RoughPlanes):
 
     def as_flattened(self, pressed: Flattened | None) -> PlasticInterface:
         return dataclasses.replace(self, pressed=pressed)
-
-    @property
-    def _in_powers(self) -> bool:
-        """Whether the laws beside contact are sums of powers that are tabulated."""
-        found = [law.powers(jnp.zeros(())) for law in self.laws]
-        whole = np.arange(HIGHEST + 1.0)
-        return all(
-            powers is not None and all(term.exponent in whole for part in powers for term in part)
-            for powers in found
-        )
 
     def losses(self) -> tuple[jax.Array, jax.Array]:
         formed, broken = super().losses()
@@ -255,11 +232,20 @@ class PlasticInterface(RoughPlanes):
         return jax.tree_util.tree_map(lambda mean: self.density * mean, means)
 
     def _measure_one(self, separation: jax.Array, memory: Memory, integrated: int) -> Means:
-        """The means at one separation, by integration."""
-        asperities = Asperities(self.contact, self.law, self.heights)
-        edges = bond_gaps(self.laws, separation, memory[1:])
-        sums = means_at(asperities, separation, memory[0], edges, integrated)
-        return self._means(sums, sums["kept"], separation)
+        """The means at one separation: of a first approach, or after the closest one."""
+        deepest = memory[0]
+        first = self.first_approach(separation, integrated)
+        left = self.flattened((jnp.minimum(deepest, separation),), integrated)
+        after = self._measure_pressed(left, separation, memory)
+        return choose(separation <= deepest, first, after)
+
+
+def _in_powers(law: Law) -> bool:
+    """Whether a law is a sum of the powers that are tabulated."""
+    powers = law.powers(jnp.zeros(()))
+    if powers is None:
+        return False
+    return all(term.exponent in range(HIGHEST + 1) for part in powers for term in part)
 
 
 def _summed(names: tuple[str, ...], rows: jax.Array) -> dict[str, jax.Array]:

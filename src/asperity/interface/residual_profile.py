@@ -19,7 +19,7 @@ from .._jax import jax, jnp
 from ..laws.law import TruncatedPower
 from ..laws.plastic import PlasticContact
 from ..numerics.compilation import kept
-from ..numerics.polynomials import from_points, local
+from ..numerics.polynomials import clenshaw, from_points, local
 from ..surfaces.heights.distribution import Heights
 from .height_quadrature import gathered
 
@@ -294,16 +294,7 @@ def _read(flat: Flattened, rows: jax.Array, place: jax.Array) -> jax.Array:
     panel = jnp.sum(place[..., None] >= flat.ends[1:-1], axis=-1)
     low, high = flat.ends[panel], flat.ends[panel + 1]
     first = np.arange(rows.shape[0]).reshape(-1, *(1,) * (place.ndim - 1))
-    # Gathered degree by degree, which XLA fuses on the CPU.
     x = local(low, high, jnp.clip(place, low, high))
     here = rows.at[first, panel].get(mode="promise_in_bounds")
-    found = _clenshaw(jnp.moveaxis(here, -1, 0), x)
+    found = clenshaw(jnp.moveaxis(here, -1, 0), x)
     return jnp.where(place < flat.ends[-1], found, 0.0)
-
-
-def _clenshaw(coefficients: jax.Array, x: jax.Array) -> jax.Array:
-    """Sum of Chebyshev polynomials, their degree along the first axis of the coefficients."""
-    above, here = jnp.zeros_like(x), jnp.zeros_like(x)
-    for k in range(coefficients.shape[0] - 1, 0, -1):
-        above, here = here, coefficients[k] + 2.0 * x * here - above
-    return coefficients[0] + x * here - above

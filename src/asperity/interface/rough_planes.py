@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 
 from .._jax import jax, jnp
-from ..laws.law import Law
+from ..laws.law import Law, components_of
 from ..surfaces.heights.panel_length import PanelLengths
 from .height_quadrature import Near
 
@@ -83,8 +83,7 @@ class RoughPlanes(eqx.Module):
     @property
     def components(self) -> tuple[str, ...]:
         """Mechanisms of the forces, elastic first."""
-        names = {name for law in self.laws for name in law.counts or {law.mechanism}}
-        return tuple(sorted(names, key=lambda name: (name != "elastic", name)))
+        return components_of(self.laws)
 
     @property
     @abc.abstractmethod

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from .._jax import jax, jnp
-from ..numerics.polynomials import power_sum, power_sum_at_few
+from ..numerics.polynomials import power_sum
 
 _X, _WEIGHT = (np.asarray(a) for a in legendre.leggauss(30))
 
@@ -66,13 +66,11 @@ class Zone(NamedTuple):
     bend: Any
 
 
-def _zone(
-    t: Any, sine: Any, cosine: Any, polynomial: Callable[[np.ndarray, Any], Any] = power_sum
-) -> Zone:
+def _zone(t: Any, sine: Any, cosine: Any) -> Zone:
     """Everything from the tangent of half the angle, its sine and its cosine."""
     square = t * t
     # A quotient is where the compiler cuts: the polynomial is evaluated once for all its uses.
-    slack = polynomial(_SLACK, 2.0 * square - 1.0) / (1.0 + square)
+    slack = power_sum(_SLACK, 2.0 * square - 1.0) / (1.0 + square)
     ratio, rise = 1.0 - square * slack, t * sine
     cubic, whole = 0.5 * sine * rise, (1.0 + square) ** 2 * slack
     return Zone(
@@ -87,9 +85,9 @@ def _zone(
     )
 
 
-def _of_tangent(t: Any, polynomial: Callable[[np.ndarray, Any], Any] = power_sum) -> Zone:
+def _of_tangent(t: Any) -> Zone:
     share = 1.0 / (1.0 + t * t)
-    return _zone(t, 2.0 * t * share, (1.0 - t * t) * share, polynomial)
+    return _zone(t, 2.0 * t * share, (1.0 - t * t) * share)
 
 
 def of_radii(inner: jax.Array, flank: jax.Array) -> tuple[jax.Array, Zone]:
@@ -153,8 +151,8 @@ def contact_end(l: jax.Array) -> End:
     """The end of the contact; the table of its angle spans all lambda above :data:`SOFT`."""
     stiff = jnp.minimum(SOFT / l, 1.0)
     soft = stiff < 1.0
-    tangent = jnp.where(soft, stiff * power_sum_at_few(_FOLDS, 2.0 * stiff - 1.0), 1.0)
-    z = _of_tangent(tangent, power_sum_at_few)
+    tangent = jnp.where(soft, stiff * power_sum(_FOLDS, 2.0 * stiff - 1.0), 1.0)
+    z = _of_tangent(tangent)
     linear = 4.0 / 3.0 * l**2 * z.gape
     outer = 2.0 / (linear + jnp.sqrt(linear**2 + 2.0 * l * z.pull))
     inner, flank = outer * jnp.where(soft, z.cosine, 0.0), outer * z.sine

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
@@ -230,15 +230,7 @@ class Sum(Law):
     parts: tuple[Law, ...]
 
     def __init__(self, parts: Sequence[Law]) -> None:
-        seen: dict[str, str] = {}
-        for law in parts:
-            for name in sorted(law.counts):
-                if name in seen:
-                    raise InputError(
-                        f"{type(law).__name__} and {seen[name]} both contain the {name} force; "
-                        "it would count twice"
-                    )
-                seen[name] = type(law).__name__
+        refuse_twice(laws=parts)
         self.parts = tuple(parts)
 
     def force(self, gap: jax.Array) -> jax.Array:
@@ -251,3 +243,30 @@ class Sum(Law):
 def terms(law: Law) -> tuple[Law, ...]:
     """The laws of a sum; a law alone is a sum of one."""
     return law.parts if isinstance(law, Sum) else (law,)
+
+
+def components_of(laws: Sequence[Law], more: Iterable[str] = ()) -> tuple[str, ...]:
+    """Mechanisms of the forces of laws, and ``more``: elastic first."""
+    names = {name for law in laws for name in law.counts or {law.mechanism}}
+    return tuple(sorted(names.union(more), key=lambda name: (name != "elastic", name)))
+
+
+def refuse_twice(*contacts: tuple[Any, Iterable[str]], laws: Sequence[Law]) -> None:
+    """Refuse laws that act side by side, and beside contacts, if two contain the same force.
+
+    Each contact comes with the names of its forces.
+
+    Raises
+    ------
+    InputError
+        With the two, and the force.
+    """
+    seen: dict[str, str] = {}
+    for part, names in (*contacts, *((law, law.counts) for law in laws)):
+        for name in sorted(names):
+            if name in seen:
+                raise InputError(
+                    f"{type(part).__name__} and {seen[name]} both contain the {name} force; "
+                    "it would count twice"
+                )
+            seen[name] = type(part).__name__

@@ -57,12 +57,8 @@ class Maugis(OnlyBonded):
         return -self._depth * contact_end(self.elasticity).last
 
     @property
-    def rupture_gap(self) -> jax.Array:
-        """Gap [m] at which the contact proper ends on unloading."""
-        return -self._depth * contact_end(self.elasticity).overlap
-
-    @property
     def kinks(self) -> tuple[jax.Array | float, ...]:
+        """Where the contact proper ends on unloading, and where the bond breaks."""
         end = contact_end(self.elasticity)
         return (-self._depth * end.overlap, -self._depth * end.last)
 
@@ -90,7 +86,7 @@ class Maugis(OnlyBonded):
         }
 
 
-# In the reduced units of `zone`: overlap = -gap, `l` = lambda.
+# In the reduced units of `adhesive_zone`: overlap = -gap, `l` = lambda.
 
 
 def _state(overlap: jax.Array, l: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:

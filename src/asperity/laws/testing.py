@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,7 +44,6 @@ class _Branch(NamedTuple):
 def check_law(
     law: Law,
     *,
-    gaps: Sequence[float] | None = None,
     dimensions: Mapping[str, tuple[float, float]] | None = None,
 ) -> None:
     """Prove that a law is one: energies, branches, units, and that it can be traced.
@@ -53,9 +52,6 @@ def check_law(
     ----------
     law
         The law, or a sum, whose laws are checked one by one.
-    gaps
-        Gaps [m] at which to look; by default from deep overlap to three times that range,
-        close together around 0, with all kinks.
     dimensions
         Powers of (length, force) of each of the law's values, such as
         ``{"stiffness": (-1, 1)}``; (0, 0) for a pure number. Names in :data:`DIMENSIONS`
@@ -74,12 +70,12 @@ def check_law(
     kinks; the free energy tends to 0 and the force is negligible beyond
     ``interaction_range``; a bond breaks at no smaller gap than it forms at, and neither step
     gains energy; everything is finite float64 of the gap's shape, also at kinks, and the same
-    under ``jit`` and ``vmap``, with finite gradients; ``powers`` and ``components`` add up to
+    under ``jit`` and ``vmap``, with finite gradients; ``powers`` and ``response`` add up to
     the force; in other units the law is the same.
     """
     known = {**DIMENSIONS, **(dimensions or {})}
     for part in terms(law):
-        places = _gaps(part) if gaps is None else np.unique(np.asarray(gaps, dtype=float))
+        places = _gaps(part)
         _check_order(part)
         for branch in _branches(part, places):
             _check_traceable(part, branch)
@@ -109,6 +105,7 @@ def _kinks(law: Law) -> np.ndarray:
 
 
 def _gaps(law: Law) -> np.ndarray:
+    """Gaps [m] to look at: overlap and apart, close together around 0, with all kinks."""
     lengths = _lengths(law)
     apart = np.geomspace(1e-3 * lengths[0], 3.0 * lengths[-1], 48)
     overlap = -np.geomspace(1e-3 * lengths[0], 10.0 * lengths[0], 32)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from .._jax import jax, jnp
+from .polynomials import clenshaw
 
 __all__ = ["height_integral", "height_integrals", "integrals_at", "normal_density"]
 
@@ -107,7 +108,8 @@ def _evaluate(orders: tuple[float, ...], separations: jax.Array) -> jax.Array:
     position = distance * falls * _PANELS
     index = jnp.clip(jnp.floor(position).astype(int), 0, _PANELS - 1)
     panel = jnp.asarray(base) + jnp.where(is_right, index, index + _PANELS)
-    smooth = _clenshaw(table, panel, 2.0 * (position - index) - 1.0)
+    here = jnp.asarray(table).at[panel].get(mode="promise_in_bounds")
+    smooth = clenshaw(jnp.moveaxis(here, -1, 0), 2.0 * (position - index) - 1.0)
     # Right of the split the density falls off, left of it the integral grows.
     bounded = jnp.where(is_right, separations, 0.0)
     size = jnp.sqrt(1.0 + jnp.minimum(separations, 0.0) ** 2)
@@ -150,20 +152,6 @@ def _integrals_jvp(groups, primals, tangents):  # type: ignore[no-untyped-def]
             here.append(value)
             slopes.append(slope * change[k])
     return _batched_first(jnp.stack(here)), _batched_first(jnp.stack(slopes))
-
-
-def _clenshaw(table: np.ndarray, panel: jax.Array, x: jax.Array) -> jax.Array:
-    """Chebyshev sum of row ``panel`` of ``table`` at ``x`` in [-1, 1].
-
-    Gathered degree by degree: XLA fuses that on the CPU, not a gather of whole rows.
-    """
-    upper = jnp.zeros_like(x)
-    lower = jnp.zeros_like(x)
-    rows = jnp.asarray(table).at[panel].get(mode="promise_in_bounds")
-    column = jnp.moveaxis(rows, -1, 0)
-    for k in range(_DEGREE, 0, -1):
-        upper, lower = column[k] + 2.0 * x * upper - lower, upper
-    return column[0] + x * upper - lower
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The linear systems by which rings settle."""
+"""Linear systems: by which rings settle, and of derivatives of what is solved."""
 
 from __future__ import annotations
 
@@ -44,3 +44,13 @@ def dense_solve(matrix: jax.Array, right: jax.Array) -> jax.Array:
     XLA's batched calls are slower within a loop.
     """
     return jnp.linalg.solve(matrix, right[:, None])[:, 0]
+
+
+def implicit_solve(matrix: jax.Array, right: jax.Array) -> jax.Array:
+    """The same where a derivative asks for it, forward or in reverse."""
+    return jax.lax.custom_linear_solve(
+        lambda x: matrix @ x,
+        right,
+        lambda _, right: dense_solve(matrix, right),
+        lambda _, right: dense_solve(matrix.T, right),
+    )

@@ -47,11 +47,14 @@ def quintic(
     return jnp.stack(rows, axis=-1)
 
 
-def local(low: jax.Array, high: jax.Array, place: jax.Array) -> jax.Array:
-    """Coordinate in [-1, 1] of a place in an interval; 0 where the interval is empty."""
-    width = high - low
-    safe = jnp.where(width > 0.0, width, 1.0)
-    return jnp.where(width > 0.0, (2.0 * place - low - high) / safe, 0.0)
+def local(low: Any, high: Any, place: Any) -> Any:
+    """Coordinate in [-1, 1] of a place in an interval; 0 where the interval is empty.
+
+    Of arrays of either library.
+    """
+    width, twice = high - low, 2.0 * place - low - high
+    where = jnp.where if isinstance(twice, jax.Array) else np.where
+    return where(width > 0.0, twice / where(width > 0.0, width, 1.0), 0.0)
 
 
 @jax.jit  # traced once for each shape
@@ -81,6 +84,14 @@ def chebyshev_sum(coefficients: jax.Array, x: jax.Array) -> jax.Array:
     return even + x * (first[0, 1] + (twice - 1.0) * upper[0, 1])
 
 
+def clenshaw(coefficients: jax.Array, x: jax.Array) -> jax.Array:
+    """The same degree by degree, which XLA fuses with coefficients that are gathered."""
+    above, here = jnp.zeros_like(x), jnp.zeros_like(x)
+    for k in range(coefficients.shape[0] - 1, 0, -1):
+        above, here = here, coefficients[k] + 2.0 * x * here - above
+    return coefficients[0] + x * here - above
+
+
 def antiderivative(coefficients: jax.Array) -> jax.Array:
     """Chebyshev coefficients of the integral over x; first axis the degree."""
     return jnp.tensordot(jnp.asarray(ANTIDERIVATIVE), coefficients, axes=1)
@@ -92,22 +103,3 @@ def power_sum(coefficients: np.ndarray, x: Any) -> Any:
     for coefficient in coefficients[-2::-1]:
         value = value * x + coefficient
     return value
-
-
-def power_sum_at_few(coefficients: np.ndarray, x: jax.Array) -> jax.Array:
-    """The same at few places, in a third of the operations: those are compiled one by one.
-
-    By rows of coefficients, each times powers of x, and the rows times powers of the last.
-    """
-    width = int(np.ceil(np.sqrt(coefficients.size)))
-    table = np.pad(coefficients, (0, -coefficients.size % width)).reshape(-1, width)
-    across, down = _powers(x, width), _powers(x**width, table.shape[0])
-    return jnp.sum(down * jnp.sum(table * across[..., None, :], axis=-1), axis=-1)
-
-
-def _powers(x: jax.Array, count: int) -> jax.Array:
-    """1, x, x^2, so many, along a new last axis."""
-    found = [jnp.ones_like(x)]
-    for _ in range(count - 1):
-        found.append(found[-1] * x)
-    return jnp.stack(found, axis=-1)

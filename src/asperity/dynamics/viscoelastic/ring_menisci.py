@@ -7,9 +7,11 @@ breaking takes it along.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import factorial
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import hyp1f1
 
 from ..._jax import jax, jnp
 from ...contact.delayed_formation import DelayedContact
@@ -19,8 +21,6 @@ from ...interface.rough_planes import RoughPlanes
 Holding = Callable[[jax.Array], Thresholds]
 """The memory at given separations of the rings."""
 
-_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(16)
-_FRACTIONS, _SHARES = 0.5 * (_GAUSS + 1.0), 0.5 * _WEIGHT
 _HALVINGS = 60
 
 
@@ -116,7 +116,8 @@ class FreeFlight(NamedTuple):
     def _lag(self, threshold: np.ndarray, time: np.ndarray, pace: float) -> np.ndarray:
         """Thresholds that lag behind throughout."""
         s = pace * time
-        once, twice, thrice = _phi(s)
+        # Integrals of exp(-s (1 - x)) x^(k-1)/(k-1)! over x from 0 to 1.
+        once, twice, thrice = (hyp1f1(1, k + 1, -s) / factorial(k) for k in (1, 2, 3))
         bent: np.ndarray = self.speed * time * twice - self.gravity * time**2 * thrice
         return threshold + s * ((self.begin - threshold) * once + bent)
 
@@ -128,16 +129,3 @@ class FreeFlight(NamedTuple):
             below = self.goal(middle) < self._lag(threshold, middle, pace)
             low, high = np.where(below, middle, low), np.where(below, high, middle)
         return low
-
-
-def _phi(s: np.ndarray) -> tuple[np.ndarray, ...]:
-    """phi_k(s) = integral of exp(-s (1 - x)) x^(k-1)/(k-1)! over x from 0 to 1, k = 1, 2, 3."""
-    s = np.asarray(s, float)
-    near = np.minimum(s, 1.0)[..., None]
-    few = np.exp(-near * (1.0 - _FRACTIONS)) * _SHARES
-    short = few.sum(-1), (few * _FRACTIONS).sum(-1), (0.5 * few * _FRACTIONS**2).sum(-1)
-    far = np.maximum(s, 1.0)
-    once = -np.expm1(-far) / far
-    twice = (1.0 - once) / far
-    long = once, twice, (0.5 - twice) / far
-    return tuple(np.where(s < 1.0, a, b) for a, b in zip(short, long, strict=True))

@@ -6,7 +6,6 @@ from math import pi
 from typing import Any, NamedTuple
 
 from ..._jax import jax, jnp
-from ...contact.contact import elastic_part
 from ...contact.delayed_formation import DelayedContact
 from ...contact.elastic import ElasticContact
 from ...contact.equilibrium import compliance, profile_of
@@ -16,6 +15,7 @@ from ...interface.rough_planes import Memory as Thresholds
 from ...laws.law import Real
 from ...numerics.compilation import kept
 from ...numerics.roots import fixed_point
+from ..curve_table import rows_of
 from .ring_menisci import Holding, Waiting
 
 _CLOSE = 1e-13  # change of a separation that is small enough, relative to heights and itself
@@ -156,29 +156,9 @@ def balanced(
 
 def row_of(bulk: Bulk, here: RingState) -> jax.Array:
     """Quantities of the contact in one row, without its field."""
-    surfaces, mesh = bulk.contact.interface, ring_mesh(bulk.contact.rings)
-    inside = surfaces.measure(here.gaps, here.thresholds)
-    last = tuple(b[-1:] for b in here.thresholds)
-    outside = surfaces.measure(here.gaps[-1:], last, integrated=1)
-
-    def whole(inner: jax.Array, outer: jax.Array) -> jax.Array:
-        return inner[..., :-1] @ bulk.area + bulk.around * outer[..., 0]
-
-    parts = whole(inside.parts, outside.parts)
-    pressure = jnp.sum(inside.parts, axis=0)[:-1]
+    separation = jnp.asarray(here.separation)
+    state, pressure = bulk.contact.on_rings(separation, here.gaps, here.thresholds, bulk.size)
     bent = pressure @ (bulk.area * (bulk.rows[:-1] @ pressure))
     retarded = here.retarded @ (bulk.area * (bulk.rows[:-1] @ here.retarded))
-    stored = whole(inside.energy, outside.energy) + 0.5 * (bent + bulk.excess * retarded)
-    force = jnp.sum(parts)
-    attraction = force - elastic_part(bulk.contact.components, parts)
-    central = jnp.asarray(mesh.axis) @ here.gaps[:-1]
-    head = [
-        force,
-        attraction,
-        stored,
-        central,
-        whole(inside.contacting, outside.contacting),
-        bulk.size,
-    ]
-    bonds = whole(inside.bonds, outside.bonds)
-    return jnp.concatenate([jnp.stack(head), bonds, parts])
+    stored = state.stored + 0.5 * (bent + bulk.excess * retarded)
+    return rows_of(state._replace(stored=stored))

@@ -16,8 +16,7 @@ from ...interface.rough_planes import Memory as Thresholds
 from ...numerics.compilation import Program
 from ..curve_table import CENTRAL, STORED, quantities
 from ..record import Body
-from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples
-from ..stepped_record import SteppedPhase
+from ..stepped_phase import AT_REST, FAILED, LEFT, TURNED, Samples, SteppedPhase
 from .ring_menisci import FreeFlight
 from .ring_step import RingStep, step
 from .ring_system import Freed, RingState, freed

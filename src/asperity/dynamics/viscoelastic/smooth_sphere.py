@@ -12,8 +12,8 @@ from ...contact.viscoelastic import Relaxation
 from ...halfspace.viscoelastic_paraboloid import Solid
 from ...laws import Hertz
 from ..curve_table import CENTRAL, CONTACTING, FORCE, STORED, quantities
-from ..stepped_phase import Samples
-from ..stepped_record import Ledger, SteppedPhase
+from ..stepped_phase import Samples, SteppedPhase
+from ..stepped_record import Ledger
 from .sphere_motion import Bounce, Track
 
 

@@ -76,11 +76,6 @@ class AdhesiveThorntonNing(eqx.Module):
     yield_pressure: Real = quantity()
 
     @property
-    def yield_radius(self) -> jax.Array:
-        """Contact radius at which yield begins [m]."""
-        return self._yield_root**2
-
-    @property
     def yield_overlap(self) -> jax.Array:
         """Overlap at which yield begins [m]; below 0 if it yields on touching."""
         root = self._yield_root
@@ -124,22 +119,6 @@ class AdhesiveThorntonNing(eqx.Module):
     def energy(self, gap: jax.Array, deepest: jax.Array) -> jax.Array:
         """Energy [J] of the bonded contact that unloading gives back."""
         return self.tip(deepest).bonded_energy(gap + self.residual(deepest))
-
-    def breaking_gap(self, deepest: jax.Array) -> jax.Array:
-        """Gap [m] at which the bond breaks on unloading."""
-        return self.tip(deepest).breaking_gap - self.residual(deepest)
-
-    def forming_gap(self, deepest: jax.Array) -> jax.Array:
-        """Gap [m] at which the flattened tip touches again and bonds."""
-        return -self.residual(deepest)
-
-    def formation_loss(self, deepest: jax.Array) -> jax.Array:
-        """Energy [J] lost when the bond forms; at first touch that of a deepest overlap 0."""
-        return self.tip(deepest).formation_loss
-
-    def rupture_loss(self, deepest: jax.Array) -> jax.Array:
-        """Energy [J] lost when the bond breaks."""
-        return self.tip(deepest).rupture_loss
 
     def dissipated(self, deepest: jax.Array) -> jax.Array:
         """Energy [J] that plastic flow has taken, 0 until yield."""

@@ -54,11 +54,6 @@ class ThorntonNing(PlasticContact):
     def exponent(self, deepest: jax.Array) -> jax.Array:
         return jnp.full_like(deepest, 1.5, dtype=jnp.float64)
 
-    def flattened_radius(self, deepest: jax.Array) -> jax.Array:
-        """Radius [m] of the surface while it is unloaded, R_p."""
-        x = jnp.maximum(deepest / self.yield_overlap, 1.0)
-        return self.radius * x**1.5 / (1.5 * x - 0.5)
-
     @property
     def _yield_force(self) -> jax.Array:
         return self._stiffness * self.yield_overlap**1.5

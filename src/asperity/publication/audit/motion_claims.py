@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from math import log
+
 import numpy as np
 from scipy.special import ndtr
 
-from ...dynamics.gas_film import gas_decrement
+from ...dynamics import Body
+from ...dynamics.damped_summits import rebound
+from ...dynamics.gas_film import SqueezeFilm
+from ...laws.law import as_float64
 from ...materials.gases import ATMOSPHERE, GASES
 from ...materials.liquids import ROOM_TEMPERATURE
 from ...results.summary import amount
@@ -90,15 +95,11 @@ def _gas(evidence: Evidence) -> Claim:
     air = GASES["air"]
     slip = air.slip_length(ATMOSPHERE, ROOM_TEMPERATURE)
     path = air.free_path(ATMOSPHERE, ROOM_TEMPERATURE)
-    gas, _ = gas_decrement(
-        release=unknowns.release_separation,
-        rebound=edge,
-        mass=evidence.inputs.mass,
-        gravity=evidence.gravity,
-        radius=evidence.inputs.radius,
-        viscosity=air.viscosity(ROOM_TEMPERATURE),
-        slip_length=slip,
-    )
+    film = SqueezeFilm(evidence.inputs.radius, air.viscosity(ROOM_TEMPERATURE), slip)
+    release = unknowns.release_separation
+    body = Body(evidence.inputs.mass, evidence.gravity, release, drags=(film,))
+    _, apex = rebound(body, as_float64(edge))
+    gas = log((release - edge) / (float(apex) - edge))
     return Claim(
         "Surface forces and gravity are all that acts on the sphere (section 3.5)",
         "-",
