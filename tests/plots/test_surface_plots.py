@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import cache
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -58,15 +59,27 @@ SURFACES = {
 }
 
 
-def described(folder: Path, name: str, **options: str) -> Any:
-    write_topography(SURFACES[name], folder / name, force=True)
-    prepared = Preparation(missing="keep", **options)
-    return measured(str(folder / name), Treatment(preparation=prepared))
+@pytest.fixture(scope="module", name="described")
+def _described(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Any]:
+    """A surface by its name, prepared and described once."""
+    folder = tmp_path_factory.mktemp("surfaces")
+
+    @cache
+    def described(name: str) -> Any:
+        write_topography(SURFACES[name], folder / name)
+        return measured(str(folder / name), Treatment(preparation=Preparation(missing="keep")))
+
+    return described
 
 
-@pytest.fixture
-def two(tmp_path: Path) -> Pair:
-    return pair(described(tmp_path, "gaussian.nc"), described(tmp_path, "with spikes.nc"))
+@pytest.fixture(scope="module", name="page")
+def _page(described: Callable[[str], Any]) -> Callable[[str], Figure]:
+    return cache(lambda name: surface.of_surface(described(name)))
+
+
+@pytest.fixture(scope="module")
+def two(described: Callable[[str], Any]) -> Pair:
+    return pair(described("gaussian.nc"), described("with spikes.nc"))
 
 
 def assert_apart(figure: Figure) -> None:
@@ -91,58 +104,48 @@ def assert_apart(figure: Figure) -> None:
 
 
 @pytest.mark.parametrize("name", SURFACES)
-def test_letters_of_the_page_lie_within_it_and_apart(name: str, tmp_path: Path):
-    assert_apart(surface.of_surface(described(tmp_path, name)))
+def test_letters_of_the_page_lie_within_it_and_apart(name: str, page: Callable[[str], Figure]):
+    assert_apart(page(name))
 
 
 def test_letters_of_the_composites_page_lie_within_it_and_apart(two: Pair):
     assert_apart(surface.of_composite(two))
 
 
-def test_the_page_is_170_mm_wide_and_fits_on_paper(tmp_path: Path):
-    page = surface.of_surface(described(tmp_path, "gaussian.nc"))
-    wide, tall = page.get_size_inches() * 25.4
+def test_the_page_is_170_mm_wide_fits_on_paper_and_is_true_to_scale(page: Callable[[str], Figure]):
+    wide, tall = page("gaussian.nc").get_size_inches() * 25.4
     assert wide == pytest.approx(style.PAGE)
     assert tall < 250.0
+    box = page("gaussian.nc").axes[0].get_window_extent()
+    assert box.width / box.height == pytest.approx(96.0 / 64.0, rel=1e-6)
 
 
-def test_axes_of_the_page_have_units(tmp_path: Path):
-    page = surface.of_surface(described(tmp_path, "with a hole.nc"))
-    labels = [text for axes in page.axes for text in (axes.get_xlabel(), axes.get_ylabel())]
+def test_axes_of_the_page_have_units_and_missing_pixels_are_told(page: Callable[[str], Figure]):
+    axes = page("with a hole.nc").axes
+    labels = [text for one in axes for text in (one.get_xlabel(), one.get_ylabel())]
     shown = [text for text in labels if text]
     assert len(shown) == 11  # five panels and the colour bar
     assert all(re.search(r"\[.+\]", text) for text in shown)
+    assert any("68 pixels missing" in text.get_text() for text in axes[0].texts)
 
 
-def test_the_same_surface_gives_the_same_bytes(tmp_path: Path):
-    found = described(tmp_path, "gaussian.nc")
+def test_the_same_surface_gives_the_same_bytes(described: Callable[[str], Any]):
+    found = described("tiny.nc")
     first = surface.files(found)
     assert first == surface.files(found)
     assert set(first) == {"surface.png", "surface.svg"}
     assert b"summits" in first["surface.svg"]
 
 
-def test_the_scale_bar_has_the_length_beside_it(tmp_path: Path):
-    page = surface.of_surface(described(tmp_path, "strip.nc"))
-    (bar,) = page.axes[0].lines
-    note, scale = [text.get_text() for text in page.axes[0].texts]
+def test_the_scale_bar_has_the_length_beside_it(page: Callable[[str], Figure]):
+    axes = page("strip.nc").axes[0]
+    (bar,) = axes.lines
+    note, scale = [text.get_text() for text in axes.texts]
     length, unit = note.split()
     share = float(np.diff(bar.get_xdata())[0])
     assert unit == "µm"
     assert share * 400.0 == pytest.approx(float(length))
     assert "not to scale" in scale
-
-
-def test_a_map_is_drawn_true_to_scale(tmp_path: Path):
-    page = surface.of_surface(described(tmp_path, "gaussian.nc"))
-    box = page.axes[0].get_window_extent()
-    assert box.width / box.height == pytest.approx(96.0 / 64.0, rel=1e-6)
-
-
-def test_missing_pixels_are_told_on_the_map(tmp_path: Path):
-    page = surface.of_surface(described(tmp_path, "with a hole.nc"))
-    texts = [text.get_text() for text in page.axes[0].texts]
-    assert any("68 pixels missing" in text for text in texts)
 
 
 @pytest.mark.parametrize(
@@ -216,7 +219,7 @@ def test_figure_3_is_the_convolution_beside_the_gaussian_of_its_rms(two: Pair):
     assert np.trapezoid(whole[1], whole[0]) == pytest.approx(1.0, abs=0.02)
 
 
-def test_figure_2_of_a_large_map_shows_pixels_evenly_left_out(two: Pair):
+def test_figure_2_of_a_map_has_a_height_at_each_pixel_of_its_grid(two: Pair):
     drawing = surface_figures.heights(two)
     rows, columns = (int(drawing.about[key]) for key in ("rows", "columns"))
     ((x, y, z),) = drawing.series.values()
