@@ -2,26 +2,19 @@
 
 from math import pi
 
-import numpy as np
-
-from asperity._jax import jnp
 from asperity.laws import LennardJones
 from figures import Figure, misses
+from validation.known import largest_pull
 
 RADIUS, W, SPACING = 1e-6, 0.05, 3e-10
 
 
-def largest_pull(tabor):
-    """Over pi w R, by three grids, each around the minimum of the one before."""
+def pull_off(tabor):
+    """Over pi w R."""
     modulus = W * (RADIUS / (tabor * SPACING) ** 3) ** 0.5
     law = LennardJones(RADIUS, modulus, W, SPACING)
-    low, high = -20.0 * SPACING, float(law.breaking_gap)
-    for _ in range(3):
-        gap = np.linspace(low, high, 2001)
-        pull = -np.asarray(law.bonded_force(jnp.asarray(gap)))
-        k = int(np.argmax(pull))
-        low, high = gap[max(k - 1, 0)], gap[min(k + 1, 2000)]
-    return float(pull.max()) / (pi * W * RADIUS)
+    found = largest_pull(law.bonded_force, -20.0 * SPACING, float(law.breaking_gap))
+    return found / (pi * W * RADIUS)
 
 
 LIMITS = (
@@ -33,7 +26,7 @@ LIMITS = (
 def figures():
     return [
         Figure(f"Lennard-Jones pressure, mu {tabor:g}: pull-off", source, known,
-               largest_pull(tabor), "pi w R", limit)
+               pull_off(tabor), "pi w R", limit)
         for tabor, known, source, limit in LIMITS
     ]  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from math import pi, radians, sqrt
 from typing import NamedTuple
@@ -158,6 +159,16 @@ def field(name: str) -> Field:
     )
 
 
+def surfaces(name: str, of_radius: Callable = law) -> tuple[Interface, Interface]:
+    """Interfaces of the summits, and of their Gaussian fit."""
+    found = field(name)
+    gaussian = Gaussian(found.scatter, float(found.heights.mean()))
+    return (
+        measured_surface(of_radius, found.heights, found.radii, found.density, radius=found.radius),
+        Interface(of_radius(found.radius), gaussian, found.density),
+    )
+
+
 def expected(known: Nayak, power: float, exponent: float, separation: float) -> float:
     """Mean of R^power (z - h)^exponent over Nayak's summits that stand above h.
 
@@ -182,11 +193,8 @@ def beside(name: str) -> np.ndarray:
     Then the same of Nayak's summits, over the Gaussian fit of his mean, rms and radius.
     """
     found = field(name)
-    mean = float(found.heights.mean())
-    places = mean + found.scatter * np.array(PLACES)
-    summits = measured_surface(law, found.heights, found.radii, found.density, radius=found.radius)
-    fitted = Interface(law(found.radius), Gaussian(found.scatter, mean), found.density)
-    ours = [np.asarray(pressures(each, jnp.asarray(places))) for each in (summits, fitted)]
+    places = jnp.asarray(found.heights.mean() + found.scatter * np.array(PLACES))
+    ours = [np.asarray(pressures(each, places)) for each in surfaces(name)]
     known = found.known
     level = known.mean_height + known.rms_height * np.array(PLACES)
     plain = Interface(law(known.radius), Gaussian(known.rms_height, known.mean_height), 1.0)
@@ -233,18 +241,17 @@ def _bounce(surface):
     return 1.0 - measure(motion, body).restitution[0] ** 2
 
 
-@cache
 def impact(name: str) -> float:
     """Share of energy that a rigid sphere of 20 um loses at 5 mm/s, over that on the fit."""
-    found = field(name)
-    mean = float(found.heights.mean())
-    fitted = Interface(law(found.radius), Gaussian(found.scatter, mean), found.density)
-    summits = measured_surface(law, found.heights, found.radii, found.density, radius=found.radius)
-    loss = [float(_bounce(each)) for each in (summits, fitted)]
+    loss = [float(_bounce(each)) for each in surfaces(name)]
     return loss[0] / loss[1]
 
 
-@cache
+@eqx.filter_jit
+def _torn(surface, places):
+    return jnp.min(surface.pressure(places, surface.saturated_memory(places), 1))
+
+
 def pull_off(name: str, modulus: float) -> float:
     """Largest pull of the torn surface on a rigid sphere, over that of the Gaussian fit."""
 
@@ -252,14 +259,9 @@ def pull_off(name: str, modulus: float) -> float:
         return Hertz(radius, modulus) + law(radius).parts[1] + law(radius).parts[2]
 
     found = field(name)
-    mean = float(found.heights.mean())
-    fitted = Interface(soft(found.radius), Gaussian(found.scatter, mean), found.density)
-    summits = measured_surface(soft, found.heights, found.radii, found.density, radius=found.radius)
-    places = jnp.asarray(mean + found.scatter * np.linspace(-3.0, 8.0, 600))
-    torn = eqx.filter_jit(
-        lambda each: jnp.min(each.pressure(places, each.saturated_memory(places), 1))
-    )
-    return float(torn(summits) / torn(fitted))
+    places = jnp.asarray(found.heights.mean() + found.scatter * np.linspace(-3.0, 8.0, 600))
+    summits, fitted = (float(_torn(each, places)) for each in surfaces(name, soft))
+    return summits / fitted
 
 
 @cache

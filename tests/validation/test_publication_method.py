@@ -81,7 +81,6 @@ def test_with_those_and_an_edge_at_3_both_stick_at_the_first_impact(method, case
     assert ours.measures["captured"]
 
 
-@cache
 def disc():
     """A uniform pressure on a disc of radius a displaces its centre by 2 p a/E*."""
     model = loaded().of_problem(build(resolve(asperity.load("published"))), points=128)

@@ -1,6 +1,5 @@
 """Force on a rigid rough sphere: the integral of F_n over the paraboloid."""
 
-from functools import cache
 from math import pi
 
 import numpy as np
@@ -39,7 +38,6 @@ TABLE = {
 }
 
 
-@cache
 def forces(reduced):
     """F_5/2 and F_1 from the sourced table, each with its prefactor."""
     contact = RigidContact(
@@ -61,6 +59,5 @@ def figures():
     return [figure for reduced in TABLE for figure in forces(reduced)]
 
 
-@pytest.mark.parametrize("reduced", TABLE)
-def test_force_of_hertz_and_dmt_asperities(reduced):
-    assert not misses(forces(reduced))
+def test_known_figures_are_met():
+    assert misses(figures()) == []

@@ -1,21 +1,16 @@
 """Pull-off of a plane with Gaussian asperity heights: JKR and DMT asperities."""
 
-from functools import cache
 from math import pi
-from pathlib import Path
 
 import equinox as eqx
-import numpy as np
-import pytest
 
-from asperity._jax import jnp
 from asperity.interface.interface import Interface
 from asperity.laws import Dmt, Hertz, Jkr
 from asperity.surfaces.heights import Gaussian
-from figures import Figure
+from figures import Figure, misses
+from validation.known import largest_pull, rows
 
-FILE = Path(__file__).parent.parent / "data" / "rough_asperity_pull_off.csv"
-ROWS = np.genfromtxt(FILE, delimiter=",", comments="#", skip_header=6, dtype=None, encoding="utf8")
+ROWS = rows("rough_asperity_pull_off", 6, 8, dtype=None, encoding="utf8")
 RADIUS, E, W = 1e-6, 5e9, 0.05
 
 
@@ -25,15 +20,10 @@ def pressures(interface, separations, memory):
 
 
 def largest_tension(interface, sigma, span, torn):
-    """Of one asperity's mean force [N], by two grids, the second around the first's minimum."""
+    """Of one asperity's mean force [N]."""
     memory = interface.saturated_memory() if torn else interface.initial_memory()
     low, high = -3.0 * sigma - 6.0 * span, 8.0 * sigma + 3.0 * span
-    for _ in range(3):
-        h = np.linspace(low, high, 601)
-        p = np.asarray(pressures(interface, jnp.asarray(h), memory))
-        k = int(np.argmin(p))
-        low, high = h[max(k - 1, 0)], h[min(k + 1, 600)]
-    return -float(p.min())
+    return largest_pull(lambda h: pressures(interface, h, memory), low, high)
 
 
 NAMES = {
@@ -43,7 +33,6 @@ NAMES = {
 }
 
 
-@cache
 def figure(model, roughness, ratio):
     if model == "gw_dmt":
         span = (RADIUS * W**2 / E**2) ** (1.0 / 3.0)
@@ -63,10 +52,5 @@ def figures():
     return [figure(*row) for row in ROWS.tolist()]
 
 
-@pytest.mark.parametrize("row", ROWS.tolist(), ids=str)
-def test_pull_off_per_asperity(row):
-    assert figure(*row).holds
-
-
-def test_all_ratios_are_read():
-    assert len(ROWS) == 8
+def test_known_figures_are_met():
+    assert misses(figures()) == []

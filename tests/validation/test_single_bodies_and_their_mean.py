@@ -107,6 +107,7 @@ GAS = FAST.replace("[impact]", '[impact]\nrelease_separation = "30 nm"') + (
 )
 
 
+@pytest.mark.long
 def test_a_mean_in_air_is_that_of_many_summits():
     """With three times the summits, mass and drag, where the forces of the mean field end.
 
