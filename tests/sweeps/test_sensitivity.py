@@ -78,10 +78,21 @@ def test_indices_of_ishigamis_function_lie_within_their_confidence(seed: int):
         np.testing.assert_allclose(index.value, share, atol=0.02)
 
 
-def test_axes_that_add_up_share_the_variance_by_their_squares():
-    found = by(study(), lambda x, y, z: 3.0 * x + 2.0 * y + z)
-    for index in (found.first, found.total):
-        np.testing.assert_allclose(index.value, np.array([9.0, 4.0, 1.0]) / 14.0, atol=0.01)
+@pytest.mark.parametrize(
+    ("law", "measure", "first", "total"),
+    [
+        (lambda x, y, z: 3.0 * x + 2.0 * y + z, "restitution", *2 * (np.array([9, 4, 1]) / 14.0,)),
+        # x y on [0, 1]^2: V = 1/9 - 1/16, V_x = V_y = (1/4) / 12.
+        (lambda x, y, z: x * y, "restitution", [3.0 / 7.0, 3.0 / 7.0, 0.0], [4 / 7, 4 / 7, 0.0]),
+        (lambda x, y, z: (x > 0.5).astype("int8"), "captured", *2 * ([1.0, 0.0, 0.0],)),
+    ],
+    ids=["a sum", "a product", "whether a body sticks"],
+)
+def test_indices_are_those_of_closed_forms(law, measure: str, first, total):
+    found = by(study(), law, measure)
+    np.testing.assert_allclose(found.first.value, first, atol=0.01)
+    np.testing.assert_allclose(found.total.value, total, atol=0.01)
+    assert not found.total.value[np.array(total) == 0.0].any()
 
 
 def test_an_axis_on_a_log_scale_is_drawn_evenly_over_its_logarithm():
@@ -89,21 +100,6 @@ def test_an_axis_on_a_log_scale_is_drawn_evenly_over_its_logarithm():
     by(study(), lambda x, y, z: seen.append(z) or x + z)
     drawn = np.sort(np.concatenate(seen))
     np.testing.assert_allclose(drawn, np.linspace(0.0, 1.0, drawn.size), atol=2e-3)
-
-
-def test_a_product_has_indices_that_its_means_give():
-    # x y on [0, 1]^2: V = 1/9 - 1/16, V_x = V_y = (1/4) / 12.
-    found = by(study(), lambda x, y, z: x * y)
-    variance, alone = 1.0 / 9.0 - 1.0 / 16.0, 0.25 / 12.0
-    np.testing.assert_allclose(found.first.value[:2], alone / variance, atol=0.02)
-    np.testing.assert_allclose(found.total.value[:2], 1.0 - alone / variance, atol=0.02)
-    assert found.total.value[2] == 0.0
-
-
-def test_whether_a_body_sticks_has_indices_too():
-    found = by(study(), lambda x, y, z: (x > 0.5).astype("int8"), "captured")
-    np.testing.assert_allclose(found.first.value, [1.0, 0.0, 0.0], atol=0.02)
-    np.testing.assert_allclose(found.total.value, [1.0, 0.0, 0.0], atol=0.02)
 
 
 def test_cases_are_size_times_axes_and_two_and_the_same_each_time():
@@ -153,6 +149,10 @@ REFUSED = {
         study(axes={**AXES, "adhesion.model": '{values = ["dmt", "none"]}'}),
         "adhesion.model",
     ),
+    "a grid": (
+        study(axes={"capillary.humidity": "{values = [0.1, 0.5]}"}, sample="\n"),
+        r"\[sample\] table must be given",
+    ),
 }
 
 
@@ -161,17 +161,6 @@ def test_studies_without_meaning_for_indices_are_refused(what: str):
     one, rule = REFUSED[what]
     with pytest.raises(InputError, match=rule):
         sensitivity(one, "restitution", lambda values: pytest.fail("nothing may be computed"))
-
-
-def test_a_grid_is_refused():
-    steps = {"capillary.humidity": "{from = 0.1, to = 0.5, steps = 4}"}
-    rows = "\n".join(f'"{key}" = {text}' for key, text in steps.items())
-    grid = parse(f'schema = 1\nbase = "published"\n[axes]\n{rows}\n')
-    with pytest.raises(InputError, match=r"\[sample\] table must be given"):
-        sensitivity(grid, "restitution", dict)
-
-
-def test_an_unknown_measure_is_refused_with_the_one_meant():
     with pytest.raises(InputError, match="did you mean 'restitution'"):
         sensitivity(study(), "restitition", dict)
 
@@ -214,8 +203,7 @@ def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_command_prints_a_table_and_writes_bars_and_numbers(
     study_file: Path, capsys: pytest.CaptureFixture[str]
 ):
-    options = {"measure": "restitution", "force": False, "quiet": False}
-    command(study_file.name, output=None, as_json=False, **options)
+    command(study_file.name, "restitution")
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "restitution: share of its variance that each axis makes, 1280 cases"
     assert [line.split()[0] for line in lines[3:6]] == list(AXES)
@@ -223,8 +211,8 @@ def test_the_command_prints_a_table_and_writes_bars_and_numbers(
     names = {"sensitivity.png", "sensitivity.svg", "sensitivity.json"}
     assert {path.name for path in folder.iterdir()} == names
     with pytest.raises(InputError, match="--force"):
-        command(study_file.name, output=None, as_json=False, **options)
-    command(study_file.name, output=None, as_json=True, **options)
+        command(study_file.name, "restitution")
+    command(study_file.name, "restitution", as_json=True)
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((folder / "sensitivity.json").read_text())
     found = [printed["axes"][key]["first"]["index"] for key in AXES]
@@ -234,7 +222,6 @@ def test_the_command_prints_a_table_and_writes_bars_and_numbers(
 def test_the_command_names_the_file_of_a_study_without_sample(study_file: Path):
     text = study_file.read_text().partition("[sample]")[0].replace('"}', '", steps = 2}')
     study_file.write_text(text.replace("0.5}", "0.5, steps = 2}"))
-    options = {"measure": "restitution", "force": False, "quiet": True, "as_json": True}
     with pytest.raises(InputError, match="sample") as caught:
-        command(study_file.name, output=None, **options)
+        command(study_file.name, "restitution", as_json=True, quiet=True)
     assert caught.value.file == "sum.toml"

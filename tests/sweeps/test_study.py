@@ -1,6 +1,7 @@
 """A study: which cases it holds, in which tasks, and why one of them fails."""
 
 import itertools
+import json
 import math
 
 import numpy as np
@@ -30,6 +31,13 @@ def test_grid_holds_every_value_with_every_other_and_the_first_axis_is_slowest()
     assert values[RMS] == pytest.approx(columns[0], rel=1e-15)
     assert [v.tolist() for v in values.values()][1:] == columns[1:]
     assert [v.dtype for v in values.values()] == [np.float64, np.float64, object, np.bool_]
+    changes = {
+        RMS: "12 nm",
+        HUMIDITY: 0.3,
+        "adhesion.model": "none",
+        "publication.attraction_during_retraction_only": False,
+    }
+    assert found.case(59) == builtin("published").replace(changes)
 
 
 @given(st.integers(0, 60), st.integers(0, 60))
@@ -38,17 +46,6 @@ def test_part_of_a_grid_is_that_part_of_the_whole(one, other):
     whole, part = found.values(0, 60), found.values(start, stop)
     for key in whole:
         assert part[key].tolist() == whole[key][start:stop].tolist()
-
-
-def test_case_of_a_grid_is_the_base_case_with_the_values_as_in_a_file():
-    found = study(GRID)
-    changes = {
-        RMS: "12 nm",
-        HUMIDITY: 0.3,
-        "adhesion.model": "none",
-        "publication.attraction_during_retraction_only": False,
-    }
-    assert found.case(59) == builtin("published").replace(changes)
 
 
 @given(
@@ -73,7 +70,14 @@ def test_range_has_exact_ends_and_even_steps(low, factor, steps, scale):
 
 
 def test_values_of_a_long_range_are_those_of_its_formula_without_being_held():
-    axis = study(f'"{HUMIDITY}" = {{from = 0, to = 1, steps = 1_000_000_000}}').axes[0]
+    found = study(
+        f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 1_000_001}}\n'
+        f'"{HUMIDITY}" = {{from = 0, to = 1, steps = 1_000_000_000}}'
+    )
+    assert found.size == 1_000_000_000 * 1_000_001
+    last = found.values(found.size - 1, found.size)
+    assert {key: value.tolist() for key, value in last.items()} == {RMS: [1.2e-8], HUMIDITY: [1.0]}
+    axis = found.axes[1]
     ends = np.array([0, 1, 250_000_000, 999_999_999])
     assert axis.at(ends).tolist() == pytest.approx([0, 1e-9, 0.25, 1.0], rel=1e-8)
     assert axis.at(ends)[-1] == 1.0
@@ -94,14 +98,6 @@ def test_value_of_an_axis_is_the_float_of_a_case_file(text):
     assert found.case(0).impact.release_separation == expected
 
 
-def test_a_listed_whole_number_stays_whole_beside_an_equal_float():
-    floats = study(f'"{HUMIDITY}" = {{values = [1.0]}}')
-    whole = study('"numerics.max_impacts" = {values = [1]}')
-    assert floats.values(0, 1)[HUMIDITY].dtype == np.float64
-    assert whole.values(0, 1)["numerics.max_impacts"].dtype == np.int64
-    assert load(whole.case(0).toml()) == whole.case(0)
-
-
 def test_whole_numbers_stay_whole_and_differ():
     found = study(
         '"numerics.max_impacts" = {from = 1, to = 1000, steps = 4, scale = "log"}\n'
@@ -112,14 +108,11 @@ def test_whole_numbers_stay_whole_and_differ():
     assert values["numerics.max_impacts"][::3].tolist() == [1, 10, 100, 1000]
     assert values["numerics.rings"][:3].tolist() == [16, 18, 20]
     assert found.case(11).numerics.max_impacts == 1000
-
-
-def test_cases_are_counted_exactly_and_never_made():
-    line = f'"{RMS}" = {{from = "8 nm", to = "12 nm", steps = 1_000_000_000}}'
-    found = study(line + f'\n"{HUMIDITY}" = {{from = 0, to = 1, steps = 1_000_001}}')
-    assert found.size == 1_000_000_000 * 1_000_001
-    last = found.values(found.size - 1, found.size)
-    assert {key: value.tolist() for key, value in last.items()} == {RMS: [1.2e-8], HUMIDITY: [1.0]}
+    # Listed ones too, beside an equal number of the axis before.
+    whole = study('"numerics.max_impacts" = {values = [1]}')
+    assert study(f'"{HUMIDITY}" = {{values = [1.0]}}').values(0, 1)[HUMIDITY].dtype == np.float64
+    assert whole.values(0, 1)["numerics.max_impacts"].dtype == np.int64
+    assert load(whole.case(0).toml()) == whole.case(0)
 
 
 def test_number_of_no_case_is_refused():
@@ -131,33 +124,23 @@ def test_number_of_no_case_is_refused():
         found.case(60)
 
 
-def test_value_that_breaks_a_rule_with_another_fails_its_case_alone():
-    found = study('"impact.gravity" = {values = ["9.81 m/s^2", "0 m/s^2"]}')
-    assert found.warnings == []
-    assert found.case(0) == builtin("published")
-    with pytest.raises(InputError) as caught:
-        found.case(1)
-    assert caught.value.key == "impact.gravity"
-    assert str(caught.value).startswith("impact.gravity: `gravity` must be positive where there is")
-
-
 @pytest.mark.parametrize(
-    ("key", "text", "changes"),
+    ("key", "value"),
     [
-        ("impact.gravity", '"0 m/s^2"', {"impact.gravity": "0 m/s^2"}),
-        ("adhesion.model", '"jkr"', {"adhesion.model": "jkr"}),
-        ("body.youngs_modulus", '"70 GPa"', {"body.youngs_modulus": "70 GPa"}),
-        ("body.material", '"silicaa"', {"body.material": "silicaa"}),
-        ("gas.pressure", '"1 kPa"', {"gas.pressure": "1 kPa"}),
-        ("capillary.contact_angle", '"120 deg"', {"capillary.contact_angle": "120 deg"}),
-        ("capillary.formation_time", '"1 us"', {"capillary.formation_time": "1 us"}),
-        ("roughness.degree", "2", {"roughness.degree": 2}),
+        ("impact.gravity", "0 m/s^2"),
+        ("adhesion.model", "jkr"),
+        ("body.youngs_modulus", "70 GPa"),
+        ("body.material", "silicaa"),
+        ("gas.pressure", "1 kPa"),
+        ("capillary.contact_angle", "120 deg"),
+        ("capillary.formation_time", "1 us"),
+        ("roughness.degree", 2),
     ],
 )
-def test_case_fails_for_the_reason_that_its_file_would(key, text, changes):
+def test_case_fails_for_the_reason_that_its_file_would(key, value):
     with pytest.raises(InputError) as wanted:
-        builtin("published").replace(changes)
-    found = study(f'"{key}" = {{values = [{text}]}}')
+        builtin("published").replace({key: value})
+    found = study(f'"{key}" = {{values = [{json.dumps(value)}]}}')
     with pytest.raises(InputError) as caught:
         found.case(0)
     assert (str(caught.value), caught.value.key) == (str(wanted.value), wanted.value.key)
@@ -166,37 +149,22 @@ def test_case_fails_for_the_reason_that_its_file_would(key, text, changes):
 def test_study_none_of_whose_cases_can_be_computed_says_so_beforehand():
     (warning,) = study('"gas.pressure" = {values = ["1 kPa", "2 kPa"]}').warnings
     assert warning.startswith("no case of those tried (2) can be computed: gas.name: ")
+    some = study('"impact.gravity" = {values = ["9.81 m/s^2", "0 m/s^2"]}')
+    assert some.warnings == []
+    assert some.case(0) == builtin("published")
 
 
 def test_table_that_the_base_lacks_is_made_of_the_axes():
-    found = study(
-        '"gas.name" = {values = ["air"]}\n"gas.temperature" = {values = ["20 degC"]}\n'
-        '"gas.pressure" = {values = ["1 kPa", "100 kPa"]}\n'
-        '"gas.cutoff_separation" = {values = ["1 nm"]}',
-        'base = "published-exact"',
-    )
-    assert found.case(1).gas.pressure == 1e5
-    gas = {
-        "name": "air",
-        "pressure": "100 kPa",
-        "temperature": "20 degC",
-        "cutoff_separation": "1 nm",
-    }
+    gas = {"name": "air", "temperature": "20 degC", "pressure": "100 kPa"}
+    lines = "\n".join(f'"gas.{key}" = {{values = ["{value}"]}}' for key, value in gas.items())
+    found = study(lines.replace('["100 kPa"', '["1 kPa", "100 kPa"'), EXACT)
     assert found.case(1) == builtin("published-exact").replace({"gas": gas})
 
 
 def test_material_of_the_base_can_vary():
-    text = builtin("published-exact").replace(
-        {
-            "body.material": "my glass",
-            "materials": {
-                "my glass": {"youngs_modulus": "70 GPa", "poisson": 0.2, "density": "2500 kg/m^3"}
-            },
-        }
-    )
-    base = "\n".join(
-        f"[base.{line[1:]}" if line.startswith("[") else line for line in text.toml().splitlines()
-    )
+    glass = {"youngs_modulus": "70 GPa", "poisson": 0.2, "density": "2500 kg/m^3"}
+    changes = {"body.material": "my glass", "materials": {"my glass": glass}}
+    base = builtin("published-exact").replace(changes).toml().replace("\n[", "\n[base.")
     found = parse(
         f'[axes]\n"materials.my glass.density" = {{values = ["2 g/cm^3"]}}\n[base]\n{base}'
     )
@@ -242,36 +210,33 @@ def test_a_block_is_a_part_of_the_grid_whose_cases_follow_each_other(shape, most
     assert begun == numbers.size
 
 
-ROUGH = 'base = "published-exact"'
+EXACT = 'base = "published-exact"'
+RIGID = '"counterface.deformation" = {values = ["rigid"]}'
 
 
 @pytest.mark.parametrize(
-    ("line", "head", "size"),
+    ("key", "values", "size"),
     [
-        (f'"{RMS}" = {{values = ["8 nm"]}}', 'base = "published"', 4096),
-        (f'"{RMS}" = {{values = ["8 nm"]}}', ROUGH, 64),
-        ('"counterface.deformation" = {values = ["rigid"]}', ROUGH, 4096),
-        ('"counterface.deformation" = {values = ["rigid", "half-space"]}', ROUGH, 64),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"adhesion.model" = {values = ["dmt", "jkr"]}', ROUGH, 512),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"adhesion.model" = {values = ["dmt", "none"]}', ROUGH, 4096),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"gas.pressure" = {values = ["1 kPa"]}', ROUGH, 512),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"waves.model" = {values = ["hunter"]}', ROUGH, 512),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"waves.model" = {values = ["none"]}', ROUGH, 4096),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"plasticity.model" = {values = ["none", "kogut-etsion"]}', ROUGH, 512),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"capillary.formation_time" = {values = ["1 us"]}', ROUGH, 512),
-        ('"counterface.deformation" = {values = ["rigid"]}\n'
-         '"capillary.formation_time" = {values = ["0 s"]}', ROUGH, 4096),
+        ("adhesion.model", '["dmt", "jkr"]', 512),
+        ("adhesion.model", '["dmt", "none"]', 4096),
+        ("gas.pressure", '["1 kPa"]', 512),
+        ("waves.model", '["hunter"]', 512),
+        ("waves.model", '["none"]', 4096),
+        ("plasticity.model", '["none", "kogut-etsion"]', 512),
+        ("capillary.formation_time", '["1 us"]', 512),
+        ("capillary.formation_time", '["0 s"]', 4096),
     ],
-)  # fmt: skip
-def test_task_has_as_many_cases_as_their_slowest_kind_allows(line, head, size):
-    assert task_size(study(line, head)) == size
+)
+def test_task_on_a_rigid_plane_has_as_many_cases_as_their_slowest_kind_allows(key, values, size):
+    assert task_size(study(f'{RIGID}\n"{key}" = {{values = {values}}}', EXACT)) == size
+
+
+def test_task_on_a_half_space_has_few_cases_and_one_of_the_publication_many():
+    rms = f'"{RMS}" = {{values = ["8 nm"]}}'
+    assert task_size(study(rms)) == 4096
+    assert task_size(study(RIGID, EXACT)) == 4096
+    assert task_size(study(rms, EXACT)) == 64
+    assert task_size(study(RIGID.replace("]", ', "half-space"]'), EXACT)) == 64
 
 
 def test_smooth_body_is_quick_on_a_half_space(tmp_path):

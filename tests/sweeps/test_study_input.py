@@ -29,65 +29,63 @@ def refusal(text, file="map.toml"):
     return message.removeprefix(f"{file}: ")
 
 
+def ranged(key, low, high, steps, more=""):
+    return f'"{key}" = {{from = {low}, to = {high}, steps = {steps}{more}}}'
+
+
+def listed(key, values):
+    return f'"{key}" = {{values = {values}}}'
+
+
+MODEL, RINGS, IMPACTS = "adhesion.model", "numerics.rings", "numerics.max_impacts"
+ALWAYS = "publication.attraction_during_retraction_only"
 AXES = [
-    ('"roughness.rms_heigth" = {values = ["8 nm"]}', '"roughness.rms_heigth" (line 3): must go over'
-     " a key of a case, such as 'body.radius'; got 'roughness.rms_heigth' - did you mean "
-     "'roughness.rms_height'?"),
+    (listed("roughness.rms_heigth", '["8 nm"]'), '"roughness.rms_heigth" (line 3): must go over a '
+     "key of a case, such as 'body.radius'; got 'roughness.rms_heigth' - did you mean "),
     ("humidity = {values = [0.3]}", "did you mean 'capillary.humidity'?"),
-    ('"roughness" = {values = [0.3]}', "must go over a key; `roughness` is a table of a case"),
-    ('"output.directory" = {values = ["a"]}', "must not go over `output.directory`: it is what a "
-     "run writes to its folder, which a study does not do"),
+    (listed("roughness", "[0.3]"), "must go over a key; `roughness` is a table of a case"),
+    (listed("output.directory", '["a"]'), "must not go over `output.directory`: it is what a run"),
     ("schema = {values = [1]}", "must not go over `schema`: it is the version"),
-    ('"roughness.files" = {values = [["a.csv"]]}', "whose value is a list"),
-    ('"materials.glass.density" = {values = ["2 g/cm^3"]}', "which has no [materials.glass]"),
-    (f'"{RMS}" = 3', f'axes."{RMS}" (line 3): must be a table, {{values = [..]}} or {{from = .., '
-     "to = .., steps = ..}; got 3"),
+    (listed("roughness.files", '[["a.csv"]]'), "whose value is a list"),
+    (listed("materials.glass.density", '["2 g/cm^3"]'), "which has no [materials.glass]"),
+    (f'"{RMS}" = 3', "(line 3): must be a table, {values = [..]} or {from = .., to = .., steps ="),
     (f'"{RMS}" = {{}}', "`from` must be given, or `values` in place of `from` and `to`"),
     (f'"{RMS}" = {{from = "8 nm", steps = 3}}', "`to` must be given, or `values`"),
-    (f'"{RMS}" = {{values = ["8 nm"], stpes = 3}}', "`stpes` is not a key of an axis; got 3 - did "
-     "you mean 'steps'?"),
+    (f'"{RMS}" = {{values = ["8 nm"], stpes = 3}}', "`stpes` is not a key of an axis; got 3 - did"),
     (f'"{RMS}" = {{values = ["8 nm"], from = "8 nm"}}', "`from` and `values` exclude each other"),
     (f'"{RMS}" = {{values = ["8 nm"], scale = "log"}}', "`scale` and `values` exclude each other"),
     (f'"{RMS}" = {{values = ["8 nm"], steps = 3}}', "`steps` and `values` exclude each other"),
-    (f'"{RMS}" = {{values = []}}', f"`values` must be a list of 1 to {LIST_LIMIT} values; got []"),
-    (f'"{RMS}" = {{values = "8 nm"}}', "must be a list of 1 to 10000 values; got '8 nm'"),
-    (f'"{HUMIDITY}" = {{values = [{TOO_MANY}]}}', "got 10001 of them"),
-    (f'"{RMS}" = {{values = ["8 nm", "8 nm"]}}', "`values` must differ; got '8 nm' twice"),
-    (f'"{RMS}" = {{values = ["8 nm", "0.008 um"]}}', "must differ; got '8 nm' and '0.008 um'"),
-    (f'"{HUMIDITY}" = {{values = [0, 0.0]}}', "`values` must differ; got 0 and 0.0"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 nm"}}', "`steps`, the number of values, must be given"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 nm", steps = 1}}', "`steps` must lie in [2, 1000000000]; "
-     "got 1"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 nm", steps = 2.5}}', "`steps` must be a whole number"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 nm", steps = true}}', "`steps` must be a whole number"),
-    (f'"{RMS}" = {{from = "8 nm", to = "0.008 um", steps = 3}}', "`to` must be larger than `from` "
-     "('8 nm'); got '0.008 um'"),
-    (f'"{RMS}" = {{from = "8 nm", to = "7 nm", steps = 3}}', "`to` must be larger than `from`"),
-    (f'"{HUMIDITY}" = {{from = 0, to = 1, steps = 3, scale = "log"}}', "`from` must be positive "
-     "with scale = 'log'; got 0"),
-    (f'"{HUMIDITY}" = {{from = 0, to = 1, steps = 3, scale = "logarithmic"}}', "`scale` must be "
-     "one of 'linear' or 'log'; got 'logarithmic'"),
-    (f'"{RMS}" = {{values = ["8 parsecs"]}}', "`rms_height` must lie in [1e-15, 1] m"),
-    (f'"{RMS}" = {{values = [8]}}', "`rms_height` must be text with a number and a unit"),
-    (f'"{RMS}" = {{from = "8 kg", to = "9 nm", steps = 3}}', "`from`: `rms_height` must be a "
-     "length, such as '50 um'; got '8 kg'"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 m", steps = 3}}', "`to`: `rms_height` must lie in"),
-    (f'"{HUMIDITY}" = {{values = [nan]}}', "`humidity` must be finite; got nan"),
-    (f'"{HUMIDITY}" = {{values = [1.2]}}', "`humidity` must lie in [0, 1]; got 1.2"),
-    ('"adhesion.model" = {from = "dmt", to = "jkr", steps = 3}', "`values` must be given for "
-     "`model`, which is no number"),
-    ('"adhesion.model" = {values = ["dmt", "jrk"]}', "got 'jrk' - did you mean 'jkr'?"),
-    ('"adhesion.model" = {values = [3]}', "`model` must be one of 'none', 'auto'"),
-    ('"publication.attraction_during_retraction_only" = {values = ["true"]}',
-     "must be true or false"),
-    ('"roughness.channel" = {values = [1.5]}', "`channel` must be text or a whole number; got 1.5"),
-    ('"numerics.rings" = {values = [16.5]}', "`rings` must be a whole number in [16, 400]"),
-    ('"numerics.rings" = {from = 16, to = 20, steps = 6}', "to be a whole number of its own (from "
-     "16 to 20, linear); got 6"),
-    ('"numerics.max_impacts" = {from = 1, to = 1000, steps = 100, scale = "log"}', "got 100"),
+    (listed(RMS, "[]"), f"`values` must be a list of 1 to {LIST_LIMIT} values; got []"),
+    (listed(RMS, '"8 nm"'), "must be a list of 1 to 10000 values; got '8 nm'"),
+    (listed(HUMIDITY, f"[{TOO_MANY}]"), "got 10001 of them"),
+    (listed(RMS, '["8 nm", "8 nm"]'), "`values` must differ; got '8 nm' twice"),
+    (listed(RMS, '["8 nm", "0.008 um"]'), "must differ; got '8 nm' and '0.008 um'"),
+    (listed(HUMIDITY, "[0, 0.0]"), "`values` must differ; got 0 and 0.0"),
+    (RANGE, "`steps`, the number of values, must be given"),
+    (ranged(RMS, '"8 nm"', '"9 nm"', 1), "`steps` must lie in [2, 1000000000]; got 1"),
+    (ranged(RMS, '"8 nm"', '"9 nm"', 2.5), "`steps` must be a whole number"),
+    (ranged(RMS, '"8 nm"', '"9 nm"', "true"), "`steps` must be a whole number"),
+    (ranged(RMS, '"8 nm"', '"0.008 um"', 3), "`to` must be larger than `from` ('8 nm'); got '0.00"),
+    (ranged(RMS, '"8 nm"', '"7 nm"', 3), "`to` must be larger than `from`"),
+    (ranged(HUMIDITY, 0, 1, 3, ', scale = "log"'), "`from` must be positive with scale = 'log'; g"),
+    (ranged(HUMIDITY, 0, 1, 3, ', scale = "loga"'), "`scale` must be one of 'linear' or 'log'; go"),
+    (listed(RMS, '["8 parsecs"]'), "`rms_height` must lie in [1e-15, 1] m"),
+    (listed(RMS, "[8]"), "`rms_height` must be text with a number and a unit"),
+    (ranged(RMS, '"8 kg"', '"9 nm"', 3), "`from`: `rms_height` must be a length, such as '50 um';"),
+    (ranged(RMS, '"8 nm"', '"9 m"', 3), "`to`: `rms_height` must lie in"),
+    (listed(HUMIDITY, "[nan]"), "`humidity` must be finite; got nan"),
+    (listed(HUMIDITY, "[1.2]"), "`humidity` must lie in [0, 1]; got 1.2"),
+    (ranged(MODEL, '"dmt"', '"jkr"', 3), "`values` must be given for `model`, which is no number"),
+    (listed(MODEL, '["dmt", "jrk"]'), "got 'jrk' - did you mean 'jkr'?"),
+    (listed(MODEL, "[3]"), "`model` must be one of 'none', 'auto'"),
+    (listed(ALWAYS, '["true"]'), "must be true or false"),
+    (listed("roughness.channel", "[1.5]"), "`channel` must be text or a whole number; got 1.5"),
+    (listed(RINGS, "[16.5]"), "`rings` must be a whole number in [16, 400]"),
+    (ranged(RINGS, 16, 20, 6), "to be a whole number of its own (from 16 to 20, linear); got 6"),
+    (ranged(IMPACTS, 1, 1000, 100, ', scale = "log"'), "got 100"),
     (f'{RMS} = {{values = ["8 nm"]}}\n"{RMS}" = {{values = ["8 nm"]}}', "must be given once"),
-    (f'"{RMS}" = {{from = "8 nm", to = "9 nm", steps = 1_000_000_000}}\n"{HUMIDITY}" = '
-     "{from = 0, to = 1, steps = 1_000_000_000}", "at most 2^53 cases; got at least 10^18"),
+    (ranged(RMS, '"8 nm"', '"9 nm"', 10**9) + "\n" + ranged(HUMIDITY, 0, 1, 10**9),
+     "at most 2^53 cases; got at least 10^18"),
 ]  # fmt: skip
 
 
@@ -98,6 +96,7 @@ def test_bad_axis_is_named_with_its_rule_and_value(line, rule):
     assert message.startswith(('axes."', "[axes]"))
 
 
+AXIS = f"[axes]\n{RANGE}{SAMPLE}"
 WHOLE = [
     ("", "a study must have tables; got an empty file"),
     ("a = 1\0", "a study must be text; got a binary file"),
@@ -106,32 +105,27 @@ WHOLE = [
     (f"a = {'9' * LINE_LIMIT}", f"a line must be at most {LINE_LIMIT} characters"),
     ("a = " + "[\n" * 5000, "not TOML: values nested too deeply"),
     ("#\n" * SIZE_LIMIT, "a study must be at most 1 MiB"),
-    (f"[axes]\n{RANGE}{SAMPLE}", "`base`, a built-in case or a case file, must be given"),
+    (AXIS, "`base`, a built-in case or a case file, must be given"),
     (HEAD, "the table [axes] is missing"),
     (f"{HEAD}[axes]", "[axes] must have at least one axis; got none"),
     (f"{HEAD}axes = 3", "`axes` must be a table"),
-    (f"kep = 1\n{HEAD}[axes]\n{RANGE}", "`kep` is not a key or table of a study; got 1 - did you "
-     "mean 'keep'?"),
+    (f"kep = 1\n{HEAD}{AXIS}", "`kep` is not a key or table of a study; got 1 - did you mean 'kee"),
     (f"{HEAD}[axes]\n{RANGE}\n[smaple]\nsize = 3", "did you mean 'sample'?"),
-    (f"schema = 2\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`schema` must be 1, the only version of a study"
-     " that this program knows; got 2, a newer program's"),
-    (f"schema = 1.0\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`schema` must be 1"),
-    (f'{HEAD.replace("published", "publishd")}[axes]\n{RANGE}{SAMPLE}', "`base` must be a built-in "
-     "case (glass-bead, published, published-exact) or a case file beside the study, such as "
-     "'drop.toml'; got 'publishd' - did you mean 'published'?"),
-    (f"base = 3\n[axes]\n{RANGE}{SAMPLE}", "`base` must be a built-in case or a case file"),
-    (f'base = ""\n[axes]\n{RANGE}{SAMPLE}', "`base` must be a built-in case or a case file"),
-    (f'base = "no-such.toml"\n[axes]\n{RANGE}{SAMPLE}', "base: no-such.toml: cannot be read"),
-    (f'[base.body]\nradius = "5 u"\n[axes]\n{RANGE}{SAMPLE}', "base.body.radius: `radius` must be"),
-    (f"[base.bod]\n[axes]\n{RANGE}{SAMPLE}", "base.bod: `bod` is not a key or table of a case - did"
-     " you mean 'body'?"),
-    (f'keep = ["restition"]\n{HEAD}[axes]\n{RANGE}{SAMPLE}', "got 'restition' - did you mean "
-     "'restitution'?"),
-    (f'keep = ["captured", "captured"]\n{HEAD}[axes]\n{RANGE}{SAMPLE}', "got 'captured' twice"),
-    (f'keep = "captured"\n{HEAD}[axes]\n{RANGE}{SAMPLE}', "`keep` must be a list"),
-    (f"keep = [[1]]\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`keep` must be a list of measures' names"),
-    (f"keep_impacts = 0\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`keep_impacts` must lie in [1, 100000]"),
-    (f"motions = 1\n{HEAD}[axes]\n{RANGE}{SAMPLE}", "`motions` must be true or false; got 1"),
+    (f"schema = 2\n{HEAD}{AXIS}", "`schema` must be 1, the only version of a study that this prog"),
+    (f"schema = 1.0\n{HEAD}{AXIS}", "`schema` must be 1"),
+    (f'base = "publishd"\n{AXIS}', "`base` must be a built-in case (glass-bead, published, "
+     "published-exact) or a case file beside the study, such as 'drop.toml'; got 'publishd' - did"),
+    (f"base = 3\n{AXIS}", "`base` must be a built-in case or a case file"),
+    (f'base = ""\n{AXIS}', "`base` must be a built-in case or a case file"),
+    (f'base = "no-such.toml"\n{AXIS}', "base: no-such.toml: cannot be read"),
+    (f'[base.body]\nradius = "5 u"\n{AXIS}', "base.body.radius: `radius` must be"),
+    (f"[base.bod]\n{AXIS}", "base.bod: `bod` is not a key or table of a case - did you mean 'body"),
+    (f'keep = ["restition"]\n{HEAD}{AXIS}', "got 'restition' - did you mean 'restitution'?"),
+    (f'keep = ["captured", "captured"]\n{HEAD}{AXIS}', "got 'captured' twice"),
+    (f'keep = "captured"\n{HEAD}{AXIS}', "`keep` must be a list"),
+    (f"keep = [[1]]\n{HEAD}{AXIS}", "`keep` must be a list of measures' names"),
+    (f"keep_impacts = 0\n{HEAD}{AXIS}", "`keep_impacts` must lie in [1, 100000]"),
+    (f"motions = 1\n{HEAD}{AXIS}", "`motions` must be true or false; got 1"),
 ]  # fmt: skip
 
 
@@ -158,7 +152,7 @@ def test_bad_study_is_refused_with_its_rule(text, rule):
     ],
 )
 def test_bad_sample_is_refused_with_its_rule(old, new, rule):
-    text = f"{HEAD}[axes]\n{RANGE}{SAMPLE}"
+    text = HEAD + AXIS
     assert parse(text).size == 8
     assert old in text
     assert rule in refusal(text.replace(old, new))
@@ -184,7 +178,7 @@ def test_file_that_is_no_study_is_refused(tmp_path):
 
 def test_mistake_in_the_base_file_names_both_files(tmp_path):
     (tmp_path / "drop.toml").write_text('[body]\nradius = "50 kg"\n')
-    (tmp_path / "map.toml").write_text(f'base = "drop.toml"\n[axes]\n{RANGE}{SAMPLE}')
+    (tmp_path / "map.toml").write_text(f'base = "drop.toml"\n{AXIS}')
     with pytest.raises(InputError) as caught:
         read(str(tmp_path / "map.toml"))
     message = str(caught.value)

@@ -9,12 +9,9 @@ from scipy.stats import qmc
 from study_texts import HUMIDITY, RMS, sample
 
 
-def test_sobol_sample_is_scipys_sequence_scrambled_by_the_seed():
+def test_samples_are_scipys_of_the_seed():
     points = sample(1024, seed=7).sample.points(0, 1024, 4)
     assert np.array_equal(points, qmc.Sobol(4, scramble=True, rng=7).random(1024))
-
-
-def test_latin_sample_is_scipys_hypercube_of_the_seed():
     points = sample(1000, "latin", seed=7).sample.points(0, 1000, 4)
     assert np.array_equal(points, qmc.LatinHypercube(4, rng=7).random(1000))
 

@@ -15,35 +15,30 @@ from asperity.config.case_text import unit_of
 from asperity.config.problems import tables_of
 from asperity.sweeps.study import keys
 from asperity.sweeps.study.study import parse, read
-from study_texts import GRID, HUMIDITY, RMS, study
+from study_texts import HUMIDITY, RMS, study
 
 
-def leaves():
-    """All keys of a case's tables with their fields, from the schema."""
-    for table, field in Case.model_fields.items():
-        for model in tables_of(field.annotation):
-            for key, inner in model.model_fields.items():
-                yield f"{table}.{key}", inner
+def fields():
+    """Keys of a case with their fields, from the schema, but lists and what a run writes."""
+    return {
+        f"{table}.{key}": inner
+        for table, field in Case.model_fields.items()
+        for model in tables_of(field.annotation)
+        for key, inner in model.model_fields.items()
+        if table not in ("output", "materials") and key != "files"
+    }
 
 
 def test_every_key_of_a_case_is_an_axis_but_lists_and_what_a_run_writes():
-    names = {name for name, _ in leaves() if not name.startswith(("output.", "materials."))}
-    assert set(keys.known()) == names - {"roughness.files"}
+    assert set(keys.known()) == set(fields())
     assert [keys.find(name).key for name in keys.known()] == keys.known()
-
-
-def test_units_of_axes_are_those_of_the_schema():
-    for name, field in leaves():
-        if not name.startswith(("output.", "materials.", "roughness.files")):
-            assert keys.find(name).unit == unit_of(field)
 
 
 def test_example_of_every_key_is_read_and_written_back_exactly():
     """A value in SI is written so that it reads back as the same float."""
-    for name, field in leaves():
-        if name.startswith(("output.", "materials.", "roughness.files")):
-            continue
+    for name, field in fields().items():
         key = keys.find(name)
+        assert key.unit == unit_of(field)
         value = key.read(field.examples[0])
         assert key.read(key.written(value)) == value
         if key.unit not in ("", "1"):
@@ -60,12 +55,12 @@ def test_labels_say_which_key_in_words():
 
 
 RANGES = {
-    RMS: ("1e-10 m", "1e-7 m", "m"),
-    "body.radius": ("1e-6 m", "1e-4 m", "m"),
-    HUMIDITY: (0.05, 0.95, ""),
-    "adhesion.work": ("1 mJ/m^2", "90 mJ/m^2", "J/m^2"),
-    "capillary.contact_angle": ("1 deg", "80 deg", "rad"),
-    "capillary.temperature": ("1 degC", "60 degC", "K"),
+    RMS: ('"1e-10 m"', '"1e-7 m"'),
+    "body.radius": ('"1e-6 m"', '"1e-4 m"'),
+    HUMIDITY: (0.05, 0.95),
+    "adhesion.work": ('"1 mJ/m^2"', '"90 mJ/m^2"'),
+    "capillary.contact_angle": ('"1 deg"', '"80 deg"'),
+    "capillary.temperature": ('"1 degC"', '"60 degC"'),
 }
 
 
@@ -76,14 +71,13 @@ def studies(draw):
     sampled = draw(st.booleans())
     lines = []
     for key in chosen:
-        low, high, _ = RANGES[key]
-        ends = [f'"{end}"' if isinstance(end, str) else end for end in (low, high)]
+        low, high = RANGES[key]
         if draw(st.booleans()):
-            lines.append(f'"{key}" = {{values = [{ends[1]}, {ends[0]}]}}')
+            lines.append(f'"{key}" = {{values = [{high}, {low}]}}')
             continue
         steps = "" if sampled else f", steps = {draw(st.integers(2, 5000))}"
         scale = draw(st.sampled_from(["", ', scale = "log"', ', scale = "linear"']))
-        lines.append(f'"{key}" = {{from = {ends[0]}, to = {ends[1]}{steps}{scale}}}')
+        lines.append(f'"{key}" = {{from = {low}, to = {high}{steps}{scale}}}')
     if draw(st.booleans()):
         lines.append('"adhesion.model" = {values = ["none", "dmt"]}')
     head = [f'base = "{draw(st.sampled_from(["published", "published-exact"]))}"']
@@ -111,23 +105,28 @@ def test_canonical_text_reads_back_as_the_study(found):
     assert found.fingerprint == hashlib.sha256(found.canonical.encode()).hexdigest()
 
 
+def based_on(folder, base):
+    """The study of a file beside its base."""
+    (folder / "drop.toml").write_text(base)
+    text = 'base = "drop.toml"\n[axes]\n"impact.speed" = {values=["1 m/s"]}'
+    (folder / "map.toml").write_text(text)
+    return read(str(folder / "map.toml"))
+
+
 def test_canonical_text_needs_no_other_file(tmp_path):
-    (tmp_path / "drop.toml").write_text(builtin("published-exact").toml())
-    (tmp_path / "map.toml").write_text(f'base = "drop.toml"\n[axes]\n"{RMS}" = {{values=["8 nm"]}}')
-    found = read(str(tmp_path / "map.toml"))
+    found = based_on(tmp_path, builtin("published-exact").toml())
     (tmp_path / "drop.toml").unlink()
     assert parse(found.canonical) == found
+    tables = tomllib.loads(found.canonical)
+    assert tables["schema"] == 1
+    assert tables["base"]["body"]["radius"] == "5e-05 m"
     assert found.base == builtin("published-exact")
     assert found.base_name == "drop"
 
 
 def test_surface_files_of_the_base_are_found_from_any_folder(tmp_path, monkeypatch):
     rough = {"roughness": {"files": ["surface.csv"], "size": "1 um x 1 um", "unit": "nm"}}
-    text = builtin("published-exact").replace(rough).toml()
-    (tmp_path / "drop.toml").write_text(text)
-    (tmp_path / "map.toml").write_text('base = "drop.toml"\n[axes]\n"impact.speed" = '
-                                       '{values=["1 m/s"]}')  # fmt: skip
-    found = read(str(tmp_path / "map.toml"))
+    found = based_on(tmp_path, builtin("published-exact").replace(rough).toml())
     monkeypatch.chdir("/")
     wanted = [str(tmp_path / "surface.csv")]
     assert parse(found.canonical).base.roughness.files == wanted
@@ -136,15 +135,9 @@ def test_surface_files_of_the_base_are_found_from_any_folder(tmp_path, monkeypat
 
 def test_where_a_run_writes_is_nothing_of_a_study(tmp_path):
     base = builtin("published").toml()
-    for name, text in (
-        ("one", base),
-        ("other", base.replace("pictures = true", 'pictures = false\ndirectory = "x"')),
-    ):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "drop.toml").write_text(text)
-        study_text = f'base = "drop.toml"\n[axes]\n"{RMS}" = {{values=["8 nm"]}}'
-        (tmp_path / name / "map.toml").write_text(study_text)
-    one, other = (read(str(tmp_path / name / "map.toml")) for name in ("one", "other"))
+    elsewhere = base.replace("pictures = true", 'pictures = false\ndirectory = "x"')
+    assert elsewhere != base
+    one, other = (based_on(tmp_path, text) for text in (base, elsewhere))
     assert one.fingerprint == other.fingerprint
 
 
@@ -167,13 +160,6 @@ def test_text_of_any_alphabet_is_kept(tmp_path):
     assert named.axes[0].listed == (odd,)
     assert parse(named.canonical) == named
     assert named.case(0) == base
-
-
-def test_canonical_text_is_toml_of_a_study_with_its_base_in_it():
-    tables = tomllib.loads(study(GRID).canonical)
-    assert tables["schema"] == 1
-    assert tables["axes"][RMS]["from"] == "8e-09 m"
-    assert tables["base"]["body"]["radius"] == "5e-05 m"
 
 
 # --- examples -----------------------------------------------------------------------------------

@@ -38,9 +38,8 @@ def test_pull_off_over_a_grid_is_that_of_the_closed_form(swept):
 
 
 def test_a_sweep_has_units_names_and_no_case_that_failed(swept):
-    assert swept["body.radius"].attrs["units"] == "m"
-    assert swept["adhesion.work"].attrs["units"] == "J/m^2"
-    assert swept["pull_off"].attrs["units"] == "N"
+    for name, unit in {"body.radius": "m", "adhesion.work": "J/m^2", "pull_off": "N"}.items():
+        assert swept[name].attrs["units"] == unit
     assert swept["pull_off"].attrs["long_name"] == "pull-off force"
     assert (swept.attrs["cases"], swept.attrs["computed"], swept.attrs["failed"]) == (6, 6, 0)
     assert set(swept["reason"].values.ravel()) == {""}
@@ -58,10 +57,16 @@ def test_each_case_of_a_sweep_is_that_of_a_run(swept):
     assert int(one["impacts"]) == len(alone.measures["restitution"])
 
 
-def test_a_sweep_leaves_no_file(tmp_path, monkeypatch):
+def test_a_sweep_leaves_no_file_and_tells_its_progress(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bead.toml").write_text(DMT)
-    found = asperity.sweep("bead.toml", {"body.radius": [1e-6]}, keep="pull_off")
+    told = []
+    found = asperity.sweep(
+        "bead.toml", {"body.radius": [1e-6]}, keep="pull_off",
+        progress=lambda done, text: told.append(done),
+    )  # fmt: skip
+    assert told == sorted(told)
+    assert (told[0], told[-1]) == (0.0, 1.0)
     assert found.attrs["base"] == "bead"
     assert [path.name for path in tmp_path.iterdir()] == ["bead.toml"]
 
@@ -93,16 +98,13 @@ def test_impacts_of_each_case_lie_along_a_dimension_where_they_are_asked_for():
         ({}, {}, "`axes` must be values by their dotted key"),
         ([1], {}, "`axes` must be values by their dotted key"),
         ({"body.raduis": [1e-6]}, {}, "axes['body.raduis']: must go over a key of a case"),
-        ({"body.raduis": [1e-6]}, {}, "did you mean 'body.radius'?"),
         ({"body.radius": 1e-6}, {}, "must be a list, or an array of one dimension, of values"),
         ({"body.radius": "1 um"}, {}, "must be a list, or an array of one dimension, of values"),
         ({"body.radius": np.ones((2, 2))}, {}, "must be a list, or an array of one dimension"),
         ({"body.radius": []}, {}, "must be a list of 1 to 10000 values"),
-        ({"body.radius": [1e-6, 1e-6]}, {}, "`values` must differ"),
         ({"body.radius": [-1e-6]}, {}, "axes['body.radius']: `radius` must be positive"),
         ({"body.radius": [np.nan]}, {}, "must be a finite number; got nan m"),
         ({"body.radius": [True]}, {}, "must be a number in m"),
-        ({"output.motion": [True]}, {}, "must not go over `output.motion`"),
         ({"body.radius": [1e-6]}, {"keep": ["restituton"]}, "did you mean 'restitution'?"),
         ({"body.radius": [1e-6]}, {"impacts": 0}, "`impacts` must be a whole number in [1, 100000"),
         ({"body.radius": [1e-6]}, {"impacts": True}, "`impacts` must be a whole number"),
@@ -124,14 +126,6 @@ def test_a_sweep_beyond_memory_is_refused(monkeypatch):
     monkeypatch.setattr(sweep, "MOST_CASES", 3)
     with pytest.raises(InputError, match=r"at most 3 cases in memory.*got 4"):
         asperity.sweep(load(SMOOTH), {"body.radius": [1e-6, 2e-6, 3e-6, 4e-6]})
-
-
-def test_progress_of_a_sweep_rises_to_one():
-    told = []
-    axes = {"body.radius": [1e-6, 2e-6]}
-    asperity.sweep(load(DMT), axes, keep=[], progress=lambda done, text: told.append(done))
-    assert told == sorted(told)
-    assert (told[0], told[-1]) == (0.0, 1.0)
 
 
 def test_ctrl_c_ends_a_sweep_and_what_it_computes(monkeypatch):

@@ -1,4 +1,4 @@
-"""A study of real cases from its file to its store: in one process, on workers and in parts."""
+"""A study of real cases from its file to its store: in one process and on workers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from asperity.sweeps.compute.clients import local
 from asperity.sweeps.compute.cluster import on_cluster
 from asperity.sweeps.compute.runner import fill, in_process
 from asperity.sweeps.store.counting import first_failure, outcomes
-from asperity.sweeps.store.merge import Shard, join
 from asperity.sweeps.store.store import Store
 from asperity.sweeps.study.study import Study, read
 from store_files import contents
@@ -72,14 +71,3 @@ def test_two_workers_leave_the_bytes_of_one_process(study: Study, store: Store, 
         assert os.getpid() not in client.run(os.getpid).values()
         fill(study, Store.create(path, study), on_cluster(client))
     assert contents(path) == contents(store.path)
-
-
-def test_parts_merge_into_the_bytes_of_one_process(study: Study, store: Store, tmp_path: Path):
-    path = tmp_path / "study.zarr"
-    stores = []
-    for shard in (Shard(1, 2), Shard(2, 2)):
-        part = Store.create(tmp_path / shard.store(path).name, study)
-        fill(study, part, in_process, tasks=shard.tasks(study.tasks))
-        stores.append(part.path)
-    whole = join(tmp_path / "whole" / "study.zarr", stores)
-    assert contents(whole.path) == contents(store.path)

@@ -53,7 +53,7 @@ def deaths(folder: Path, study: FakeStudy, most: int, seed: int) -> int:
 
 
 @pytest.mark.parametrize(
-    ("most", "seed"), [(5, 1), pytest.param(100, 2, marks=pytest.mark.long)], ids=["5", "100"]
+    ("most", "seed"), [(3, 1), pytest.param(100, 2, marks=pytest.mark.long)], ids=["3", "100"]
 )
 def test_killed_at_random_moments_and_resumed_leaves_the_same_bytes(
     tmp_path: Path, most: int, seed: int
