@@ -58,30 +58,18 @@ def test_the_kelvin_radius_of_water_at_75_mn_per_m(humidity, radius):
     assert kelvin_radius(PUBLISHED_WATER, humidity, 293.15) == pytest.approx(radius, rel=1e-3)
 
 
-def test_dry_air_has_no_kelvin_radius():
-    assert kelvin_radius(WATER, 0.0, 293.15) == 0.0
-
-
-@given(st.floats(1e-6, 1 - 1e-9), st.floats(1e-6, 1 - 1e-9))
-def test_the_kelvin_radius_grows_with_humidity(a, b):
-    low, high = sorted((a, b))
-    assert 0.0 < kelvin_radius(WATER, low, 293.15) <= kelvin_radius(WATER, high, 293.15)
-
-
 @given(st.floats(1e-3, 0.999))
 def test_the_kelvin_radius_gives_back_its_humidity(humidity):
     radius = kelvin_radius(WATER, humidity, 293.15)
+    assert radius > kelvin_radius(WATER, 0.0, 293.15) == 0.0
     exponent = WATER.tension * WATER.molar_volume / (8.31446261815324 * 293.15 * radius)
     assert math.exp(-exponent) == pytest.approx(humidity, rel=1e-12)
 
 
-@pytest.mark.parametrize("humidity", [1.0, 1.2, -0.1, math.nan])
-def test_a_humidity_outside_zero_to_one_is_refused(humidity):
-    with pytest.raises(InputError, match=r"`humidity` must lie in \[0, 1\)"):
-        kelvin_radius(WATER, humidity, 293.15)
-
-
-def test_a_temperature_that_is_not_positive_is_refused():
+def test_a_humidity_or_a_temperature_that_cannot_be_is_refused():
+    for humidity in (1.0, 1.2, -0.1, math.nan):
+        with pytest.raises(InputError, match=r"`humidity` must lie in \[0, 1\)"):
+            kelvin_radius(WATER, humidity, 293.15)
     with pytest.raises(InputError, match="`temperature` must be positive"):
         kelvin_radius(WATER, 0.5, 0.0)
 
@@ -164,15 +152,25 @@ def test_the_numbers_of_a_solid_are_possible(solid):
         assert 1.3 < solid.hardness / solid.yield_strength < 4.0
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["stainless steel 304", "stainless steel 440C", "bearing steel 52100", "aluminium", "copper",
-     "nickel", "platinum", "ruthenium", "titanium nitride", "silicon nitride", "alumina", "mica",
-     "PMMA", "PDMS", "SU-8", "nylon 6,6", "polystyrene"],
-)  # fmt: skip
-def test_a_case_can_name_what_tribologists_ask_for(name):
-    text = f'[body]\nradius = "1 um"\nmaterial = "{name}"\n[counterface]\nmaterial = "{name}"\n'
-    assert resolve(load(text + '[impact]\nspeed = "1 m/s"\n')).body == SOLIDS[name]
+def on_itself(name):
+    """Text of a case of a sphere on a plane of one material."""
+    return (
+        f'[body]\nradius = "1 um"\nmaterial = "{name}"\n[counterface]\nmaterial = "{name}"\n'
+        '[impact]\nspeed = "1 m/s"\n'
+    )
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_a_case_can_name_every_solid(name):
+    assert resolve(load(on_itself(name))).body == SOLIDS[name]
+
+
+def test_the_catalogue_has_what_tribologists_ask_for():
+    assert set(SOLIDS) >= {
+        "stainless steel 304", "stainless steel 440C", "bearing steel 52100", "aluminium", "copper",
+        "nickel", "platinum", "ruthenium", "titanium nitride", "silicon nitride", "alumina", "mica",
+        "PMMA", "PDMS", "SU-8", "nylon 6,6", "polystyrene",
+    }  # fmt: skip
 
 
 def test_two_bearing_steels_have_the_modulus_of_their_lubrication():
@@ -316,11 +314,10 @@ def test_the_work_of_wet_cantilevers_is_twice_the_tension_of_water():
 
 
 def test_no_case_assumes_a_work_of_adhesion_that_was_measured():
-    text = '[body]\nradius = "1 um"\nmaterial = "mica"\n[counterface]\nmaterial = "mica"\n'
-    case = load(text + '[impact]\nspeed = "1 m/s"\n')
+    case = load(on_itself("mica"))
     assert (case.adhesion.model, case.adhesion.work) == ("none", None)
     with pytest.raises(InputError, match="work"):
-        load(text + '[impact]\nspeed = "1 m/s"\n[adhesion]\nmodel = "jkr"\n')
+        load(on_itself("mica") + '[adhesion]\nmodel = "jkr"\n')
 
 
 @pytest.mark.parametrize(("work", "bounds"), [(0.0, None), (0.1, (0.2, 0.3)), (0.1, (0.0, 0.2))])
@@ -332,25 +329,22 @@ def test_a_work_that_cannot_have_been_measured_is_refused(work, bounds):
 @pytest.mark.parametrize(
     ("numbers", "rule"),
     [
-        ({"youngs_modulus": 0.0, "poisson": 0.2}, "`youngs_modulus` must be positive"),
-        ({"youngs_modulus": math.nan, "poisson": 0.2}, "`youngs_modulus` must be positive"),
-        ({"youngs_modulus": 1e9, "poisson": 0.7}, r"`poisson` must lie in \(-1, 0.5\]; got 0.7"),
-        ({"youngs_modulus": 1e9, "poisson": -1.0}, "`poisson` must lie in"),
-        ({"youngs_modulus": 1e9, "poisson": 0.2, "density": -1.0}, "`density` must be positive"),
-        ({"youngs_modulus": 1e9, "poisson": 0.2, "hardness": 0.0}, "`hardness` must be positive"),
+        ({"youngs_modulus": 0.0}, "`youngs_modulus` must be positive"),
+        ({"youngs_modulus": math.nan}, "`youngs_modulus` must be positive"),
+        ({"poisson": 0.7}, r"`poisson` must lie in \(-1, 0.5\]; got 0.7"),
+        ({"poisson": -1.0}, "`poisson` must lie in"),
+        ({"density": -1.0}, "`density` must be positive"),
+        ({"hardness": 0.0}, "`hardness` must be positive"),
+        ({"yield_strength": 0.0}, "`yield_strength` must be positive"),
         (
-            {"youngs_modulus": 1e9, "poisson": 0.2, "yield_strength": 0.0},
-            "`yield_strength` must be positive",
-        ),
-        (
-            {"youngs_modulus": 1e9, "poisson": 0.2, "hardness": 1e8, "yield_strength": 2e8},
-            r"`hardness` must be at least the yield strength \(200 MPa\).*; got 100 MPa",
+            {"hardness": 1e8, "yield_strength": 2e8},
+            r"at least the yield strength \(200 MPa\).*; got",
         ),
     ],
 )
 def test_a_solid_that_cannot_be_is_refused(numbers, rule):
     with pytest.raises(InputError, match=rule):
-        Solid("any", **numbers)
+        Solid("any", **{"youngs_modulus": 1e9, "poisson": 0.2, **numbers})
 
 
 def test_a_liquid_without_tension_is_refused():

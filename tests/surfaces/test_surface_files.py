@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -50,6 +50,7 @@ def asked(path, surface):
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
+@settings(max_examples=30)
 @given(heights=maps, step=st.tuples(lengths, lengths))
 def test_a_map_written_is_the_map_read(tmp_path_factory, suffix, heights, step):
     path = tmp_path_factory.getbasetemp() / f"map{suffix}"
@@ -65,6 +66,7 @@ def test_a_map_written_is_the_map_read(tmp_path_factory, suffix, heights, step):
 
 MATRIX = "1,2,3.5,4\n5,,7.25,8\n-9,10,11,12.5\n"
 HEADER = "# size[um] 4 1.5\n# unit nm\n# pixels 4 3\n"
+GWYDDION = "# Channel: Topo\n# Width: 4.0 µm\n# Height: 1500 nm\n# Value units: nm\n"
 POINTS = [(x * 1.0, y * 0.5, HEIGHTS[y, x]) for y in range(3) for x in range(4) if (x, y) != (1, 1)]
 
 
@@ -79,18 +81,10 @@ POINTS = [(x * 1.0, y * 0.5, HEIGHTS[y, x]) for y in range(3) for x in range(4) 
         ("windows.csv", (HEADER + MATRIX).replace("\n", "\r\n")),
         ("mac.csv", (HEADER + MATRIX).replace("\n", "\r")),
         ("marked.csv", b"\xef\xbb\xbf" + (HEADER + MATRIX).encode()),
-        ("text.dat", HEADER + MATRIX),
-        ("packed.csv.gz", gzip.compress((HEADER + MATRIX).encode(), mtime=0)),
         ("remarks.csv", "# by hand\n#\n\n" + HEADER + MATRIX.replace("4\n", "4 # edge\n")),
         ("metres.csv", HEADER.replace("[um] 4 1.5", "[m] 4e-6 1.5e-6") + MATRIX),
-        (
-            "gwyddion.txt",
-            "# Channel: Topo\n# Width: 4.0 µm\n# Height: 1500 nm\n# Value units: nm\n" + MATRIX,
-        ),
-        (
-            "old_code_page.txt",
-            ("# Width: 4.0 µm\n# Height: 1.5 µm\n# Value units: nm\n" + MATRIX).encode("latin-1"),
-        ),
+        ("gwyddion.txt", GWYDDION + MATRIX),
+        ("old_code_page.txt", (GWYDDION + MATRIX).encode("latin-1")),
     ],
 )
 def test_a_matrix_has_x_along_its_lines(tmp_path, name, content):
@@ -130,6 +124,7 @@ def test_rounded_coordinates_still_make_an_even_grid(tmp_path, digits):
     assert surface.pixel_size[0] == pytest.approx(step * 1e-9, rel=10.0**-digits)
 
 
+@settings(max_examples=50)
 @given(
     heights=arrays(np.float64, (3, 4), elements=st.floats(-1e3, 1e3)),
     unit=st.sampled_from([("m", 1e-9), ("um", 1e-3), ("nm", 1.0), ("pm", 1e3), ("angstrom", 10.0)]),
@@ -233,13 +228,10 @@ def test_a_channel_is_taken_by_number_or_name_and_said(tmp_path):
         assert sensor.topography.heights[2, 3] == pytest.approx(25e-9, rel=1e-15)
 
 
-def test_an_unknown_channel_is_answered_by_the_list_of_those_there(tmp_path):
+def test_an_unknown_channel_and_one_of_volts_are_answered_by_those_of_heights(tmp_path):
     path = gwyddion_file(tmp_path, Height="m", Sensor="m")
     with pytest.raises(InputError, match=r"one of heights: 0 Height, 1 Sensor; got 'Phase'"):
         read_surface(path, channel="Phase")
-
-
-def test_a_channel_of_volts_is_no_surface(tmp_path):
     path = gwyddion_file(tmp_path, Potential="V", Height="m")
     assert read_surface(path).channels == ("0 Height",)
     with pytest.raises(InputError, match=r"one of heights: 0 Height; got 'Potential'"):
@@ -274,21 +266,15 @@ def test_the_library_prints_nothing(tmp_path, capfd):
     assert logging.getLogger("igor2").propagate
 
 
-def test_a_file_is_replaced_only_when_forced(tmp_path):
+def test_a_file_is_replaced_only_when_forced_and_only_in_a_format_and_a_folder_there(tmp_path):
     surface = Topography(HEIGHTS * 1e-9, STEP)
     path = tmp_path / "a.csv"
     write_topography(surface, path)
     with pytest.raises(InputError, match="--force"):
         write_topography(surface, path)
     write_topography(surface, path, force=True)
-    assert [one.name for one in tmp_path.iterdir()] == ["a.csv"]
-
-
-def test_a_folder_that_is_not_there_cannot_be_written_to(tmp_path):
     with pytest.raises(OutputError, match="cannot be written"):
-        write_topography(Topography(HEIGHTS, STEP), tmp_path / "none" / "a.csv")
-
-
-def test_a_format_that_cannot_be_written_is_refused(tmp_path):
+        write_topography(surface, tmp_path / "none" / "a.csv")
     with pytest.raises(InputError, match=r"must end in one of \.npy \.csv"):
-        write_topography(Topography(HEIGHTS, STEP), tmp_path / "a.gwy")
+        write_topography(surface, tmp_path / "a.gwy")
+    assert [one.name for one in tmp_path.iterdir()] == ["a.csv"]

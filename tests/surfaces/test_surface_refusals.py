@@ -2,6 +2,7 @@
 
 import gzip
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from asperity.surfaces import Topography
 from asperity.surfaces.files import netcdf_heights
 from asperity.surfaces.files.read_surface import read_surface
 from asperity.surfaces.files.write_surface import write_topography
+from refused_input import refusal
 from vendor_files import gwyddion, x3p
 
 HEAD = "# size[um] 4 3\n# unit nm\n"
+POINTS = "# x[um] y[um] z[nm]\n"
 PLAIN = "1 2 3\n4 5 6\n7 8 9\n"
 SURFACE = Topography(np.arange(30.0).reshape(5, 6) ** 1.5 * 1e-9, (1e-6, 2e-6))
 WHOLE = {
@@ -24,13 +27,10 @@ WHOLE = {
 
 def refused(path, **asked):
     """The message of a refusal, after the file's name."""
-    with pytest.raises(InputError) as caught:
-        read_surface(path, **asked)
-    message = str(caught.value)
-    assert message.startswith(f"{path}: ")
-    assert len(message.splitlines()) == 1
-    assert caught.value.file == str(path)
-    return message.removeprefix(f"{path}: ")
+    error = refusal(read_surface, path, **asked)
+    assert str(error).startswith(f"{path}: ")
+    assert error.file == str(path)
+    return str(error).removeprefix(f"{path}: ")
 
 
 def written(folder, name, content):
@@ -47,28 +47,20 @@ def written(folder, name, content):
         (HEAD, "a text without numbers"),
         (HEAD + "1 2 3\n4 x 6\n7 8 9\n", "line 4: must hold numbers alone; got 'x'"),
         ("x y z\n" + HEAD + PLAIN, "line 2: header lines must stand before the first number"),
-        (HEAD + "x,y,z\n1,2,3\n", "line 3: must hold numbers alone; got 'x'"),
         (HEAD + "1 2 3\n4 5\n7 8 9\n", "line 4: every line must have 3 numbers, as the first; got"),
-        (HEAD + "1 2 3\n4 5 6 7\n7 8 9\n", "line 4: every line must have 3 numbers"),
         (HEAD + "1 2 3\n\n4 5 6\n7 8 9\n", "line 4: a matrix must have a row on every line"),
         (HEAD + "# left\n1 2 3\n4 inf 6\n7 8 9\n", "line 5: heights must be finite; got inf"),
-        (HEAD + "1 2 3\n4 1e999 6\n7 8 9\n", "line 4: heights must be finite"),
         (HEAD + "1,5;2,0\n3,5;4,0\n", "line 3: must hold numbers alone; got '1,5'; write decimal"),
-        (HEAD + "1_0 2 3\n4 5 6\n7 8 9\n", "line 3: must hold numbers alone; got '1_0'"),
         (HEAD + "nan nan nan\n" * 3, "all pixels are missing"),
         (HEAD + "7\n", "at least 3 x 3 pixels; got 1 x 1"),
         (HEAD + "# pixels 3 4\n" + PLAIN, "must have 3 x 4 pixels, as the file states; got 3 x 3"),
         ("# size[um] 4 -3\n# unit nm\n" + PLAIN, "line 1: the size must be positive"),
-        ("# size[um] 4\n# unit nm\n" + PLAIN, "line 1: must read `# x[m] y[m] z[nm]` or `# size"),
         ("# size[kg] 4 3\n# unit nm\n" + PLAIN, "line 1: `size` must be a length"),
         (HEAD + "# unit um\n" + PLAIN, "line 3: the unit must be stated once; got 'um' after 'nm'"),
         ("# size[um] 4 3\n# unit volt\n" + PLAIN, "line 2: the unit must be a length; got 'volt'"),
-        (HEAD + PLAIN + HEAD + PLAIN, "line 6: header lines must stand before the first number"),
         (HEAD.encode() + b"1 2 3\n4 \0 6\n", "must be plain text; got binary data"),
-        (
-            "# x[um] y[um] z[nm]\n" + "1 2 3 4\n" * 4,
-            "line 2: every line must have 3 numbers; got 4",
-        ),
+        (POINTS + "1 2 3 4\n" * 4, "line 2: every line must have 3 numbers; got 4"),
+        ("# size[um] 4\n# unit nm\n" + PLAIN, "line 1: must read `# x[m] y[m] z[nm]` or `# size"),
     ],
 )
 def test_a_matrix_without_a_meaning_is_refused(tmp_path, content, rule):
@@ -83,14 +75,11 @@ def grid(columns=4, rows=3):
     ("lines", "rule"),
     [
         (grid()[:-2], "the last scan line must be whole; got one that ends early"),
-        (grid()[::-1][:-2], "the last scan line must be whole"),
         ([*grid(), "1 1 7"], "must have one height a place; got two points at one"),
         ([*grid()[:-1], "3.4 2 1"], "x must stand on even steps; got one off by"),
         ([*grid()[:-1], "nan 2 1"], "every x must be finite"),
-        ([*grid()[:-1], "3 2"], "line 12: every line must have 3 numbers; got 2"),
         (["1 2 3"] * 4, "must have points at several x; got 1"),
         ([f"{n} {n} 1" for n in range(9)], "must fill a regular grid; got 9 points for 9 x 9"),
-        ([f"{x} {y} nan" for y in range(3) for x in range(3)], "all pixels are missing"),
         ([*grid(), "1e300 0 1", "-1e300 0 1"], "must have one height a place"),
         (["# pixels 4 4", *grid()], "must have 4 x 4 pixels, as the file states; got 4 x 3"),
     ],
@@ -110,21 +99,14 @@ def header(shape, kind="<f8"):
     [
         (header("(40000, 40000)") + bytes(64), "12800000000 bytes) over 64 bytes"),
         (header("(3, 3)") + bytes(71), "a header of (3, 3) numbers (72 bytes) over 71 bytes"),
-        (header("(3, 3)") + bytes(73), "over 73 bytes"),
         (header("(-3, -3)") + bytes(72), "a header of (-3, -3)"),
         (header("(3, 3, 1)") + bytes(72), "a plane of heights, rows by columns; got shape (3, 3"),
-        (header("(9,)") + bytes(72), "a plane of heights"),
         (header("(3, 3)", "<c8") + bytes(72), "must hold real numbers; got complex64"),
-        (header("(3, 3)", "<U2") + bytes(72), "must hold real numbers"),
         (header("(3, 3)", "|O") + bytes(72), "must hold real numbers; got object"),
         (header("(3, 3)", "|b1") + bytes(9), "must hold real numbers; got bool"),
-        (header("(3, 3)", "?!") + bytes(72), "must be a whole .npy file of real numbers"),
         (header("(" * 4000 + ")" * 4000), "must be a whole .npy file of real numbers"),
-        (b"\x93NUMPY\x09\x00", "must be a whole .npy file"),
         (b"PK\x03\x04 a zip", "must be a whole .npy file"),
         (header("(3, 3)") + np.full(9, np.inf).tobytes(), "heights must be finite"),
-        (header("(3, 3)") + np.full(9, np.nan).tobytes(), "all pixels are missing"),
-        (header("(1, 1)") + bytes(8), "at least 3 x 3 pixels; got 1 x 1"),
     ],
 )
 def test_an_array_is_checked_before_memory_is_taken(tmp_path, content, rule):
@@ -132,36 +114,38 @@ def test_an_array_is_checked_before_memory_is_taken(tmp_path, content, rule):
     assert rule in refused(path, size=(1e-6, 1e-6), unit="nm")
 
 
-def test_an_array_states_neither_size_nor_unit(tmp_path):
-    path = tmp_path / "a.npy"
-    np.save(path, SURFACE.heights)
-    assert "must have a unit; got none; give it with --unit nm" in refused(path)
-    assert 'give it with --size "10 um x 10 um" (key `size`' in refused(path, unit="nm")
+def test_size_and_unit_that_a_file_does_not_state_are_asked_for(tmp_path):
+    array = tmp_path / "a.npy"
+    np.save(array, SURFACE.heights)
+    for path in (array, written(tmp_path, "a.hgt", bytes(range(72)))):
+        assert "must have a unit; got none; give it with --unit nm" in refused(path)
+        assert 'give it with --size "10 um x 10 um" (key `size`' in refused(path, unit="nm")
+    for size in ((0.0, 1e-6), (-1e-6, 1e-6), (float("nan"), 1.0), (1.0, np.inf)):
+        assert "must be two positive lengths" in refused(array, size=size, unit="nm")
 
 
-@pytest.mark.parametrize("size", [(0.0, 1e-6), (-1e-6, 1e-6), (float("nan"), 1.0), (1.0, np.inf)])
-def test_a_size_is_a_pair_of_positive_lengths(tmp_path, size):
-    path = tmp_path / "a.npy"
-    np.save(path, SURFACE.heights)
-    assert "must be two positive lengths" in refused(path, size=size, unit="nm")
-
-
-@pytest.mark.parametrize("unit", ["", "kg", "10 nm", "furlongs per hour", "nm\n"])
-def test_a_unit_is_a_length(tmp_path, unit):
+def test_a_unit_is_a_length(tmp_path):
     path = written(tmp_path, "a.csv", "# size[um] 4 3\n" + PLAIN)
-    if unit.strip() == "nm":
-        assert read_surface(path, unit=unit).topography.heights[0, 0] == 1e-9
-    else:
+    assert read_surface(path, unit="nm\n").topography.heights[0, 0] == 1e-9
+    for unit in ("", "kg", "10 nm", "furlongs per hour"):
         assert "the unit must be a length; got" in refused(path, unit=unit)
+
+
+def whole(folder, suffix):
+    """A file of the surface, and what it does not state."""
+    path = folder / f"a{suffix}"
+    if suffix in WHOLE:
+        path.write_bytes(WHOLE[suffix])
+    elif suffix == "4.nc":
+        plane(path, ["z"])
+    else:
+        write_topography(SURFACE, path)
+    return path, {"unit": "m", "size": SURFACE.physical_size} if ".npy" in suffix else {}
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".xyz", ".nc", ".x3p", ".gwy"])
 def test_file_and_caller_may_not_contradict(tmp_path, suffix):
-    path = tmp_path / f"a{suffix}"
-    if suffix in WHOLE:
-        path.write_bytes(WHOLE[suffix])
-    else:
-        write_topography(SURFACE, path)
+    path, _ = whole(tmp_path, suffix)
     assert "the unit must be the one in the file" in refused(path, unit="nm")
     assert "the size must be the one in the file" in refused(path, size=(6e-6, 9e-6))
     agreed = read_surface(path, unit="m", size=SURFACE.physical_size).topography
@@ -171,17 +155,10 @@ def test_file_and_caller_may_not_contradict(tmp_path, suffix):
 SUFFIXES = [".npy", ".csv", ".txt", ".xyz", ".nc", ".csv.gz", ".npy.gz", *WHOLE, "4.nc"]
 
 
-@pytest.mark.parametrize("part", [0.0, 0.05, 0.5, 0.9])
+@pytest.mark.parametrize("part", [0.05, 0.5, 0.9])
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_file_cut_short_is_refused(tmp_path, suffix, part):
-    path = tmp_path / f"a{suffix}"
-    if suffix in WHOLE:
-        path.write_bytes(WHOLE[suffix])
-    elif suffix == "4.nc":
-        plane(path, ["z"])
-    else:
-        write_topography(SURFACE, path)
-    asked = {"unit": "m", "size": SURFACE.physical_size} if ".npy" in suffix else {}
+    path, asked = whole(tmp_path, suffix)
     read_surface(path, **asked)
     path.write_bytes(path.read_bytes()[: int(part * path.stat().st_size)])
     refused(path, **asked)
@@ -204,21 +181,17 @@ def plane(path, names, kind="f8", dimensions=("y", "x")):
     return path
 
 
-@pytest.mark.parametrize(
-    ("how", "rule"),
-    [
-        ({"names": []}, "one variable of two dimensions with the heights; got none"),
-        ({"names": ["a", "b"]}, "one variable of two dimensions with the heights; got a, b"),
-        ({"names": ["a"], "kind": "S1"}, "got none"),
-        ({"names": ["a"], "dimensions": ("t", "y", "x")}, "got none"),
-    ],
-)
-def test_a_netcdf_has_one_plane_or_a_channel_is_named(tmp_path, how, rule):
-    path = plane(tmp_path / "a.nc", **how)
-    assert rule in refused(path)
-    if how["names"] == ["a", "b"]:
-        assert read_surface(path, channel="b").topography.heights[0, 0] == 1e-9
-        assert "one of a, b; got 'c'" in refused(path, channel="c")
+def test_a_netcdf_has_one_plane_or_a_channel_is_named(tmp_path):
+    path = tmp_path / "a.nc"
+    for how in ({"names": []}, {"names": ["a"], "kind": "S1"},
+                {"names": ["a"], "dimensions": ("t", "y", "x")}):  # fmt: skip
+        assert "one variable of two dimensions with the heights; got none" in refused(
+            plane(path, **how)
+        )
+    plane(path, ["a", "b"])
+    assert "one variable of two dimensions with the heights; got a, b" in refused(path)
+    assert read_surface(path, channel="b").topography.heights[0, 0] == 1e-9
+    assert "one of a, b; got 'c'" in refused(path, channel="c")
 
 
 def test_a_netcdf_plane_larger_than_memory_is_refused_unread(tmp_path):
@@ -247,9 +220,7 @@ def test_a_netcdf_plane_without_pixels_is_refused(tmp_path):
 
 def test_a_damaged_netcdf_that_never_ends_is_given_up(tmp_path, monkeypatch):
     """Found by mutation: the C library follows a loop in the file."""
-    from pathlib import Path
-
-    monkeypatch.setattr(netcdf_heights, "_LONGEST", 3)
+    monkeypatch.setattr(netcdf_heights, "_LONGEST", 1)
     content = (Path(__file__).parents[1] / "data").joinpath("surfaces", "endless.nc").read_bytes()
     assert "must be whole; got a netCDF-4 file" in refused(written(tmp_path, "a.nc", content))
 
@@ -270,12 +241,6 @@ def test_a_format_known_by_its_ending_alone_is_not_guessed(tmp_path):
     assert surface.pixel_size == pytest.approx((1e-6 / 6, 3e-6 / 6), rel=1e-15)
 
 
-def test_an_instrument_file_without_size_or_unit_asks_for_them(tmp_path):
-    path = written(tmp_path, "a.hgt", bytes(range(72)))
-    assert "must have a unit; got none" in refused(path)
-    assert "size of the map must be known" in refused(path, unit="m")
-
-
 def test_no_file_a_folder_and_no_permission_are_told_apart(tmp_path):
     assert refused(tmp_path / "none.csv") == "no such file; check the path"
     assert "must be a regular file; got a folder" in refused(tmp_path)
@@ -287,8 +252,6 @@ def test_no_file_a_folder_and_no_permission_are_told_apart(tmp_path):
 
 
 def test_a_file_that_may_not_be_read_says_why(tmp_path, monkeypatch):
-    from pathlib import Path
-
     def denied(self):
         raise PermissionError(13, "Permission denied")
 
