@@ -23,6 +23,8 @@ from chosen import long_but
 RADIUS, BETA, SIGMA, E, N = 50e-6, 0.25e-9, 10.5e-9, 56.8e9, 1.69e16
 MENISCUS = Meniscus(BETA, 0.0728, radians(73.0), 2e-9)
 RINGS = 32
+PUBLISHED = asperity.load("published-exact")
+FILLED = {"capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm"}
 
 
 def contact(modulus):
@@ -76,10 +78,9 @@ def test_rates_are_those_of_rings_at_two_places():
 @pytest.mark.parametrize("rms", long_but(["2 nm", "10.5 nm"], "10.5 nm"))
 def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms, humidity):
     """Liquid wets far more than what asperities carry: mesh and scanning curve take it in."""
-    case = asperity.load("published-exact").replace(
+    case = PUBLISHED.replace(
         {
-            "capillary.model": "kelvin-filling",
-            "capillary.surface_rms_height": "11 nm",
+            **FILLED,
             "capillary.humidity": humidity,
             "impact.release_separation": "400 nm",
             "roughness.rms_height": rms,
@@ -92,10 +93,9 @@ def test_ledgers_close_where_liquid_fills_the_surface_about_a_small_contact(rms,
 @pytest.mark.long
 def test_a_ledger_closes_where_liquid_fills_a_surface_that_creeps():
     """At a hundredth of the speed: liquid, and all it leaves on the mesh's end, counts for most."""
-    case = asperity.load("published-exact").replace(
+    case = PUBLISHED.replace(
         {
-            "capillary.model": "kelvin-filling",
-            "capillary.surface_rms_height": "11 nm",
+            **FILLED,
             "capillary.humidity": 0.05,
             "impact.speed": "0.01 m/s",
             "impact.release_separation": "60 nm",
@@ -111,14 +111,7 @@ def test_a_ledger_closes_where_liquid_fills_a_surface_that_creeps():
 
 def test_the_mesh_grows_to_bonds_beyond_it_not_to_what_never_ends():
     """Bradley's pull falls off as a power beyond any mesh, where it is counted as it is."""
-    case = asperity.load("published-exact").replace(
-        {
-            "adhesion.model": "bradley",
-            "capillary.model": "kelvin-filling",
-            "capillary.surface_rms_height": "11 nm",
-            "capillary.humidity": 0.3,
-        }
-    )
+    case = PUBLISHED.replace({**FILLED, "adhesion.model": "bradley", "capillary.humidity": 0.3})
     places = SIGMA * jnp.asarray([-2.0, 1.0, 3.0, 5.0])
     forces = []
     for rings in (48, 96):
@@ -177,35 +170,28 @@ def test_nothing_to_solve_is_solved():
     assert not np.any(nearly_solved(np.eye(5), -jnp.ones(5), jnp.zeros(5)))
 
 
-STRETCHED = """
-schema = 1
-[body]
-radius = "0.66 mm"
-youngs_modulus = "937 GPa"
-poisson = 0.25
-density = "918 kg/m^3"
-[counterface]
-youngs_modulus = "937 GPa"
-poisson = 0.25
-deformation = "half-space"
-[impact]
-speed = "3.42 mm/s"
-gravity = "0 m/s^2"
-[roughness]
-asperity_density = "1.93e13 1/m^2"
-asperity_radius = "5.55 um"
-rms_height = "0.157 nm"
-[capillary]
-model = "equilibrium"
-liquid = "water"
-humidity = 0.435
-temperature = "325 K"
-contact_angle = "35.8 degrees"
-"""
+STRETCHED = {
+    "body": {
+        "radius": "0.66 mm", "youngs_modulus": "937 GPa", "poisson": 0.25,
+        "density": "918 kg/m^3",
+    },
+    "counterface.material": None,
+    "counterface.youngs_modulus": "937 GPa",
+    "counterface.poisson": 0.25,
+    "impact": {"speed": "3.42 mm/s", "gravity": "0 m/s^2"},
+    "roughness.asperity_density": "1.93e13 1/m^2",
+    "roughness.asperity_radius": "5.55 um",
+    "roughness.rms_height": "0.157 nm",
+    "adhesion": None,
+    "capillary.humidity": 0.435,
+    "capillary.temperature": "325 K",
+    "capillary.contact_angle": "35.8 degrees",
+    "numerics.max_impacts": 3,
+}  # fmt: skip
 
 
 def test_a_ledger_closes_where_menisci_stretch_over_many_rms_heights():
     """Rings deep in contact reach the branch last: one piece for all of them missed it by 3e-3."""
-    result = asperity.solve(asperity.config.load(STRETCHED), critical=False)
+    result = asperity.solve(PUBLISHED.replace(STRETCHED), critical=False)
     assert result.ledger["lost"]["capillary"] > 0.05 * result.ledger["initial"]
     assert result.ledger["energy_balance_error"] < 2e-6

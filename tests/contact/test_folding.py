@@ -49,7 +49,7 @@ def text(modulus, speed=100.0, rings=40):
     speed = "{speed} mm/s"
     gravity = "0 m/s^2"
     [numerics]
-    max_impacts = 3
+    max_impacts = 1
     rings = {rings}
     """
 
@@ -68,17 +68,12 @@ def folded(modulus=60.0, rings=40):
 
 @cache
 def thrown():
-    return asperity.solve(load(text(60.0)))
+    return asperity.solve(load(text(60.0)), critical=False)
 
 
-@cache
-def curve():
-    return asperity.curve(load(text(60.0)))
-
-
-def followed(one, size, begin, end, count):
+def followed(one, size, steps):
     """Central separations of plain Newton steps from one separation to the next, until they end."""
-    flat, steps = np.zeros(one.rings + 1), np.linspace(begin, end, count)
+    flat = np.zeros(one.rings + 1)
     profile = np.asarray(profile_of(one, jnp.asarray(size)))
     matrix = size / float(one.modulus) * compliance(one.rings)
     law = jax.jit(lambda h: pressed(one, (), h))
@@ -104,9 +99,10 @@ def followed(one, size, begin, end, count):
 def test_it_folds_where_plain_steps_find_no_equilibrium_near_by():
     one = folded()
     fold, size = float(one.folds[0]), float(one.sizes[0])
-    path = followed(one, size, fold + 1.0 * RMS, fold - 2e-3 * RMS, 1003)
+    ahead = np.append(np.linspace(1.0, 0.2, 40, endpoint=False), np.linspace(0.2, -2e-3, 203))
+    path = followed(one, size, fold + ahead * RMS)
     last = path[-1][0]
-    assert len(path) < 1003
+    assert len(path) < ahead.size
     assert abs(last - fold) < 2e-3 * RMS
     # The change of the central separation with the rigid one goes to infinity there.
     places, central = np.array(path[-200:]).T
@@ -118,10 +114,10 @@ def test_it_jumps_out_further_out_than_in_the_more_the_softer_it_is():
     stiff = folding(contact(200.0), DEEP)
     assert stiff is None
     widths = []
-    for modulus in (100.0, 60.0, 30.0):
+    for modulus in (60.0, 30.0):
         inwards, outwards = np.asarray(folded(modulus).folds) / RMS
         widths.append(outwards - inwards)
-    assert 0.0 < widths[0] < widths[1] < widths[2]
+    assert 0.0 < widths[0] < widths[1]
 
 
 def test_folds_do_not_depend_on_the_number_of_rings():
@@ -137,6 +133,11 @@ def test_what_it_loses_by_the_jumps_is_what_its_energies_lack():
     assert result.ledger["energy_balance_error"] < 1e-7
     e = result.measures["restitution"][0]
     assert 1.0 - e**2 == pytest.approx(lost["instability"] / result.ledger["initial"], rel=1e-6)
+    # They are drawn as steps.
+    drawn = result.energies["lost_instability"]
+    assert drawn[0] == 0.0
+    assert drawn[-1] == pytest.approx(lost["instability"], rel=1e-9)
+    assert len(np.unique(np.round(drawn / drawn[-1], 9))) == 3
 
 
 def test_a_ledger_closes_where_the_mesh_changes_before_a_fold():
@@ -145,44 +146,29 @@ def test_a_ledger_closes_where_the_mesh_changes_before_a_fold():
     assert result.ledger["energy_balance_error"] < 1e-7
 
 
-def test_the_critical_velocity_is_that_of_the_loss():
-    result = thrown()
-    share = result.ledger["lost"]["instability"] / result.ledger["initial"]
-    assert result.measures["critical_velocity"] == pytest.approx(0.1 * share**0.5, rel=1e-5)
-
-
 def test_restitution_against_speed_is_that_of_the_loss():
     """Bodies that are launched jump, and what is said of the case is said of that contact."""
-    speeds = np.array([0.04, 0.06, 0.1])
+    speeds = np.array([0.04, 0.06])
     found = asperity.restitution_curve(load(text(60.0)), speeds)
     share = thrown().ledger["lost"]["instability"] / thrown().ledger["initial"]
     left = 1.0 - share * (0.1 / speeds) ** 2
-    assert found.captured.tolist() == [True, False, False]
-    np.testing.assert_allclose(found.restitution[1:], np.sqrt(left[1:]), rtol=1e-5)
+    assert found.captured.tolist() == [True, False]
+    assert found.restitution[1] == pytest.approx(left[1] ** 0.5, rel=1e-5)
     np.testing.assert_allclose(found.critical_velocity, 0.1 * share**0.5, rtol=1e-5)
 
 
-def test_the_loss_is_the_area_between_its_loading_and_unloading_curves():
-    found, lost = curve(), thrown().ledger["lost"]["instability"]
-    area = np.trapezoid(found.force_loading - found.force_unloading, found.rigid_separation)
-    assert found.loss == pytest.approx(lost, rel=1e-9)
-    # Forces are drawn at some hundred separations, between which lines are drawn.
-    assert area == pytest.approx(lost, rel=1e-4)
-
-
-def test_loading_that_jumps_turns_at_its_load():
+def test_the_loss_is_the_area_between_its_curves_whatever_the_load_at_which_loading_turns():
     found = asperity.curve(load(text(60.0)), load=1e-6)
+    lost = thrown().ledger["lost"]["instability"]
     deepest = np.argmin(found.rigid_separation)
     assert found.force_loading[deepest] == pytest.approx(1e-6, rel=1e-7)
-    assert found.loss == pytest.approx(curve().loss, rel=1e-8)
-    assert found.pull_off == pytest.approx(curve().pull_off, rel=1e-8)
-
-
-def test_pull_off_lies_between_the_limits_of_the_work_of_the_two_planes():
-    planes = contact(60.0).interface
-    energy = planes.energy(jnp.linspace(-10.0 * RMS, 10.0 * RMS, 2001), ())
-    work = -float(jnp.min(energy))
-    share = curve().pull_off / (np.pi * work * 10e-6)
+    assert found.loss == pytest.approx(lost, rel=1e-8)
+    # Forces are drawn at some hundred separations, between which lines are drawn.
+    area = np.trapezoid(found.force_loading - found.force_unloading, found.rigid_separation)
+    assert area == pytest.approx(lost, rel=1e-4)
+    # The pull-off lies between the limits of the work of the two planes.
+    energy = contact(60.0).interface.energy(jnp.linspace(-10.0 * RMS, 10.0 * RMS, 2001), ())
+    share = found.pull_off / (np.pi * -float(jnp.min(energy)) * 10e-6)
     assert 1.5 < share < 2.0
 
 
@@ -192,14 +178,6 @@ def test_a_slow_body_is_captured_and_stays_on_its_side_of_the_fold():
     assert result.ledger["energy_balance_error"] < 1e-6
     # It jumped in once, and not out again.
     assert 0.0 < result.ledger["lost"]["instability"] < thrown().ledger["lost"]["instability"]
-
-
-def test_its_losses_are_drawn_as_steps():
-    result = thrown()
-    drawn = result.energies["lost_instability"]
-    assert drawn[0] == 0.0
-    assert drawn[-1] == pytest.approx(result.ledger["lost"]["instability"], rel=1e-9)
-    assert len(np.unique(np.round(drawn / drawn[-1], 9))) == 3
 
 
 KEPT = ["captured", "restitution", "minimum_separation", "lost_instability"]

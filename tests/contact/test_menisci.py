@@ -43,7 +43,7 @@ ASPERITIES = Interface(Hertz(0.25e-9, 56.8e9) + Dmt(0.25e-9, 0.03), Gaussian(10.
 CONDENSED = ConstantVolume(RADIUS, TENSION, ANGLE, 0.4e-9, ByKelvinGap(), edge=False)
 
 
-@pytest.mark.parametrize("law", [SMALL, THIN, CONDENSED], ids=["edge", "thin", "condensed"])
+@pytest.mark.parametrize("law", [SMALL, CONDENSED], ids=["edge", "condensed"])
 def test_a_bridge_of_constant_volume_is_a_law(law):
     check_law(law)
 
@@ -141,13 +141,17 @@ def test_a_smooth_sphere_loses_one_bridge_an_impact():
     bridge_ = law.parts[1]
     mass = 2000.0 * 4.0 / 3.0 * pi * (5e-6) ** 3
     body = Body(mass, 0.0, 100e-9, 0.5)
-    motion = simulate(SmoothContact(law), body, tolerance=Tolerance(max_impacts=1))
+    motion = jax.jit(
+        lambda: simulate(SmoothContact(law), body, tolerance=Tolerance(max_impacts=1))
+    )()
     assert ENDS[int(motion.end.outcome)] is Outcome.ESCAPED
     assert float(motion.impacts.lost[0, 0]) == pytest.approx(float(bridge_.rupture_loss), rel=1e-12)
     assert float(motion.impacts.energy_balance_error[0] / motion.impacts.maximum_kinetic[0]) < 1e-8
 
 
 CASE = asperity.load("published-exact")
+SURFACE = {"capillary.surface_rms_height": "11 nm"}
+FILLED = {"capillary.model": "kelvin-filling", **SURFACE}
 
 
 def regime_at(humidity, **changes):
@@ -156,17 +160,11 @@ def regime_at(humidity, **changes):
 
 
 def test_regimes_follow_each_other_from_dry_to_flooded():
+    """Menisci merge where the Kelvin radius reaches the spacing, 7.7 nm: at about 93 %."""
     thick = {"capillary.adsorbed_film_thickness": "50 nm"}
     found = [regime_at(humidity, **thick) for humidity in (0.0, 0.5, 0.9, 0.95, 0.999, 1.0)]
-    assert found == [
-        "dry", "pendular", "pendular", "coalesced", "flooded", "flooded",
-    ]  # fmt: skip
-
-
-def test_menisci_merge_where_the_kelvin_radius_reaches_the_spacing():
-    """7.7 nm for the publication's asperities: about 93 %."""
-    assert regime_at(0.92) == "pendular"
-    assert regime_at(0.94) == "coalesced"
+    assert found == ["dry", "pendular", "pendular", "coalesced", "flooded", "flooded"]
+    assert [regime_at(humidity) for humidity in (0.92, 0.94)] == ["pendular", "coalesced"]
 
 
 def test_a_film_bounds_what_menisci_span():
@@ -182,16 +180,9 @@ def test_a_film_bounds_what_menisci_span():
     [
         ({"capillary.humidity": 1.0}, "capillary.humidity", "without an `adsorbed_film_thickness`"),
         ({"capillary.model": "kelvin-filling"}, "capillary.surface_rms_height", "must be given"),
+        (SURFACE, "capillary.surface_rms_height", "'kelvin-filling' alone"),
         (
-            {"capillary.surface_rms_height": "11 nm"},
-            "capillary.surface_rms_height",
-            "'kelvin-filling' alone",
-        ),
-        (
-            {
-                "capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm",
-                "roughness": None,
-            },
+            {**FILLED, "roughness": None},
             "capillary.surface_rms_height",
             "must not be given for a smooth body",
         ),
@@ -212,12 +203,9 @@ def test_a_smooth_body_with_filled_gaps_has_one_meniscus():
 def test_a_bridge_too_large_for_its_edge_is_taken_for_thin():
     """Volume over radius^3 is pi (c/radius)^2: 0.1 at c = 0.18 radius."""
     model = {"capillary.model": "constant-volume"}
-    large = build(resolve(CASE.replace(model))).contact.interface.law.parts[-1]
-    small = build(
-        resolve(CASE.replace({**model, "roughness.asperity_radius": "20 nm"}))
-    ).contact.interface.law.parts[-1]
-    assert not large.edge
-    assert small.edge
+    for radius, edge in (("0.25 nm", False), ("20 nm", True)):
+        case = CASE.replace({**model, "roughness.asperity_radius": radius})
+        assert build(resolve(case)).contact.interface.law.parts[-1].edge == edge
 
 
 def test_no_humidity_is_dry():
@@ -228,7 +216,7 @@ def test_no_humidity_is_dry():
     for changes in (
         {},
         {"capillary.model": "constant-volume"},
-        {"capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm"},
+        FILLED,
         {"capillary.formation": "capillary-condensation"},
     ):
         contact = build(resolve(CASE.replace({"capillary.humidity": 0.0, **changes}))).contact
@@ -236,20 +224,16 @@ def test_no_humidity_is_dry():
         assert float(contact.state(place, contact.initial_memory()).force) == expected
 
 
+BRIDGES = {
+    "capillary.model": "constant-volume",
+    "roughness.asperity_radius": "20 nm",
+    "roughness.asperity_density": "1e15 1/m^2",
+}
 AREAS = {
     "menisci": {},
-    "bridges": {
-        "capillary.model": "constant-volume",
-        "roughness.asperity_radius": "20 nm",
-        "roughness.asperity_density": "1e15 1/m^2",
-    },
-    "condensed bridges": {
-        "capillary.model": "constant-volume",
-        "capillary.formation": "capillary-condensation",
-        "roughness.asperity_radius": "20 nm",
-        "roughness.asperity_density": "1e15 1/m^2",
-    },
-    "filling": {"capillary.model": "kelvin-filling", "capillary.surface_rms_height": "11 nm"},
+    "bridges": BRIDGES,
+    "condensed bridges": {**BRIDGES, "capillary.formation": "capillary-condensation"},
+    "filling": FILLED,
     "maugis": {
         "capillary.model": "none",
         "adhesion.model": "maugis",
@@ -260,7 +244,7 @@ AREAS = {
 }
 
 
-@pytest.mark.parametrize("name", long_but(AREAS, "menisci", "filling"))
+@pytest.mark.parametrize("name", long_but(AREAS, "filling"))
 def test_the_loss_of_an_impact_is_the_area_between_the_branches(name, monkeypatch):
     """To its deepest point and back, with many places for Simpson's rule."""
     monkeypatch.setattr(quasi_static, "_POINTS", 8000)

@@ -119,11 +119,9 @@ def test_what_is_too_fast_or_too_slow_to_relax_loses_nothing(time):
     assert impact(0.5, time)[0] == pytest.approx(1.0, abs=1e-8)
 
 
-def test_loss_rises_with_the_time_and_with_its_inverse_from_both_ends():
-    """1 - e tends to 0 in proportion to the relaxation time, or to its inverse."""
-    short = [(1.0 - impact(0.5, time)[0]) / time for time in (1e-4, 1e-5)]
+def test_the_loss_of_a_solid_that_relaxes_late_falls_with_the_inverse_of_the_time():
+    """That of one that relaxes soon rises with the time, as the next test says."""
     long = [(1.0 - impact(0.5, time)[0]) * time for time in (1e4, 1e5)]
-    assert short[0] == pytest.approx(short[1], rel=1e-3)
     assert long[0] == pytest.approx(long[1], rel=1e-3)
 
 
@@ -147,7 +145,7 @@ def test_most_is_lost_where_the_contact_lasts_about_as_long_as_it_relaxes():
 
     That of a standard linear solid is largest at an angular frequency of sqrt(k)/time.
     """
-    times = np.geomspace(0.1, 10.0, 13)
+    times = np.geomspace(10.0**-0.5, 10.0**0.5, 7)
     found = [impact(0.5, time) for time in times]
     least = int(np.argmin([e for e, _ in found]))
     time, (clock, _, _, force, *_) = times[least], found[least][1]
@@ -218,8 +216,8 @@ RADIUS, MODULUS, MASS = 10e-6, 3e9, 4.4e-12
 _prepare = Program(prepare)
 
 
-def integrated(ratio, time, body, tolerance):
-    relaxation = Relaxation(SmoothContact(Hertz(RADIUS, MODULUS)), ratio, time)
+def integrated(ratio, time, body, tolerance, modulus=MODULUS):
+    relaxation = Relaxation(SmoothContact(Hertz(RADIUS, modulus)), ratio, time)
     contact, body = relaxation.relaxed(), replace(body, in_bulk=(VISCOUS,))
     prepared = _prepare(contact, body)
     return integrate_stepped(
@@ -258,12 +256,8 @@ def test_units_do_not_matter():
 
 
 def test_a_heavy_sphere_on_a_soft_solid_comes_to_rest_where_it_has_relaxed():
-    body = Body(MASS, 9.81, 1e-9, in_bulk=(VISCOUS,))
-    soft = Relaxation(SmoothContact(Hertz(RADIUS, 1e4)), 0.1, 1e-5)
-    contact = soft.relaxed()
-    prepared = _prepare(contact, body)
-    limits = Limits.of(Tolerance(max_impacts=100))
-    motion, _, outcome = integrate_stepped(contact, soft, body, prepared, limits, lambda made: None)
+    body = Body(MASS, 9.81, 1e-9)
+    motion, _, outcome = integrated(0.1, 1e-5, body, Tolerance(max_impacts=100), 1e4)
     assert outcome is Outcome.REST
     still = (0.75 * float(body.weight) / (0.1 * 1e4 * math.sqrt(RADIUS))) ** (2.0 / 3.0)
     assert float(motion.impacts.apex[-1]) == pytest.approx(-still, rel=5e-3)

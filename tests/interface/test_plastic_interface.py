@@ -76,10 +76,10 @@ def slopes(interface, separation, memory, integrated):
     return pressure, *both
 
 
-@every_sum
-def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(beside, integrated):
+@pytest.mark.parametrize("integrated", [0, 1])
+def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(integrated):
     for overlap in YIELD:
-        interface = asperities(beside, overlap)
+        interface = asperities("dmt + meniscus", overlap)
         h = jnp.linspace(-1.5, 3.0, BATCH) * SIGMA
         fresh = tuple(jnp.full(h.shape, b) for b in interface.initial_memory())
         pressure, _, work = slopes(interface, h, fresh, integrated)

@@ -19,6 +19,7 @@ from asperity.interface.virgin_loading import first_loading
 from asperity.laws import Dmt, KelvinFilling
 from asperity.laws.plastic import JacksonGreen, ThorntonNing
 from asperity.surfaces.heights import Gaussian
+from chosen import long_but
 from plastic_asperities import (
     BATCH,
     BESIDE,
@@ -73,7 +74,7 @@ def test_a_table_of_what_was_flattened_is_the_integral_over_all_asperities(close
     assert max(errors.values()) < 2e-7, errors
 
 
-@pytest.mark.parametrize("law", OTHERS)
+@pytest.mark.parametrize("law", long_but(OTHERS, "thornton-ning"))
 def test_it_is_so_for_other_laws(law):
     interface = PlasticInterface(OTHERS[law], BESIDE["dmt + meniscus"], Gaussian(SIGMA), N)
     errors = differences(interface, 0.0)

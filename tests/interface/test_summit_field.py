@@ -63,6 +63,9 @@ def test_far_below_all_heights_each_area_has_one():
 
 HEIGHTS = np.sort(np.random.default_rng(3).normal(1e-9, 2e-9, 400))[::-1]
 CLASSES = np.where(np.arange(400) < 40, 1, 0).astype(np.int32)  # the highest are of one class
+ACROSS = np.random.default_rng(5).uniform(0.0, 4e-6, (400, 2))
+INNER = np.array([[1e-6, 1e-6], [3e-6, 3e-6]])
+MAPPED = MeasuredField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES, ACROSS, INNER)
 
 
 def test_measured_heights_give_the_field_of_their_distribution():
@@ -86,18 +89,14 @@ def test_a_summit_is_of_the_class_of_one_that_is_higher_than_its_offset():
 
 
 def test_a_map_gives_its_summits_where_they_are():
-    rng = np.random.default_rng(5)
-    positions = rng.uniform(0.0, 4e-6, (400, 2))
-    within = np.array([[1e-6, 1e-6], [3e-6, 3e-6]])
-    field = MeasuredField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES, positions, within)
-    offsets, classes = field.summits(9, 0, 5)
+    offsets, classes = MAPPED.summits(9, 0, 5)
     places = np.random.default_rng([9, 0]).uniform(1e-6, 3e-6, (WIDTH, 2))
-    squares = np.sum((positions - places[7]) ** 2, axis=1)
+    squares = np.sum((ACROSS - places[7]) ** 2, axis=1)
     every = HEIGHTS - squares / (2.0 * 5e-6)
     highest = np.argsort(-every)[:5]
     np.testing.assert_allclose(offsets[7], every[highest], rtol=1e-12)
     np.testing.assert_array_equal(classes[7], CLASSES[highest])
-    assert field.summits(9, 0, 512)[0].min() == -1.0  # there are no more of them
+    assert MAPPED.summits(9, 0, 512)[0].min() == -1.0  # there are no more of them
     # Strewn evenly, they are a Poisson field but for their number, which is given.
     random = SampledField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES).summits(9, 0, 5)[0]
     assert np.mean(offsets[:, 0]) == pytest.approx(np.mean(random[:, 0]), abs=0.5e-9)
@@ -115,10 +114,6 @@ def test_positions_make_the_offsets():
 
 
 def test_a_map_gives_the_positions_of_its_summits():
-    rng = np.random.default_rng(5)
-    measured = rng.uniform(0.0, 4e-6, (400, 2))
-    within = np.array([[1e-6, 1e-6], [3e-6, 3e-6]])
-    field = MeasuredField(5e-6, 400 / 16e-12, HEIGHTS, CLASSES, measured, within)
-    offsets, positions = field.summits(9, 0, 5)[0][0], field.positions(9, 0, 5)[0]
+    offsets, positions = MAPPED.summits(9, 0, 5)[0][0], MAPPED.positions(9, 0, 5)[0]
     heights = offsets + np.sum(positions**2, axis=1) / (2.0 * 5e-6)
     assert np.all(np.min(np.abs(heights[:, None] - HEIGHTS), axis=1) < 1e-16)

@@ -6,7 +6,6 @@ import pytest
 
 import asperity
 from asperity._jax import jax, jnp
-from asperity.config.case_file import load
 from asperity.config.resolve import resolve
 from asperity.contact import SmoothContact, SmoothPlasticContact
 from asperity.dynamics.curve_table import FORCE, outer_row, tabulate, tabulate_again
@@ -15,34 +14,18 @@ from asperity.laws.law import terms
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
 from asperity.model import build
 
-YIELDS = """
-schema = 1
-
-[body]
-shape = "sphere"
-radius = "1 um"
-youngs_modulus = "3 GPa"
-poisson = 0.3
-density = "1.05 g/cc"
-
-[counterface]
-youngs_modulus = "70 GPa"
-poisson = 0.3
-
-[adhesion]
-model = "none"
-
-[plasticity]
-model = "jackson-green"
-yield_strength = "100 MPa"
-
-[impact]
-speed = "10 m/s"
-gravity = "0 m/s^2"
-
-[numerics]
-max_impacts = 1
-"""
+YIELDS = {
+    "body": {
+        "radius": "1 um", "youngs_modulus": "3 GPa", "poisson": 0.3, "density": "1.05 g/cc",
+    },
+    "counterface": {"youngs_modulus": "70 GPa", "poisson": 0.3},
+    "roughness": None,
+    "adhesion": None,
+    "capillary": None,
+    "plasticity": {"model": "jackson-green", "yield_strength": "100 MPa"},
+    "impact": {"speed": "10 m/s", "gravity": "0 m/s^2"},
+    "numerics.max_impacts": 1,
+}  # fmt: skip
 MAKERS = {
     "jackson-green": (JacksonGreen, 1.0, True),  # what its strength is over the yield strength
     "kogut-etsion": (KogutEtsion, 2.8, True),
@@ -51,7 +34,7 @@ MAKERS = {
 
 
 def test_a_case_that_yields_is_drawn_with_the_force_of_its_law():
-    case = load(YIELDS)
+    case = asperity.load("published-exact").replace(YIELDS)
     law = build(resolve(case)).contact.contact
     made, drawn = asperity.solve(case, critical=False), asperity.curve(case)
     pushed = made.time <= made.time[np.argmin(made.separation)]

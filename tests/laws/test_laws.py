@@ -2,13 +2,12 @@
 
 from math import cos, pi, radians
 
-import equinox as eqx
 import numpy as np
 import pytest
 
 from asperity._jax import jax, jnp
 from asperity.errors import InputError
-from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Meniscus, Sum
+from asperity.laws import Bradley, ByKelvinGap, Dmt, Hertz, Jkr, Maugis, Meniscus, Sum
 
 R, E, W, EPS = 2.5e-7, 5e9, 0.05, 3e-10  # m, Pa, J/m^2, m
 TENSION, ANGLE, KELVIN = 0.0728, radians(40.0), 1.3e-9
@@ -38,66 +37,18 @@ def slope_of(energy, places):
 
 
 @every_law
-def test_free_force_is_the_slope_of_the_free_energy(law):
+def test_forces_are_slopes_of_their_energies(law):
+    """A hundred times closer than `check_law` looks, which holds every other rule of a law."""
     g = gaps(law)
-    scale = float(jnp.max(jnp.abs(law.force(g))))
     # In contact a bond exists, so the free branch of a bonding law is asked for its gaps only.
-    g = g[g > float(law.forming_gap)] if law.hysteretic else g
-    np.testing.assert_allclose(
-        law.force(g), -slope_of(law.energy, g), rtol=1e-10, atol=1e-12 * scale
-    )
-
-
-@every_law
-def test_bonded_force_is_the_slope_of_the_bonded_energy(law):
-    g = gaps(law)
-    g = g[g < float(law.breaking_gap)] if law.hysteretic else g
-    force = law.bonded_force(g)
-    slope = slope_of(law.bonded_energy, g)
-    np.testing.assert_allclose(
-        force, -slope, rtol=1e-9, atol=1e-10 * float(jnp.max(jnp.abs(force)))
-    )
-
-
-@every_law
-def test_bonds_never_create_energy_and_without_them_nothing_is_lost(law):
-    losses = [float(law.formation_loss), float(law.rupture_loss)]
-    if law.hysteretic:
-        assert float(law.breaking_gap) >= float(law.forming_gap)
-        assert min(losses) >= 0.0
-    else:
-        assert losses == [0.0, 0.0]
-
-
-@every_law
-def test_free_energy_vanishes_far_away(law):
-    deep = abs(float(law.bonded_energy(jnp.asarray(-EPS))))
-    assert abs(float(law.energy(jnp.asarray(1.0)))) < 1e-8 * deep
-
-
-def scaled_laws(length, energy):
-    modulus, tension = energy / length**3, energy / length**2
-    r, e, w, eps = R * length, E * modulus, W * tension, EPS * length
-    meniscus = (r, TENSION * tension, ANGLE, KELVIN * length)
-    return (
-        Hertz(r, e), Bradley(r, w, eps), Dmt(r, w), Jkr(r, e, w), Meniscus(*meniscus),
-        Meniscus(*meniscus, ByKelvinGap()),
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("k", range(len(LAWS)), ids=list(LAWS))
-def test_laws_do_not_depend_on_the_units(k):
-    length, energy = 1e9, 3.7e18
-    law, scaled = tuple(LAWS.values())[k], scaled_laws(length, energy)[k]
-    g = gaps(law)
-    for name, factor in (("force", energy / length), ("energy", energy)):
-        for branch in (name, f"bonded_{name}"):
-            here = np.asarray(getattr(law, branch)(g)) * factor
-            there = np.asarray(getattr(scaled, branch)(g * length))
-            np.testing.assert_allclose(there, here, rtol=1e-9, atol=1e-11 * np.max(np.abs(here)))
-    assert float(scaled.formation_loss) == pytest.approx(float(law.formation_loss) * energy)
-    assert float(scaled.rupture_loss) == pytest.approx(float(law.rupture_loss) * energy)
-    assert float(scaled.interaction_range) == pytest.approx(float(law.interaction_range) * length)
+    free = g[g > float(law.forming_gap)] if law.hysteretic else g
+    scale = float(jnp.max(jnp.abs(law.force(g))))
+    slope = slope_of(law.energy, free)
+    np.testing.assert_allclose(law.force(free), -slope, rtol=1e-10, atol=1e-12 * scale)
+    bonded = g[g < float(law.breaking_gap)] if law.hysteretic else g
+    force, slope = law.bonded_force(bonded), slope_of(law.bonded_energy, bonded)
+    scale = float(jnp.max(jnp.abs(force)))
+    np.testing.assert_allclose(force, -slope, rtol=1e-9, atol=1e-10 * scale)
 
 
 @every_law
@@ -117,20 +68,6 @@ def test_truncated_powers_are_the_law_itself(law, share):
         total = sum(term(g) for term in terms)
         scale = float(jnp.max(jnp.abs(direct)))
         np.testing.assert_allclose(total, direct, rtol=1e-11, atol=1e-13 * scale)
-
-
-@every_law
-def test_response_is_the_force_and_the_energy(law):
-    g = gaps(law)
-    for bonded in (False, True):
-        if bonded and not law.hysteretic:
-            continue
-        parts = law.response(g, jnp.full(g.shape, bonded))
-        energy = law.bonded_energy(g) if bonded else law.energy(g)
-        np.testing.assert_allclose(parts.pop("energy"), energy, rtol=1e-12)
-        whole = law.bonded_force(g) if bonded else law.force(g)
-        scale = float(jnp.max(jnp.abs(whole))) + 1e-30
-        np.testing.assert_allclose(sum(parts.values()), whole, rtol=1e-12, atol=1e-13 * scale)
 
 
 def test_hertz_contact_radius_follows_from_the_slope():
@@ -169,12 +106,6 @@ def test_jkr_breaks_at_the_fold_of_its_branch():
     assert float(law.breaking_gap) == pytest.approx(fold, rel=1e-14)
 
 
-def test_jkr_cycle_loses_the_known_work():
-    law, unit = LAWS["jkr"], (W**5 * R**4 / E**2) ** (1.0 / 3.0)
-    assert float(law.formation_loss) / unit == pytest.approx(6.418315, abs=1e-6)
-    assert float(law.rupture_loss) / unit == pytest.approx(0.673881, abs=1e-6)
-
-
 def test_jkr_contact_radius_inverts_the_overlap():
     law = LAWS["jkr"]
     g = jnp.linspace(-2e-8, 0.999 * float(law.breaking_gap), 101)
@@ -198,12 +129,6 @@ def test_meniscus_made_by_contact_loses_the_work_of_stretching_it():
     assert cycle == pytest.approx(2.0 * pi * R * TENSION * cos(ANGLE) * c, rel=1e-13)
 
 
-def test_meniscus_pulls_by_the_classical_capillary_force_at_touch():
-    for name in ("meniscus by contact", "meniscus by Kelvin gap"):
-        pull = float(LAWS[name].bonded_force(jnp.asarray(0.0)))
-        assert pull == pytest.approx(-4.0 * pi * R * TENSION * cos(ANGLE), rel=1e-14)
-
-
 def test_meniscus_never_repels_beyond_its_range():
     g = jnp.linspace(0.0, 1e-8, 101)
     for name in ("meniscus by contact", "meniscus by Kelvin gap"):
@@ -215,8 +140,8 @@ def test_meniscus_never_repels_beyond_its_range():
     [
         (Hertz(R, E), Jkr(R, E, W)), (Jkr(R, E, W), Dmt(R, W)),
         (Dmt(R, W), Bradley(R, W, EPS)), (Hertz(R, E), Hertz(R, E)),
+        *((Maugis(R, E, W, EPS), other) for other in (Hertz(R, E), Dmt(R, W), Jkr(R, E, W))),
     ],
-    ids=["hertz+jkr", "jkr+dmt", "dmt+bradley", "hertz+hertz"],
 )  # fmt: skip
 def test_a_force_is_never_counted_twice(pair):
     with pytest.raises(InputError, match="twice"):
@@ -230,11 +155,3 @@ def test_a_sum_acts_by_the_sum_of_its_parts():
     g = gaps(parts[0])
     np.testing.assert_allclose(whole.force(g), sum(law.force(g) for law in parts), rtol=1e-14)
     np.testing.assert_allclose(whole.energy(g), sum(law.energy(g) for law in parts), rtol=1e-14)
-
-
-@every_law
-def test_laws_work_under_jit_vmap_and_grad(law):
-    g = gaps(law)
-    np.testing.assert_allclose(eqx.filter_jit(law.bonded_force)(g), law.bonded_force(g), rtol=1e-12)
-    np.testing.assert_allclose(jax.vmap(law.force)(g), law.force(g), rtol=1e-12)
-    assert np.all(np.isfinite(jax.vmap(jax.grad(law.bonded_force))(g)))

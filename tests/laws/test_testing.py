@@ -39,44 +39,8 @@ Tether = runpy.run_path(str(OWN_LAW))["Tether"]
 TETHER_DIMENSIONS = {"stiffness": (-1, 1), "extent": (1, 0)}
 
 
-def refuse(kind, message, dimensions=TETHER_DIMENSIONS, error=AssertionError):
-    with pytest.raises(error, match=message):
-        check_law(kind(2.0, 5e-9), dimensions=dimensions)
-
-
 def test_a_law_of_ones_own_passes():
     check_law(Tether(2.0, 5e-9), dimensions=TETHER_DIMENSIONS)
-
-
-def test_force_of_the_wrong_sign_is_found():
-    class Wrong(Tether):
-        def bonded_force(self, gap):
-            return self.stiffness * jnp.maximum(gap, 0.0)
-
-    refuse(Wrong, r"Wrong, bonded branch: the force must be -d\(energy\)/d\(gap\) .* at the gap")
-
-
-def test_energy_that_does_not_match_is_found():
-    class Wrong(Tether):
-        def bonded_energy(self, gap):
-            return self.stiffness * jnp.maximum(gap, 0.0) ** 2
-
-    refuse(Wrong, r"Wrong, bonded branch: the force must be -d\(energy\)/d\(gap\)")
-
-
-def test_breaking_before_forming_is_found():
-    class Wrong(Tether):
-        forming_gap = property(lambda self: 2.0 * self.extent)
-
-    refuse(Wrong, r"Wrong: a bond must break .* forms at 1e-08 m and breaks at 5e-09 m")
-
-
-def test_a_bond_that_gains_energy_is_found():
-    class Wrong(Tether):
-        def bonded_energy(self, gap):
-            return super().bonded_energy(gap) - self.stiffness * self.extent**2
-
-    refuse(Wrong, r"Wrong: energy must not be gained where a bond breaks; at the gap 5e-09 m")
 
 
 class CutOff(Law):
@@ -94,88 +58,106 @@ class CutOff(Law):
         return -self.stiffness * self.extent * jnp.maximum(self.extent - gap, 0.0)
 
 
-def test_a_cut_off_is_a_law():
+def test_a_cut_off_is_a_law_once_the_powers_of_its_values_are_known():
     check_law(CutOff(2.0, 5e-9), dimensions=TETHER_DIMENSIONS)
+    message = "`dimensions` must give the powers .* of `stiffness` of CutOff"
+    with pytest.raises(InputError, match=message):
+        check_law(CutOff(2.0, 5e-9), dimensions={})
 
 
-def test_an_energy_that_jumps_at_a_cut_off_is_found():
-    class Wrong(CutOff):
-        def energy(self, gap):
-            inside = self.stiffness * self.extent * gap
-            return jnp.where(gap < self.extent, inside, 0.0)
-
-    refuse(Wrong, "Wrong, free branch: the energy must fall by the force's work; between the gaps")
+FAULTY = {}
+"""Laws with a fault, and what is said of it."""
 
 
-def test_energy_that_does_not_vanish_far_away_is_found():
-    class Wrong(CutOff):
-        def energy(self, gap):
-            return super().energy(gap) + self.stiffness * self.extent**2
+def said(message):
+    def keep(law):
+        FAULTY[law] = message
+        return law
 
-    refuse(Wrong, "Wrong, free branch: the energy must tend to 0 far away")
-
-
-def test_a_reach_too_short_is_found():
-    class Wrong(CutOff):
-        interaction_range = property(lambda self: 0.5 * self.extent)
-
-    refuse(
-        Wrong, "Wrong, free branch: beyond `interaction_range` = 2.5e-09 m the force must be below"
-    )
+    return keep
 
 
-def test_a_law_that_cannot_be_traced_is_found():
-    class Wrong(CutOff):
-        def force(self, gap):
-            return np.where(np.asarray(gap) < 5e-9, -1e-8, 0.0)
-
-    refuse(Wrong, "Wrong, free branch: the force does not work under jit, vmap and grad")
+@said(r"bonded branch: the force must be -d\(energy\)/d\(gap\) .* at the gap")
+class WrongSign(Tether):
+    def bonded_force(self, gap):
+        return self.stiffness * jnp.maximum(gap, 0.0)
 
 
-def test_single_precision_is_found():
-    class Wrong(CutOff):
-        def force(self, gap):
-            return super().force(gap).astype(jnp.float32)
-
-    refuse(Wrong, "Wrong, free branch: the force must be float64; got float32")
+@said(r"bonded branch: the force must be -d\(energy\)/d\(gap\)")
+class WrongEnergy(Tether):
+    def bonded_energy(self, gap):
+        return self.stiffness * jnp.maximum(gap, 0.0) ** 2
 
 
-def test_a_root_without_guard_is_found():
-    class Wrong(CutOff):
-        def force(self, gap):
-            return super().force(gap) + 0.0 * jnp.sqrt(gap)
-
-    refuse(Wrong, "Wrong, free branch: the force must be finite; at the gap")
+@said("a bond must break .* forms at 1e-08 m and breaks at 5e-09 m")
+class BreakingBeforeForming(Tether):
+    forming_gap = property(lambda self: 2.0 * self.extent)
 
 
-def test_a_length_without_dimension_is_found():
-    class Wrong(CutOff):
-        def force(self, gap):
-            return jnp.where(gap < self.extent, -self.stiffness * 5e-9, 0.0)
-
-        def energy(self, gap):
-            return -self.stiffness * 5e-9 * jnp.maximum(self.extent - gap, 0.0)
-
-    refuse(Wrong, "Wrong, free branch: with lengths times 7 and forces times 3 the force")
+@said("energy must not be gained where a bond breaks; at the gap 5e-09 m")
+class Gaining(Tether):
+    def bonded_energy(self, gap):
+        return super().bonded_energy(gap) - self.stiffness * self.extent**2
 
 
-def test_unknown_dimensions_are_asked_for():
-    refuse(CutOff, "`dimensions` must give the powers .* of `stiffness` of CutOff", {}, InputError)
+@said("free branch: the energy must fall by the force's work; between the gaps")
+class Jumping(CutOff):
+    def energy(self, gap):
+        return jnp.where(gap < self.extent, self.stiffness * self.extent * gap, 0.0)
 
 
-def test_wrong_powers_are_found():
-    class Wrong(CutOff):
-        def powers(self, bond_gap):
-            pull = -self.stiffness * self.extent
-            return (TruncatedPower(pull, 0.0, self.extent),), (
-                TruncatedPower(2.0 * pull, 1.0, self.extent),
-            )
-
-    refuse(Wrong, r"Wrong: `powers\(-inf\)` must be the energy: at the gap")
+@said("free branch: the energy must tend to 0 far away")
+class FarEnergy(CutOff):
+    def energy(self, gap):
+        return super().energy(gap) + self.stiffness * self.extent**2
 
 
-def test_a_force_that_would_be_lost_in_the_sum_is_found():
-    class Wrong(CutOff):
-        counts = frozenset({"magnet"})
+@said("free branch: beyond `interaction_range` = 2.5e-09 m the force must be below")
+class ShortReach(CutOff):
+    interaction_range = property(lambda self: 0.5 * self.extent)
 
-    refuse(Wrong, r"Wrong: `response` must name .energy. and the forces of .*, 'magnet'\]")
+
+@said("free branch: the force does not work under jit, vmap and grad")
+class Untraceable(CutOff):
+    def force(self, gap):
+        return np.where(np.asarray(gap) < 5e-9, -1e-8, 0.0)
+
+
+@said("free branch: the force must be float64; got float32")
+class SinglePrecision(CutOff):
+    def force(self, gap):
+        return super().force(gap).astype(jnp.float32)
+
+
+@said("free branch: the force must be finite; at the gap")
+class UnguardedRoot(CutOff):
+    def force(self, gap):
+        return super().force(gap) + 0.0 * jnp.sqrt(gap)
+
+
+@said("free branch: with lengths times 7 and forces times 3 the force")
+class BareLength(CutOff):
+    def force(self, gap):
+        return jnp.where(gap < self.extent, -self.stiffness * 5e-9, 0.0)
+
+    def energy(self, gap):
+        return -self.stiffness * 5e-9 * jnp.maximum(self.extent - gap, 0.0)
+
+
+@said(r"`powers\(-inf\)` must be the energy: at the gap")
+class WrongPowers(CutOff):
+    def powers(self, bond_gap):
+        pull = -self.stiffness * self.extent
+        energy = TruncatedPower(2.0 * pull, 1.0, self.extent)
+        return (TruncatedPower(pull, 0.0, self.extent),), (energy,)
+
+
+@said(r"`response` must name .energy. and the forces of .*, 'magnet'\]")
+class Uncounted(CutOff):
+    counts = frozenset({"magnet"})
+
+
+@pytest.mark.parametrize("law", FAULTY)
+def test_a_fault_is_found_and_named(law):
+    with pytest.raises(AssertionError, match=f"{law.__name__}[:,] {FAULTY[law]}"):
+        check_law(law(2.0, 5e-9), dimensions=TETHER_DIMENSIONS)
