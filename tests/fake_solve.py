@@ -48,7 +48,11 @@ def solver(behaviour: str = "quick") -> Any:
     def curve(case: Any, *, name: str = "", progress: Any = None, stop: Any = None) -> Any:
         return loading(case=case, name=name or case.name)
 
-    module.solve, module.curve = solve, curve  # type: ignore[attr-defined]
+    def explore(case: Any, *, most: int | None = None, **more: Any) -> Any:
+        return module.solve(case, **more), module.curve(case)
+
+    module.solve, module.curve, module.explore = solve, curve, explore  # type: ignore[attr-defined]
+    module.critical_velocity = lambda case, **more: {"critical_velocity": None}  # type: ignore[attr-defined]
     return module
 
 

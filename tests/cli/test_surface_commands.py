@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import resource
-import shlex
 import signal
 import subprocess
 import sys
@@ -16,61 +14,33 @@ from typing import Any
 import numpy as np
 import psutil
 import pytest
-from typer.testing import CliRunner
 
-from asperity.cli import app
 from asperity.surfaces import Topography
 from asperity.surfaces.files.read_surface import read_surface
 from asperity.surfaces.files.write_surface import write_topography
 from asperity.surfaces.generation.generate import self_affine
+from commands import answered, assert_narrow, assert_one_line, call, imported, names, refused
 
 KEYS = {
     "rms_height", "skewness", "kurtosis", "summit_density", "summit_radius", "summit_rms_height",
     "bandwidth", "moments", "gaussian", "missing_pixels", "pixel_size", "physical_size",
 }  # fmt: skip
 FILES = ["surface.json", "surface.png", "surface.svg", "surface.txt"]
+LONG_NAME = f"{'a long name ' * 4}.npy"
 PIXEL = (20e-9, 20e-9)
 SIZE = ["--size", "1 um x 1 um"]
 HEIGHT = ["--rms-height", "5 nm"]
 
 
-@pytest.fixture(autouse=True)
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty current folder."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def call(*arguments: str) -> Any:
-    return CliRunner().invoke(app, list(arguments))
-
-
-def names(folder: str = ".") -> list[str]:
-    return sorted(path.name for path in Path(folder).iterdir())
-
-
-def strict(text: str) -> Any:
-    def refuse(constant: str) -> None:
-        raise AssertionError(constant)
-
-    return json.loads(text, parse_constant=refuse)
-
-
 def described(*arguments: str) -> Any:
-    ran = call("surface", *arguments, "--json")
+    return answered("surface", *arguments)
+
+
+def generated(name: str, *options: str) -> str:
+    """What is said of a file with a surface made anew."""
+    ran = call("generate", name, *SIZE, *options)
     assert ran.exit_code == 0, ran.output
-    return strict(ran.stdout)
-
-
-def refused(*arguments: str, code: int = 2) -> str:
-    """The one line of a refusal, which leaves nothing behind."""
-    before = names()
-    ran = call(*arguments)
-    assert ran.exit_code == code, ran.output
-    assert ran.stdout == ""
-    assert ran.stderr.count("\n") == 1, ran.stderr
-    assert names() == before
-    return str(ran.stderr)
+    return str(ran.stdout)
 
 
 def rough(name: str = "rough.csv", seed: int = 1, rms: float = 10e-9, points: int = 64) -> str:
@@ -89,12 +59,6 @@ def with_gaps(name: str = "gaps.csv", count: int = 7) -> str:
     return name
 
 
-def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "asperity", *arguments]
-    options = {"capture_output": True, "text": True, "timeout": 120, **options}
-    return subprocess.run(command, check=False, **options)
-
-
 def test_a_lattice_of_paraboloids_has_its_radius_and_density():
     """Tops of one radius R on a square lattice: 1/R is the curvature, 1/pitch^2 the density."""
     radius, pitch, count = 2e-6, 400e-9, 24
@@ -108,7 +72,7 @@ def test_a_lattice_of_paraboloids_has_its_radius_and_density():
     assert found["summit_density"] == pytest.approx(1.0 / pitch**2, rel=0.02)
 
 
-def test_json_of_a_surface_has_the_figures_in_si_and_no_others(place: Path):
+def test_json_of_a_surface_has_the_figures_in_si_and_no_others(place):
     found = described(rough())
     assert set(found) == KEYS
     assert set(found["gaussian"]) == {"statistic", "p_value"}
@@ -139,10 +103,10 @@ def test_json_of_two_surfaces_adds_their_variances():
     assert whole["rms_height"] ** 2 == pytest.approx(both["moments"][0])
 
 
-def test_a_surface_is_described_in_80_columns_with_its_steps_models_and_verdicts(place: Path):
+def test_a_surface_is_described_in_80_columns_with_its_steps_models_and_verdicts(place):
     ran = call("surface", rough())
     assert ran.exit_code == 0, ran.output
-    assert max(map(len, ran.stdout.splitlines())) <= 80
+    assert_narrow(ran.stdout)
     for words in (
         "missing pixels        0 of 4096", "tilt removed", "; Sq ", "McCool", "Nayak",
         "Effect of the pixel size", "Verdicts", "rms height Sq", "bandwidth m0 m4/m2^2",
@@ -152,26 +116,28 @@ def test_a_surface_is_described_in_80_columns_with_its_steps_models_and_verdicts
     assert (place / "rough-out/surface.png").read_bytes().startswith(b"\x89PNG")
     text = (place / "rough-out/surface.txt").read_text()
     assert ran.stdout.split("written to")[0].strip() in text
-    record = strict((place / "rough-out/surface.json").read_text())
+    record = json.loads((place / "rough-out/surface.json").read_text())
     assert set(record) > KEYS
     assert record["mccool"]["density"] > 0.0
     assert record["preparation"]["steps"][0]["rms_before"] > 0.0
 
 
-def test_two_surfaces_have_a_page_each_and_one_for_both(place: Path):
+@pytest.mark.usefixtures("undrawn")
+def test_two_surfaces_have_a_page_each_and_one_for_both(place):
     ran = call("surface", rough("a.csv", 1), rough("b.csv", 2), "-q")
     assert (ran.exit_code, ran.output) == (0, "")
     pages = [f"{n}.{k}" for n in ("composite", "surface-1", "surface-2") for k in ("png", "svg")]
     assert names("a-b-out") == sorted([*pages, "surface.json", "surface.txt"])
     text = (place / "a-b-out/surface.txt").read_text()
     assert "by convolution   by adding" in text
-    assert max(map(len, text.splitlines())) <= 80
+    assert_narrow(text)
     # One surface in the place of two leaves no page of theirs.
     assert call("surface", "a.csv", "-o", "a-b-out", "--force").exit_code == 0
     assert names("a-b-out") == FILES
 
 
-def test_an_earlier_result_is_kept_unless_forced(place: Path):
+@pytest.mark.usefixtures("undrawn")
+def test_an_earlier_result_is_kept_unless_forced(place):
     rough()
     (place / "rough-out").mkdir()
     (place / "rough-out/surface.txt").write_text("mine")
@@ -182,27 +148,16 @@ def test_an_earlier_result_is_kept_unless_forced(place: Path):
     assert call("surface", "rough.csv").exit_code == 0  # beside the files of a run
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_missing_pixels_are_refused_kept_or_filled_and_counted():
     said = refused("surface", with_gaps())
     assert "gaps.csv: 7 of 4096 pixels are missing" in said
     assert "--missing fill" in said
-    for how in ("keep", "fill"):
-        found = described("gaps.csv", "--missing", how)
-        assert found["missing_pixels"] == 7
-        ran = call("surface", "gaps.csv", "--missing", how, "-o", how)
-        assert "missing pixels        7 of 4096 (0.1709 %)" in ran.stdout
-    filled = described("gaps.csv", "--missing", "fill")["rms_height"]
-    assert filled == pytest.approx(described("whole.nc")["rms_height"], rel=0.01)
-
-
-def test_a_tilt_does_not_change_what_is_described():
-    heights = read_surface(rough()).topography.heights
-    slope = 0.3 * PIXEL[0] * np.arange(heights.shape[1])
-    write_topography(Topography(heights + slope, PIXEL), "tilted.nc")
-    level, tilted = described("rough.csv"), described("tilted.nc")
-    assert tilted["rms_height"] == pytest.approx(level["rms_height"], rel=1e-9)
-    # So steep a slope has no summit left.
-    assert "summits need at least 10" in refused("surface", "tilted.nc", "--form-removal", "mean")
+    kept, filled = (described("gaps.csv", "--missing", how) for how in ("keep", "fill"))
+    assert kept["missing_pixels"] == filled["missing_pixels"] == 7
+    assert filled["rms_height"] == pytest.approx(described("whole.nc")["rms_height"], rel=0.01)
+    ran = call("surface", "gaps.csv", "--missing", "keep")
+    assert "missing pixels        7 of 4096 (0.1709 %)" in ran.stdout
 
 
 def test_a_cut_of_short_waves_leaves_fewer_and_rounder_summits():
@@ -225,21 +180,12 @@ def test_an_array_takes_its_size_and_unit_from_the_options():
     ("options", "words"),
     [
         (["--form-removal", "plane"], "`--form-removal` must be one of none, mean, tilt"),
-        (["--line-levelling", "x"], "`--line-levelling` must be one of"),
         (["--line-levelling", "median", "--direction", "x"], "`--direction` must be"),
         (["--degree", "9"], "`--degree` must be a whole number from 0 to 5; got 9"),
         (["--missing", "maybe"], "`--missing` must be one of refuse, keep, fill"),
         (["--s-filter", "5"], "`--s-filter` must have a unit"),
-        (["--s-filter", "-5 nm"], "`--s-filter` must be a positive length"),
-        (["--s-filter", "1 nm"], "rough.csv: `--s-filter` must lie between two pixels, 40 nm"),
         (["--l-filter", "1 m"], "rough.csv: `--l-filter` must lie between two pixels"),
-        (
-            ["--s-filter", "500 nm", "--l-filter", "100 nm"],
-            "`--s-filter` must lie below `--l-filter`",
-        ),
         (["--size", "10 um"], "`--size` must be 2 lengths, such as '10 um x 10 um'"),
-        (["--size", "0 um x 1 um"], "`--size` must be positive"),
-        (["--size", "3 um x 3 um"], "rough.csv: the size must be the one in the file"),
         (["--unit", "volt"], "rough.csv: the unit must be a length"),
         (["--channel", "3"], "rough.csv: holds one map and no channels; got 3"),
         (["--short", "40 nm"], "no such option: --short; it is called --s-filter now"),
@@ -247,75 +193,45 @@ def test_an_array_takes_its_size_and_unit_from_the_options():
         (["rough.csv", "rough.csv"], "one or two files must be given; got 3"),
     ],
 )
-def test_an_option_that_cannot_be_used_is_named(options: list[str], words: str):
+def test_an_option_that_cannot_be_used_is_named(options, words):
     assert words in refused("surface", rough(), *options)
 
 
-@pytest.mark.parametrize(
-    ("name", "content", "words"),
-    [
-        ("a.foo", "not a surface at all", "SurfaceTopography"),
-        ("none.csv", None, "no such file"),
-        ("bare.csv", "1 2 3\n4 5 6\n7 8 9\n", "--unit nm"),
-        ("size.csv", "# unit nm\n1 2 3\n4 5 6\n7 8 9\n", "--size"),
-        ("dot.csv", "# size[um] 1 1\n# unit nm\n7\n", "at least 3 x 3 pixels; got 1 x 1"),
-        ("nan.csv", "# size[um] 1 1\n# unit nm\n" + "nan nan nan\n" * 3, "all pixels are missing"),
-        ("half.csv", "# size[um] 1 1\n# unit nm\n1 2 3\n4 5 6\n7 8", "line 5"),
-        ("half.npy", "\x93NUMPY", "must be a whole .npy file"),
-    ],
-)
-def test_a_file_that_is_no_surface_is_refused_with_its_name(
-    name: str, content: str | None, words: str
-):
-    if content is not None:
-        Path(name).write_text(content, encoding="latin-1")
-    said = refused("surface", name)
-    assert name in said
-    assert words in said
+def test_a_file_that_is_no_surface_is_refused_with_its_name():
+    Path("bare.csv").write_text("1 2 3\n4 5 6\n7 8 9\n")
+    assert_one_line(refused("surface", "bare.csv"), "bare.csv", "--unit nm")
+    assert_one_line(refused("surface", "none.csv"), "none.csv", "no such file")
 
 
 def test_a_flat_map_and_one_with_few_summits_are_refused():
     write_topography(Topography(np.ones((9, 9)), PIXEL), "flat.nc")
     write_topography(Topography(np.arange(25.0).reshape(5, 5) ** 2 * 1e-9, PIXEL), "few.nc")
     for name in ("flat.nc", "few.nc"):
-        said = refused("surface", name)
-        assert name in said
-        assert "summits need at least 10; got 0; measure a larger area" in said
+        rule = "summits need at least 10; got 0; measure a larger area"
+        assert_one_line(refused("surface", name), name, rule)
 
 
 def test_no_command_on_surfaces_waits_for_jax():
     code = (
-        "import sys; from asperity.cli import app; from typer.testing import CliRunner; "
-        "ran = CliRunner().invoke(app, sys.argv[1:]); assert ran.exit_code == 0, ran.output; "
-        "assert 'jax' not in sys.modules"
+        "from asperity.cli import app; from typer.testing import CliRunner; import shlex; "
+        "ran = [CliRunner().invoke(app, shlex.split(line)) for line in sys.argv[1:]]; "
+        "assert all(one.exit_code == 0 for one in ran), ran"
     )
-    made = ["generate", "made.nc", "--points", "128", *SIZE, *HEIGHT]
-    for arguments in (made, ["surface", "made.nc", "-o", "out"]):
-        subprocess.run([sys.executable, "-c", code, *arguments], check=True)
+    made = "generate made.nc --points 64 --size '1 um x 1 um' --rms-height '5 nm'"
+    assert not imported(code, made, "surface made.nc --json") & {"jax"}
 
 
-def limit_files() -> None:
-    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-
-
-def test_a_full_disk_is_exit_4_and_leaves_nothing(place: Path):
+@pytest.mark.usefixtures("undrawn")
+def test_a_full_disk_is_exit_4_and_leaves_nothing(disk_of):
     rough()
-    ran = program("surface", "rough.csv", preexec_fn=limit_files)
-    assert ran.returncode == 4
-    assert "rough-out" in ran.stderr
-    ran = program("generate", "made.npy", *SIZE, *HEIGHT, preexec_fn=limit_files)
-    assert ran.returncode == 4
-    assert "made.npy: cannot be written: File too large" in ran.stderr
-    assert names() == ["rough.csv"]
-    with Path("/dev/full").open("w") as full:
-        ran = program("surface", "rough.csv", "--json", capture_output=False, stdout=full,
-                      stderr=subprocess.PIPE)  # fmt: skip
-    assert ran.returncode == 4
-    assert "standard output" in ran.stderr
+    with disk_of(1000):
+        assert "rough-out" in refused("surface", "rough.csv", code=4)
+        said = refused("generate", "made.npy", *SIZE, *HEIGHT, code=4)
+    assert "made.npy: cannot be written: File too large" in said
 
 
-def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place: Path):
-    write_topography(self_affine((4096, 4096), PIXEL, hurst=0.8, rms_height=1e-8, seed=1), "b.nc")
+def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place):
+    write_topography(self_affine((2048, 2048), PIXEL, hurst=0.8, rms_height=1e-8, seed=1), "b.nc")
     for arguments in (
         ["surface", "b.nc"],
         ["generate", "made.csv", *SIZE, *HEIGHT, "--points", "4096"],
@@ -335,7 +251,7 @@ def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place: Pa
     assert names() == ["b.nc"]
 
 
-def test_ctrl_c_while_drawing_keeps_the_text(monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_while_drawing_keeps_the_text(monkeypatch):
     from asperity.cli import working
     from asperity.plots import surface
 
@@ -352,20 +268,25 @@ def test_ctrl_c_while_drawing_keeps_the_text(monkeypatch: pytest.MonkeyPatch):
     assert names("rough-out") == ["surface.json", "surface.txt"]
 
 
-def test_a_folder_without_permission_is_exit_4(place: Path):
+def test_a_folder_without_permission_is_exit_4(place):
     rough()
     (place / "file").touch()
     assert "Not a directory" in refused("surface", "rough.csv", "-o", "file", code=4)
     assert "No such file" in refused("generate", "none/a.npy", *SIZE, *HEIGHT, code=4)
 
 
-@pytest.mark.parametrize("name", ["made.npy", "made.csv", "made.xyz", "made.nc", "a b.csv.gz"])
-def test_a_made_surface_is_read_back_by_the_command_that_is_printed(name: str):
-    ran = call("generate", name, "--points", "48x32", "--size", "3 um x 2 um", *HEIGHT)
-    assert ran.exit_code == 0, ran.output
-    command = shlex.split(ran.stdout.splitlines()[-1].strip())
-    assert command[:3] == ["asperity", "surface", name]
-    found = described(*command[2:], "--form-removal", "none")
+@pytest.mark.parametrize(
+    "name",
+    ["made.npy", "made.csv", "made.xyz", "made.nc", "a b.csv.gz", f"{'a long name ' * 4}.npy"],
+)
+def test_a_made_surface_is_read_back_by_the_command_that_is_printed(name):
+    said = generated(name, *HEIGHT, "--points", "48x32", "--size", "3 um x 2 um")
+    command = said.partition("describe it with:\n")[2]
+    script = f'asperity() {{ printf "%s\\n" "$@"; }}\n{command}'
+    paste = subprocess.run(["sh", "-c", script], capture_output=True, text=True, check=True)
+    words = paste.stdout.splitlines()
+    assert words[:2] == ["surface", name]
+    found = described(*words[1:], "--form-removal", "none")
     assert found["rms_height"] == pytest.approx(5e-9, rel=1e-9)
     assert found["physical_size"] == pytest.approx([3e-6, 2e-6])
     assert found["pixel_size"] == pytest.approx([62.5e-9, 62.5e-9])
@@ -373,40 +294,25 @@ def test_a_made_surface_is_read_back_by_the_command_that_is_printed(name: str):
 
 def test_the_seed_makes_the_surface():
     for name, seed in (("a.npy", "1"), ("b.npy", "1"), ("c.npy", "2")):
-        call("generate", name, "--points", "16", *SIZE, *HEIGHT, "--seed", seed)
+        generated(name, *HEIGHT, "--points", "16", "--seed", seed)
     contents = [Path(f"{name}.npy").read_bytes() for name in "abc"]
     assert contents[0] == contents[1] != contents[2]
-
-
-def test_a_made_surface_has_the_skewness_and_kurtosis_asked_for_and_says_what_it_cost():
-    ran = call("generate", "made.nc", "--points", "128", *SIZE, *HEIGHT, "--skewness", "-1",
-               "--kurtosis", "6")  # fmt: skip
-    assert ran.exit_code == 0, ran.output
-    assert "spectrum's rms error" in ran.stdout
-    found = described("made.nc", "--form-removal", "none")
-    assert found["skewness"] == pytest.approx(-1.0, abs=0.01)
-    assert found["kurtosis"] == pytest.approx(6.0, abs=0.02)
 
 
 def test_a_made_surface_takes_the_heights_of_an_array_or_of_a_surface():
     heights = np.random.default_rng(3).exponential(size=16 * 16)
     np.save("drawn.npy", heights)
-    for source in ("drawn.npy", rough("own.csv")):
-        ran = call("generate", "made.nc", "--points", "16", *SIZE, *HEIGHT, "--heights", source,
-                   "--force")  # fmt: skip
-        assert ran.exit_code == 0, ran.output
-        assert source in ran.stdout
-        got = np.sort(read_surface("made.nc").topography.heights, axis=None) / 5e-9
-        if source == "drawn.npy":
-            wanted = np.sort((heights - heights.mean()) / heights.std())
-            np.testing.assert_allclose(got, wanted, atol=1e-9)
+    for name, source in (("b.nc", rough("own.csv")), ("a.nc", "drawn.npy")):
+        assert source in generated(name, *HEIGHT, "--points", "16", "--heights", source)
+    got = np.sort(read_surface("a.nc").topography.heights, axis=None) / 5e-9
+    wanted = np.sort((heights - heights.mean()) / heights.std())
+    np.testing.assert_allclose(got, wanted, atol=1e-9)
 
 
 def test_an_rms_slope_is_met():
     """Of the Fourier series; neighbouring pixels give less."""
-    ran = call("generate", "made.nc", "--points", "256", *SIZE, "--rms-slope", "0.2",
-               "--cut-off", "120 nm", "--roll-off", "300 nm")  # fmt: skip
-    assert ran.exit_code == 0, ran.output
+    waves = ["--cut-off", "120 nm", "--roll-off", "300 nm"]
+    generated("made.nc", "--points", "256", "--rms-slope", "0.2", *waves)
     found = described("made.nc", "--form-removal", "none")
     assert math.sqrt(2.0 * found["moments"][1]) == pytest.approx(0.2, rel=0.03)
 
@@ -423,20 +329,18 @@ def test_an_rms_slope_is_met():
         ([*SIZE, *HEIGHT, "--points", "999999999"], "`--points` must be at most"),
         ([*SIZE, *HEIGHT, "--seed", "-1"], "`--seed` must be whole, 0 or more"),
         ([*SIZE, *HEIGHT, "--roll-off", "2 um"], "`--roll-off` must lie between two pixels"),
-        ([*SIZE, *HEIGHT, "--cut-off", "1 pm"], "`--cut-off` must lie between two pixels"),
         ([*SIZE, "--rms-height", "5"], "`--rms-height` must have a unit"),
-        ([*SIZE, "--rms-height", "-5 nm"], "`--rms-height` must be positive"),
         ([*SIZE, "--rms-slope", "nan"], "`--rms-slope` must be positive; got nan"),
         ([*SIZE, *HEIGHT, "--skewness", "2"], "kurtosis above skewness^2 + 1 = 5; got 3"),
         ([*SIZE, *HEIGHT, "--heights", "none.npy"], "none.npy: no such file"),
         ([*SIZE, *HEIGHT, "--heights", "x.npy", "--skewness", "1"], "exclude each other"),
     ],
 )
-def test_a_surface_that_cannot_be_made_is_refused_with_the_option(options: list[str], words: str):
+def test_a_surface_that_cannot_be_made_is_refused_with_the_option(options, words):
     assert words in refused("generate", "made.npy", *options)
 
 
-def test_a_file_is_never_overwritten_without_force(place: Path):
+def test_a_file_is_never_overwritten_without_force(place):
     (place / "made.csv").write_text("mine")
     made = ["generate", "made.csv", "--points", "8", *SIZE, *HEIGHT]
     assert "--force" in refused(*made)
@@ -459,12 +363,11 @@ def test_measured_surfaces_of_the_reproduction_are_read_before_anything_is_compu
     assert "--missing fill" in refused("reproduce", "--surfaces", "rough.csv", with_gaps())
 
 
-def test_figures_2_and_3_of_the_reproduction_are_those_of_two_files(place: Path):
+@pytest.mark.usefixtures("undrawn")
+def test_figures_2_and_3_of_the_reproduction_are_those_of_two_files(place):
     """Their variances add up, as in the publication's convolution."""
     files = [rough("one.csv", 1, 10e-9), rough("two.nc", 2, 20e-9)]
-    ran = call("reproduce", "--surfaces", *files, "--json", "-o", "out")
-    assert ran.exit_code == 0, ran.output
-    found = strict(ran.stdout)["surfaces"]
+    found = answered("reproduce", "--surfaces", *files, "-o", "out")["surfaces"]
     each = [one["rms_height"] for one in found["surfaces"]]
     assert found["composite"]["rms_height"] == pytest.approx(math.hypot(*each), rel=1e-3)
     for number in (2, 3):

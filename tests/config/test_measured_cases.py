@@ -204,6 +204,8 @@ def test_a_record_is_not_run_again_on_a_surface_that_has_changed(solved, tmp_pat
     write_topography(MADE, surface)
     record = recorded(solved, tmp_path, surface)
     assert call("regime", record).exit_code == 0
+    there = load_file(tmp_path / "case.toml")
+    facts = resolve(there).asperities.facts
     write_topography(MADE.with_heights(2.0 * MADE.heights), surface, force=True)
     found = call("run", record, "-o", tmp_path / "out")
     assert found.exit_code == 2

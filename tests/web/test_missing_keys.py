@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
-from asperity.config import BUILTINS, FIRST, Case, load
+from asperity.config import BUILTINS, Case, load
 from asperity.config.case_file import builtin_text, tables
-from asperity.config.key_labels import label
 from asperity.config.problems import check
 from asperity.errors import InputError
-from asperity.web.app import application
 from asperity.web.form import form
 from asperity.web.missing_keys import completed, remedies
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # it would rather have another client
-    from starlette.testclient import TestClient
+from web_client import refusal
 
 Tables = dict[str, Any]
 FORM = {table["name"]: table for table in form() if not table["named"]}
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
-    with TestClient(application(), base_url="http://127.0.0.1") as made:
-        yield made
 
 
 def given(name: str) -> Tables:
@@ -89,7 +76,7 @@ CHOICES = [
 
 @pytest.mark.parametrize("name", BUILTINS)
 @pytest.mark.parametrize("table", [name for name, about in FORM.items() if not about["needed"]])
-def test_every_table_can_be_taken_in_and_out(name: str, table: str):
+def test_every_table_can_be_taken_in_and_out(name, table):
     case = given(name)
     if table in case:
         assert_within_reach({key: each for key, each in case.items() if key != table}, case)
@@ -99,7 +86,7 @@ def test_every_table_can_be_taken_in_and_out(name: str, table: str):
 
 @pytest.mark.parametrize("name", BUILTINS)
 @pytest.mark.parametrize(("table", "key", "choice"), CHOICES)
-def test_every_choice_can_be_made(name: str, table: str, key: str, choice: str):
+def test_every_choice_can_be_made(name, table, key, choice):
     case = given(name)
     assert_within_reach(chosen(case, table, **{key: choice}), case)
 
@@ -141,40 +128,35 @@ def test_remedies_name_a_choice_or_take_out_what_does_not_go():
     assert remedies(case) == []
 
 
-def test_a_case_tells_all_that_is_wrong_with_it_at_once(client: TestClient):
+def test_a_case_tells_all_that_is_wrong_with_it_at_once(client):
     case = given("published-exact")
     case["body"]["radius"] = "-5 um"
     case["capillary"]["humidity"] = 1.5
     case["adhesion"] = {"model": "dmt"}
     case["bodi"] = {}
-    answer = client.post("/api/explore", json={"case": case})
-    error = answer.json()["error"]
-    wanted = {
-        "bodi",
-        "body.radius",
-        "capillary.humidity",
-        "adhesion.work",
+    error = refusal(client, "/api/explore", json={"case": case})
+    assert {one["key"] for one in error["problems"]} == {
+        "bodi", "body.radius", "capillary.humidity", "adhesion.work",
         "adhesion.equilibrium_spacing",
-    }
-    assert {one["key"] for one in error["problems"]} == wanted
+    }  # fmt: skip
     assert error["problems"][0] == {key: error[key] for key in ("key", "message")}
     assert error["key"] == "bodi"
     for one in error["problems"]:
         assert "\n" not in one["message"]
 
 
-def test_rules_between_tables_are_all_told(client: TestClient):
+def test_rules_between_tables_are_all_told(client):
     case = given("published-exact")
     case["publication"] = {}
     case["adhesion"]["model"] = "jkr"
     case["capillary"]["adsorbed_film_thickness"] = "1 nm"
     case["numerics"] = {"rings": 400, "max_impacts": 10**4}
-    error = client.post("/api/explore", json={"case": case}).json()["error"]
+    error = refusal(client, "/api/explore", json={"case": case})
     assert {one["key"] for one in error["problems"]} == {
         "counterface.deformation", "adhesion.model", "capillary.adsorbed_film_thickness",
     }  # fmt: skip
     del case["publication"]
-    error = client.post("/api/explore", json={"case": case}).json()["error"]
+    error = refusal(client, "/api/explore", json={"case": case})
     wanted = ["numerics.rings", "numerics.max_impacts"]
     assert [one["key"] for one in error["problems"]] == wanted
 
@@ -200,28 +182,11 @@ def test_an_error_of_the_library_has_its_problems_and_the_lines_of_the_first():
         ("[", "JSON object"),
     ],
 )
-def test_what_is_no_choice_is_refused(client: TestClient, body: str, words: str):
-    answer = client.post("/api/complete", content=body)
-    assert answer.status_code == 422
-    assert words in answer.json()["error"]["message"]
+def test_what_is_no_choice_is_refused(client, body, words):
+    assert words in refusal(client, "/api/complete", content=body)["message"]
 
 
-def test_choices_of_strange_tables_are_answered(client: TestClient):
+def test_choices_of_strange_tables_are_answered(client):
     for case in ({"body": 3}, {"materials": {"a.b": {"density": []}}}, {"gas": {"name": {}}}):
         answer = client.post("/api/complete", json={"case": case, "before": {}})
         assert answer.status_code == 200, answer.text
-
-
-def test_the_form_names_every_key_in_words_and_the_page_opens_on_the_first_case(client: TestClient):
-    found = client.get("/api/form").json()
-    assert found["first"] == FIRST
-    assert FIRST in BUILTINS
-    for table in found["tables"]:
-        assert table["label"] == label(table["name"])
-        for key in table["keys"]:
-            assert key["label"] == label(f"{table['name']}.{key['key']}")
-            assert "_" not in key["label"]
-    keys = {(table["name"], key["key"]): key for table in found["tables"] for key in table["keys"]}
-    assert keys["capillary", "humidity"]["span"] == "0 to 1"
-    assert keys["roughness", "source"]["beside"] == "files"
-    assert keys["roughness", "rms_height"]["beside"] == ""

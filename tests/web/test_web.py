@@ -10,36 +10,29 @@ import socket
 import subprocess
 import sys
 import time
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from asperity.cli import app
 from asperity.config import FIRST
-from asperity.web.app import application
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # it would rather have another client
-    from starlette.testclient import TestClient
+from asperity.config.case_file import builtin_text, tables
+from commands import assert_one_line, call, program
+from web_client import client_of
 
 HERE = Path(__file__).parents[1]
 LOOPBACK = "0100007F"
 PROGRAM = f"""
 import sys
 sys.path.insert(0, {str(HERE)!r})
+from asperity.web import serving
 from fake_solve import solver
-module = solver()
-module.explore = lambda case, *, most=None, **more: (
-    module.solve(case, **more), module.curve(case)
-)
-sys.modules["asperity.solver"] = module
+serving.SILENCE = 2.0
+sys.modules["asperity.solver"] = solver()
 from asperity.cli import main
 main()
 """
-"""`asperity` with a solver that answers at once."""
+"""`asperity` with a solver that answers at once, and a server of little patience."""
 
 
 @contextlib.contextmanager
@@ -59,24 +52,6 @@ def served(*options: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
             running.kill()
 
 
-def asperity(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "asperity", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-
-
-def assert_one_line(text: str, *parts: str) -> None:
-    assert text.count("\n") == 1, text
-    assert "Traceback" not in text
-    for part in parts:
-        assert part in text
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
-    with TestClient(application(), base_url="http://127.0.0.1:8737") as made:
-        yield made
-
-
 # A process
 
 
@@ -91,15 +66,31 @@ def listening(pid: int) -> set[str]:
     return found
 
 
-def answered(port: int, path: str = "/api/form") -> int:
+@contextlib.contextmanager
+def connected(port: int) -> Iterator[http.client.HTTPConnection]:
     asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
     try:
+        yield asking
+    finally:
+        asking.close()
+
+
+def answered(port: int, path: str = "/api/form") -> int:
+    with connected(port) as asking:
         asking.request("GET", path)
         answer = asking.getresponse()
         answer.read()
         return answer.status
-    finally:
-        asking.close()
+
+
+def interrupted(running: subprocess.Popen[str]) -> str:
+    """What a server says that Ctrl-C ends, at once."""
+    begun = time.monotonic()
+    running.send_signal(signal.SIGINT)
+    _, err = running.communicate(timeout=20)
+    assert time.monotonic() - begun < 2.0
+    assert running.returncode == 130
+    return err
 
 
 def test_it_listens_on_the_loopback_alone_and_ctrl_c_ends_it():
@@ -107,12 +98,7 @@ def test_it_listens_on_the_loopback_alone_and_ctrl_c_ends_it():
         here = {address for address in listening(running.pid) if address.endswith(f":{port:04X}")}
         assert here == {f"{LOOPBACK}:{port:04X}"}
         assert answered(port) == 200
-        begun = time.monotonic()
-        running.send_signal(signal.SIGINT)
-        _, err = running.communicate(timeout=20)
-        assert time.monotonic() - begun < 2.0
-        assert running.returncode == 130
-        assert_one_line(err, "the page is closed")
+        assert_one_line(interrupted(running), "the page is closed")
 
 
 def test_ctrl_c_does_not_wait_for_a_page_that_stays_open():
@@ -125,11 +111,7 @@ def test_ctrl_c_does_not_wait_for_a_page_that_stays_open():
         assert idle.recv(1 << 16).startswith(b"HTTP/1.1 200")
         half.sendall(b"POST /api/read HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\na")
         time.sleep(0.2)
-        begun = time.monotonic()
-        running.send_signal(signal.SIGINT)
-        running.communicate(timeout=20)
-        assert time.monotonic() - begun < 2.0
-        assert running.returncode == 130
+        interrupted(running)
 
 
 def test_a_taken_port_is_one_line_and_exit_4():
@@ -137,7 +119,7 @@ def test_a_taken_port_is_one_line_and_exit_4():
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        ran = asperity("web", "--port", str(port))
+        ran = program("web", "--port", str(port))
     assert (ran.returncode, ran.stdout) == (4, "")
     assert_one_line(ran.stderr, f"127.0.0.1:{port}", "--port")
 
@@ -151,10 +133,8 @@ def test_a_taken_port_is_one_line_and_exit_4():
         (("publishd",), ("published",)),
     ],
 )
-def test_an_address_or_a_case_that_cannot_be_is_one_line_and_exit_2(
-    arguments: tuple[str, ...], parts: tuple[str, ...]
-):
-    ran = CliRunner().invoke(app, ["web", *arguments])
+def test_an_address_or_a_case_that_cannot_be_is_one_line_and_exit_2(arguments, parts):
+    ran = call("web", *arguments)
     assert (ran.exit_code, ran.stdout) == (2, "")
     assert_one_line(ran.stderr, *parts)
 
@@ -187,28 +167,25 @@ def memory(pid: int) -> int:
 def flood(port: int, times: int, within: float) -> None:
     """Ask for everything in turn, good and bad, within a time [s]; each answer is the right one."""
     until = time.monotonic() + within
-    asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
-    for number in range(times):
-        method, path, body, headers, status = HOSTILE[number % len(HOSTILE)]
-        asking.request(method, path, body, headers)
-        answer = asking.getresponse()
-        answer.read()
-        assert answer.status == status, (path, answer.status)
-        assert time.monotonic() < until, f"only {number} requests in {within} s"
-    asking.close()
+    with connected(port) as asking:
+        for number in range(times):
+            method, path, body, headers, status = HOSTILE[number % len(HOSTILE)]
+            asking.request(method, path, body, headers)
+            answer = asking.getresponse()
+            answer.read()
+            assert answer.status == status, (path, answer.status)
+            assert time.monotonic() < until, f"only {number} requests in {within} s"
 
 
 def test_an_open_connection_is_answered_without_delay():
     """TCP would hold an answer's second packet back for 40 ms, were it not told otherwise."""
-    with served("--quiet") as (_, port):
-        asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    with served("--quiet") as (_, port), connected(port) as asking:
         waits = []
         for _ in range(20):
             begun = time.monotonic()
             asking.request("GET", "/api/form")
             asking.getresponse().read()
             waits.append(time.monotonic() - begun)
-        asking.close()
     assert min(waits[5:]) < 0.03
 
 
@@ -233,27 +210,21 @@ def test_ten_thousand_requests_leave_it_answering_in_bounded_memory():
         flood(port, 9000, within=120.0)
         assert answered(port) == 200
         assert memory(running.pid) - before < 32 << 20
-        running.send_signal(signal.SIGINT)
-        _, err = running.communicate(timeout=20)
-    assert (running.returncode, err) == (130, "")
+        assert interrupted(running) == ""
 
 
 def test_hundreds_of_cases_leave_it_answering_in_bounded_memory():
     """Each by an asker of its own and each complete, so that nothing of them may be kept."""
 
     def ask(times: int) -> None:
-        asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
         for _ in range(times):
-            asking.request("POST", "/api/explore", question)
-            assert asking.getresponse().read().splitlines()[-1].startswith(b'{"answer"')
-            asking.close()  # the next one comes from another port
-        asking.close()
+            with connected(port) as asking:  # each from another port
+                asking.request("POST", "/api/explore", question)
+                assert asking.getresponse().read().splitlines()[-1].startswith(b'{"answer"')
 
     with served("--quiet") as (running, port):
-        asking = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
-        asking.request("GET", "/api/cases/published-exact")
-        question = json.dumps({"case": json.loads(asking.getresponse().read())["tables"]})
-        asking.close()
+        case = tables(builtin_text("published-exact"), None)
+        question = json.dumps({"case": case})
         ask(50)
         before = memory(running.pid)
         ask(150)
@@ -281,7 +252,7 @@ def test_hundreds_of_cases_leave_it_answering_in_bounded_memory():
         ("", 421),
     ],
 )
-def test_it_answers_by_its_own_names_alone(client: TestClient, host: str, status: int):
+def test_it_answers_by_its_own_names_alone(client, host, status):
     """A foreign name that leads to this machine is how a foreign page would ask."""
     answer = client.get("/api/form", headers={"host": host})
     assert answer.status_code == status
@@ -290,7 +261,7 @@ def test_it_answers_by_its_own_names_alone(client: TestClient, host: str, status
 
 
 def test_other_names_can_be_told():
-    with TestClient(application(names=["lab.example"]), base_url="http://lab.example") as client:
+    with client_of(names=["lab.example"], base="http://lab.example") as client:
         assert client.get("/api/form").status_code == 200
         assert client.get("/api/form", headers={"host": "127.0.0.1"}).status_code == 421
 
@@ -311,18 +282,18 @@ def test_other_names_can_be_told():
         ({"sec-fetch-site": "same-site"}, 403),
     ],
 )
-def test_it_answers_its_own_page_alone(client: TestClient, headers: dict[str, str], status: int):
+def test_it_answers_its_own_page_alone(client, headers, status):
     assert client.get("/api/form", headers=headers).status_code == status
 
 
 @pytest.mark.parametrize("length", ["-1", "many", "1, 2", "²"])
-def test_a_length_that_is_no_number_is_refused(client: TestClient, length: str):
+def test_a_length_that_is_no_number_is_refused(client, length):
     headers = {"content-length": length.encode("latin-1")}
     answer = client.post("/api/read", content=b"schema = 1", headers=headers)
     assert (answer.status_code, answer.json()["error"]["kind"]) == (400, "request")
 
 
-def test_every_answer_binds_the_browser(client: TestClient):
+def test_every_answer_binds_the_browser(client):
     for path in ("/", "/api/form", "/nothing", "/static/main.js"):
         headers = client.get(path).headers
         assert "default-src 'self'" in headers["content-security-policy"]
@@ -348,13 +319,13 @@ def test_every_answer_binds_the_browser(client: TestClient):
         "/etc/passwd",
     ],
 )
-def test_no_path_leads_out_of_the_page(client: TestClient, path: str):
+def test_no_path_leads_out_of_the_page(client, path):
     answer = client.get(path)
     assert answer.status_code == 404
     assert answer.json()["error"]["kind"] == "request"
 
 
-def test_all_that_the_page_loads_is_its_own(client: TestClient):
+def test_all_that_the_page_loads_is_its_own(client):
     page = client.get("/")
     assert page.headers["content-type"] == "text/html; charset=utf-8"
     assert "http://" not in page.text

@@ -8,9 +8,9 @@ import io
 import json
 import os
 import stat
+import subprocess
 import sys
 import time
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from starlette.testclient import TestClient
 
 from asperity.config import load_file
 from asperity.config.case_file import builtin_text, tables
@@ -28,19 +29,10 @@ from asperity.results.record_layout import json_object
 from asperity.solver import explore
 from asperity.surfaces.generation.generate import self_affine
 from asperity.web import surface_uploads as dropped
-from asperity.web.app import application
 from asperity.web.requests import Asked
 from asperity.web.surface_uploads import MOST_FILES, Surfaces
-
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # it would rather have another client
-    from starlette.testclient import TestClient
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
-    with TestClient(application(), base_url="http://127.0.0.1") as made:
-        yield made
+from commands import call
+from web_client import client_of, page_of, refusal
 
 
 @pytest.fixture
@@ -48,12 +40,6 @@ def kept() -> Iterator[Surfaces]:
     made = Surfaces()
     yield made
     made.close()
-
-
-def page_of(client: TestClient) -> Any:
-    """What the routes share."""
-    app: Any = client.app
-    return app.routes[0].endpoint.__self__
 
 
 def folder_of(client: TestClient) -> str:
@@ -108,37 +94,22 @@ def refused(client: TestClient, case: dict[str, Any], **surfaces: str) -> str:
 # Names
 
 
-@pytest.mark.parametrize(
-    ("name", "status"),
-    [
-        ("a%2Fb.csv", 404),
-        ("..%2F..%2Fb.csv", 404),
-        ("%2Fetc%2Fpasswd", 404),
-        ("..", 404),
-        ("...", 422),
-        (".hidden.csv", 422),
-        ("a%5Cb.csv", 422),
-        ("a%00.csv", 422),
-        ("a%0A.csv", 422),
-        ("-rf.csv", 422),
-        ("na%C3%AFve.csv", 422),
-        ("%FF.csv", 422),
-        ("a" * 81, 422),
-        ("%20.csv", 422),
-        ("a.csv;b", 422),
-    ],
-)
-def test_a_name_is_no_path(client: TestClient, name: str, status: int):
+NAMES = {
+    404: ("a%2Fb.csv", "..%2F..%2Fb.csv", "%2Fetc%2Fpasswd", ".."),
+    422: (
+        "...", ".hidden.csv", "a%5Cb.csv", "a%00.csv", "a%0A.csv", "-rf.csv", "na%C3%AFve.csv",
+        "%FF.csv", "a" * 81, "%20.csv", "a.csv;b",
+    ),
+}  # fmt: skip
+
+
+def test_a_name_is_no_path_and_an_empty_file_no_surface(client):
     before = sorted(Path(folder_of(client)).rglob("*"))
-    answer = client.post(f"/api/surfaces/{name}", content=b"1 2\n2 1\n")
-    assert answer.status_code == status
-    assert "\n" not in answer.json()["error"]["message"]
+    for status, names in NAMES.items():
+        for name in names:
+            refusal(client, f"/api/surfaces/{name}", status, content=b"1 2\n2 1\n")
+    assert refusal(client, "/api/surfaces/a.csv", content=b"")["kind"] == "input"
     assert sorted(Path(folder_of(client)).rglob("*")) == before
-
-
-def test_an_empty_file_is_refused(client: TestClient):
-    answer = client.post("/api/surfaces/a.csv", content=b"")
-    assert (answer.status_code, answer.json()["error"]["kind"]) == (422, "input")
 
 
 @contextlib.contextmanager
@@ -158,7 +129,7 @@ def opened() -> Iterator[list[str]]:
         listening = False
 
 
-def test_a_path_in_a_case_is_not_opened(client: TestClient, tmp_path: Path):
+def test_a_path_in_a_case_is_not_opened(client, tmp_path):
     """Nor one of another upload, by whatever token; a pipe would hold its reader for ever."""
     pipe = tmp_path / "pipe.csv"
     os.mkfifo(pipe)
@@ -175,16 +146,12 @@ def test_a_path_in_a_case_is_not_opened(client: TestClient, tmp_path: Path):
     assert stat.S_ISFIFO(pipe.stat().st_mode)
 
 
-def test_a_case_of_paths_is_not_what_a_page_begins_with(tmp_path: Path):
-    from typer.testing import CliRunner
-
-    from asperity.cli import app
-
+def test_a_case_of_paths_is_not_what_a_page_begins_with(tmp_path):
     text = builtin_text("published-exact")
     begin, end = text.index("asperity_density"), text.index("[adhesion]")
     path = tmp_path / "measured.toml"
     path.write_text(text[:begin] + 'files = ["/etc/passwd"]\n' + text[end:])
-    ran = CliRunner().invoke(app, ["web", str(path), "--port", "0"])
+    ran = call("web", str(path), "--port", "0")
     assert ran.exit_code == 2
     assert "dropped into" in ran.stderr
 
@@ -192,9 +159,7 @@ def test_a_case_of_paths_is_not_what_a_page_begins_with(tmp_path: Path):
 # Reading
 
 
-def test_an_upload_gives_what_the_file_itself_gives(
-    client: TestClient, surface: bytes, tmp_path: Path
-):
+def test_an_upload_gives_what_the_file_itself_gives(client, surface, tmp_path):
     """The same asperities, motion and warnings as of a case beside the file."""
     token = upload(client, "scan.csv", surface)
     tables = case_of("scan.csv", source="gaussian", form_removal="mean")
@@ -228,9 +193,7 @@ def leaves(value: Any) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize("name", ["record.nc", "curve.nc", "summary.txt"])
-def test_what_is_downloaded_names_the_users_file_alone(
-    client: TestClient, surface: bytes, tmp_path: Path, name: str
-):
+def test_what_is_downloaded_names_the_users_file_alone(client, surface, tmp_path, name):
     token = upload(client, "scan.csv", surface)
     question = {"case": case_of("scan.csv"), "surfaces": {"scan.csv": token}}
     answer = client.post(f"/api/files/{name}", json=question)
@@ -247,7 +210,7 @@ def test_what_is_downloaded_names_the_users_file_alone(
         assert folder_of(client) not in told
 
 
-def test_a_file_without_its_size_is_told_beside_the_field(client: TestClient, surface: bytes):
+def test_a_file_without_its_size_is_told_beside_the_field(client, surface):
     bare = surface.split(b"\n", 1)[1]
     token = upload(client, "bare.csv", bare)
     message = refused(client, case_of("bare.csv"), **{"bare.csv": token})
@@ -265,26 +228,23 @@ def npy(shape: tuple[int, ...]) -> bytes:
     return content.getvalue()
 
 
-@pytest.mark.parametrize(
-    ("name", "content", "words"),
-    [
-        ("text.csv", b"# size[um] 1 1\n# unit nm\n1 two\n3 4\n", "text.csv"),
-        ("large.npy", npy((40_000, 40_000)), "large.npy"),
-        ("deep.npy", npy((2,) * 30), "deep.npy"),
-        ("cut.csv.gz", gzip.compress(b"1 2\n" * 999)[:-9], "cut.csv.gz"),
-        ("noise.nc", b"\x89HDF\r\n\x1a\n" + b"\xff" * 500, "noise.nc"),
-        ("scan.map.nc", b"CDF\x01" + b"\0" * 60, "scan.map.nc"),
-    ],
-    ids=lambda value: value if isinstance(value, str) and "." in value else "",
-)
-def test_a_file_that_cannot_be_read_is_told_in_a_line(
-    client: TestClient, name: str, content: bytes, words: str
-):
-    token = upload(client, name, content)
-    assert words in refused(client, case_of(name), **{name: token})
+UNREADABLE = {
+    "text.csv": b"# size[um] 1 1\n# unit nm\n1 two\n3 4\n",
+    "large.npy": npy((40_000, 40_000)),
+    "deep.npy": npy((2,) * 30),
+    "cut.csv.gz": gzip.compress(b"1 2\n" * 999)[:-9],
+    "noise.nc": b"\x89HDF\r\n\x1a\n" + b"\xff" * 500,
+    "scan.map.nc": b"CDF\x01" + b"\0" * 60,
+}
 
 
-def test_a_bomb_is_refused(client: TestClient):
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_a_file_that_cannot_be_read_is_told_in_a_line(client, name):
+    token = upload(client, name, UNREADABLE[name])
+    assert name in refused(client, case_of(name), **{name: token})
+
+
+def test_a_bomb_is_refused(client):
     """Four gigabytes and more of zeros in four megabytes, within the reader's memory and time."""
     bomb = gzip.compress(bytes(1 << 26), 9) * 65
     assert len(bomb) < 5 << 20
@@ -315,9 +275,7 @@ def fresh(client: TestClient) -> dict[str, str]:
     return {"new.csv": upload(client, "new.csv", b"%d 1\n1 2\n" % time.monotonic_ns())}
 
 
-def test_a_reader_that_hangs_is_killed(
-    client: TestClient, reader: Any, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_reader_that_hangs_is_killed(client, reader, monkeypatch):
     number = reader("exec sleep 600")
     monkeypatch.setattr(dropped, "_PATIENCE", 1.0)
     begun = time.monotonic()
@@ -331,16 +289,14 @@ def test_a_reader_that_hangs_is_killed(
 @pytest.mark.parametrize(
     "script", ["kill -9 $$", "kill -11 $$", "exit 1", "echo Traceback >&2; exit 1", "echo [1,"]
 )
-def test_a_reader_that_dies_gives_a_line(client: TestClient, reader: Any, script: str):
+def test_a_reader_that_dies_gives_a_line(client, reader, script):
     reader(script)
     message = refused(client, case_of("new.csv"), **fresh(client))
     assert message == "new.csv: cannot be read: its reader failed on it"
 
 
-def test_a_reader_is_bounded_in_memory_and_time(tmp_path: Path):
+def test_a_reader_is_bounded_in_memory_and_time(tmp_path):
     """By the system, so that no library's own opinion of a file counts."""
-    import subprocess
-
     program = (
         "import resource as r; from asperity.web import upload_reader as m; m._bound(); "
         "print(r.getrlimit(r.RLIMIT_AS)[1], r.getrlimit(r.RLIMIT_CPU)[1]); bytes(m.MEMORY)"
@@ -375,7 +331,7 @@ def resolved(kept: Surfaces, name: str, token: str, **roughness: Any) -> Path:
     return Path(case.roughness.files[0])
 
 
-def test_the_one_longest_unused_goes_first(kept: Surfaces, unread: None):
+def test_the_one_longest_unused_goes_first(kept, unread):
     tokens = [kept.keep(f"{n}.csv", b"1") for n in range(MOST_FILES)]
     assert resolved(kept, "0.csv", tokens[0]).exists()
     kept.keep("more.csv", b"1")
@@ -385,7 +341,7 @@ def test_the_one_longest_unused_goes_first(kept: Surfaces, unread: None):
     assert len(list(Path(kept._folder.name).iterdir())) == MOST_FILES
 
 
-def test_a_file_dropped_in_again_after_it_went_is_read_again(kept: Surfaces, unread: None):
+def test_a_file_dropped_in_again_after_it_went_is_read_again(kept, unread):
     token = kept.keep("scan.csv", b"1")
     assert resolved(kept, "scan.csv", token).exists()
     for n in range(MOST_FILES):
@@ -398,14 +354,14 @@ def bytes_of(kept: Surfaces) -> int:
     return sum(one.stat().st_size for one in Path(kept._folder.name).rglob("*") if one.is_file())
 
 
-def test_uploads_are_bounded_together(kept: Surfaces, monkeypatch: pytest.MonkeyPatch):
+def test_uploads_are_bounded_together(kept, monkeypatch):
     monkeypatch.setattr(dropped, "MOST_BYTES", 1000)
     for n in range(8):
         kept.keep(f"{n}.csv", bytes(300))
     assert 0 < bytes_of(kept) <= 1000
 
 
-def test_maps_of_many_sizes_of_one_file_do_not_fill_the_disk(kept: Surfaces, unread: None):
+def test_maps_of_many_sizes_of_one_file_do_not_fill_the_disk(kept, unread):
     """Each size makes a map anew; those of sizes before it go."""
     token = kept.keep("bare.csv", b"1")
     for n in range(40):
@@ -413,8 +369,8 @@ def test_maps_of_many_sizes_of_one_file_do_not_fill_the_disk(kept: Surfaces, unr
     assert bytes_of(kept) <= 10_000
 
 
-def test_uploads_go_with_the_server(surface: bytes):
-    with TestClient(application(), base_url="http://127.0.0.1") as client:
+def test_uploads_go_with_the_server(surface):
+    with client_of() as client:
         upload(client, "scan.csv", surface)
         folder = Path(folder_of(client))
         assert folder.stat().st_mode & 0o077 == 0
