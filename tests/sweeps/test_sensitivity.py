@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+import threading
 import types
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -176,9 +177,13 @@ def test_bars_stand_at_the_indices_and_the_same_twice():
 
 
 def law_of_sum(
-    one: Study, values: Mapping[str, np.ndarray], progress: Callable[[int], None]
+    one: Study,
+    values: Mapping[str, np.ndarray],
+    progress: Callable[[int], None],
+    stop: threading.Event,
 ) -> dict[str, np.ndarray]:
     assert one.keep == ("restitution",)
+    assert not stop.is_set()
     x, y, z = shares(one, values)
     progress(x.size)
     return {"outcome": np.full(x.size, REST), "restitution": (3.0 * x + 2.0 * y + z)[:, None]}
