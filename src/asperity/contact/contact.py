@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+import dataclasses
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -296,5 +297,12 @@ def _interaction_range(contact: Contact) -> jax.Array:
     return jnp.asarray(contact.interaction_range, dtype=jnp.float64)
 
 
-interaction_range_of = Program(_interaction_range, AT_ONCE)
-"""`Contact.interaction_range` [m], compiled as a whole: asked for alone it is a dozen programs."""
+_compiled_range = Program(_interaction_range, AT_ONCE)
+_ANY = Resolution(0)  # it decides nothing about a range, but each would be compiled
+
+
+def interaction_range_of(contact: Contact) -> jax.Array:
+    """`Contact.interaction_range` [m], compiled as a whole: alone it is a dozen programs."""
+    if any(field.name == "resolved" for field in dataclasses.fields(contact)):
+        contact = dataclasses.replace(contact, resolved=_ANY)
+    return _compiled_range(contact)
