@@ -108,6 +108,9 @@ def compute(
     return expected(study, cases), Effort(len(cases), 0.5, 0.25 * study.pause, study.pause)
 
 
+Study = FakeStudy
+
+
 def compute_task(text: str, task: int) -> tuple[dict[str, np.ndarray], Effort]:
     """As a dask worker computes it."""
     return compute(parse(text), task)

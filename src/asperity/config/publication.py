@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Annotated, Any, ClassVar, Literal
 
 from asperity.config.base_table import Table
 from asperity.config.fields import Number, entry
-from asperity.errors import InputError, refuse_all
+from asperity.errors import InputError, check_each, refuse_all
 
 
 class Publication(Table):
@@ -45,7 +46,12 @@ class Publication(Table):
             raise InputError(
                 "a [roughness] table must be given with [publication]; got none", key="publication"
             )
-        super().check_beside(case)
+        check_each(
+            functools.partial(super().check_beside, case), functools.partial(self._alone, case)
+        )
+
+    def _alone(self, case: Any) -> None:
+        """Refuse models that it replaces."""
         wanted = (
             ("counterface.deformation", case.counterface.deformation, ("rigid",)),
             ("adhesion.model", case.adhesion.model, ("dmt", "none")),

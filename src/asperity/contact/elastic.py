@@ -251,12 +251,9 @@ class ElasticContact(DeformingContact):
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential
     ) -> jax.Array:
-        """The rigid contact's, less the depth at which Hertz stores the energy alone.
-
-        With what attraction adds on the way in.
-        """
+        """The rigid contact's, less the depth at which Hertz stores the energy alone."""
         lowest = self.rigid.lower_bound(release, kinetic, potential)
-        fall = kinetic + self.rigid.most_gained(release, potential)
+        fall = jnp.maximum(kinetic + potential(release) - potential(lowest), 0.0)
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         # The deeper fall through that depth feeds it once more.
         fall = fall + potential(lowest) - potential(lowest - depth)

@@ -139,12 +139,6 @@ class RigidContact(RoughContact):
         ladder = _LADDER * self.interface.scale.rms
         return lowest_place(self._work, ladder, release, kinetic, potential)
 
-    def most_gained(self, release: jax.Array, potential: Potential) -> jax.Array:
-        """The most that a body gains by falling from its release [J]: no less than 0."""
-        ladder = jnp.append(release, _LADDER * self.interface.scale.rms)
-        energy = self._work(ladder) + potential(ladder)
-        return energy[0] - jnp.min(jnp.where(ladder <= release, energy, energy[0]))
-
     def _work(self, places: jax.Array) -> jax.Array:
         """Work [J] of the first approach to separations [m]."""
         return self._measure * self.interface.work_of_approach(places, integrated=1)

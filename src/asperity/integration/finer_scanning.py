@@ -18,6 +18,7 @@ from .clock import Report
 
 _SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
 _RUN, _AGAIN = 0.85, 0.05  # share of the work that a run is, and that its second run counts as
+_STORED = 1e3  # times what bonds can lose: more than curves that are too coarse miss
 _RIGID = 4  # times the even pieces without a bulk; 8 leave 3e-6 of some menisci, 32 1e-13
 _NARROWING = 6  # besides; without them 16 even ones leave 1.5e-5 of menisci narrower than these
 
@@ -60,8 +61,8 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
 
     Curves are cut as the width of bonds asks for. On a soft bulk that adhesion draws out, the
     innermost rings pass from branch to branch many rms heights later, and forces of wide bonds may
-    bend within a piece. Where more is missing of the balance than the bonds at closest approach can
-    lose, their scanning curves are not why.
+    bend within a piece. Where the bonds at closest approach can lose far less than what is missing
+    of the balance, their scanning curves are not why.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
         return None
     rows = motion.impacts
     losable = np.asarray(rows.bonds) @ np.sum(motion.table.losses, axis=0)
-    by_bonds = np.max(np.where(rows.made, losable, 0.0)) / rows.maximum_kinetic[0]
+    by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0)) / rows.maximum_kinetic[0]
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     if isinstance(contact, ElasticContact):

@@ -7,7 +7,6 @@ import csv
 import io
 import threading
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 from asperity.config import Case
@@ -106,11 +105,10 @@ def file(
 
         made: Result | Curve
         if name.startswith("curve"):
-            drawn = curve(case, name=asked.name, progress=report, stop=stop)
-            made = replace(drawn, case=asked.case())
+            made = curve(case, name=asked.name, progress=report, stop=stop)
         else:
-            result = solve(case, name=asked.name, progress=report, stop=stop)
-            made = renamed(result, asked.case(), uploads)
+            made = solve(case, name=asked.name, progress=report, stop=stop)
+        made = renamed(made, asked.case(), uploads)
     if name.endswith(".csv"):
         return table(made)
     if name.endswith(".png"):

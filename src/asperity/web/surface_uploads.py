@@ -13,14 +13,16 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from asperity.config import Case
 from asperity.errors import InputError
-from asperity.results.result import Result
+from asperity.results.result import Curve, Result
 from asperity.surfaces.files.content import digest
 from asperity.web.upload_reader import SECONDS
 from asperity.writing import told
+
+Made = TypeVar("Made", bound=Result | Curve)
 
 MOST_FILES = 16
 """Uploads that are kept; the one longest unused goes first."""
@@ -209,8 +211,8 @@ def _refusal(source: Path, rule: str) -> InputError:
     return InputError(f"{source.name}: {rule}", key="roughness.files")
 
 
-def renamed(result: Result, case: Case, uploads: Mapping[str, Upload]) -> Result:
-    """The result with the user's own files in place of those of this server.
+def renamed(result: Made, case: Case, uploads: Mapping[str, Upload]) -> Made:
+    """A result, or a curve, with the user's own files in place of those of this server.
 
     Parameters
     ----------
