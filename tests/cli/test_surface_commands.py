@@ -231,7 +231,7 @@ def test_a_full_disk_is_exit_4_and_leaves_nothing(disk_of):
 
 
 def test_ctrl_c_ends_a_description_and_a_generation_and_leaves_nothing(place):
-    write_topography(self_affine((2048, 2048), PIXEL, hurst=0.8, rms_height=1e-8, seed=1), "b.nc")
+    write_topography(self_affine((4096, 4096), PIXEL, hurst=0.8, rms_height=1e-8, seed=1), "b.nc")
     for arguments in (
         ["surface", "b.nc"],
         ["generate", "made.csv", *SIZE, *HEIGHT, "--points", "4096"],
