@@ -2,12 +2,13 @@
 
 from types import SimpleNamespace
 
+import equinox as eqx
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import asperity
-from asperity._jax import jax
+from asperity._jax import jax, jnp
 from asperity.config import load
 from asperity.config.resolve import resolve
 from asperity.model import build
@@ -69,17 +70,22 @@ def problem():
     return build(resolve(ROUGH))
 
 
+@eqx.filter_jit
+def _felt(contact, film, place, memory):
+    """Force of the contact, its slope, and the drag of the gas."""
+    force, slope = jax.value_and_grad(lambda d: contact.state(d, memory).force)(place)
+    return force, slope, film.drag(contact.state(place, memory).central)
+
+
 def _leg(problem, start, speed, memory):
     """Place of the next turn of an integration in time, in nm and us."""
     contact, body = problem.contact, problem.body
-    force = jax.jit(jax.value_and_grad(lambda d: contact.state(d, memory).force))
-    central = jax.jit(lambda d: body.drags[0].drag(contact.state(d, memory).central))
     mass, weight, waves = (float(x) for x in (body.mass, body.weight, body.drags[-1].coefficient))
 
     def rate(_, y):
-        place = y[0] * 1e-9
-        push, slope = (float(x) for x in force(place))
-        drag = float(central(place)) + waves * slope**2
+        place = jnp.asarray(y[0] * 1e-9)
+        push, slope, film = (float(x) for x in _felt(contact, body.drags[0], place, memory))
+        drag = film + waves * slope**2
         return [y[1], (push - weight - drag * y[1] * 1e-3) / mass * 1e-3]
 
     def turns(_, y):
