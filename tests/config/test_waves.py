@@ -11,8 +11,9 @@ import asperity
 from asperity._jax import jax, jnp
 from asperity.config import load
 from asperity.config.resolve import resolve
+from asperity.errors import InputError
 from asperity.model import build
-from asperity.regimes.wave_limits import wave_warnings
+from asperity.regimes.wave_limits import MOST, refuse_stopped, wave_warnings
 from refused_input import refusal
 
 ROUGH = load("""
@@ -201,3 +202,23 @@ def test_few_and_many_waves_and_quick_forces_are_warned_of():
 def test_menisci_of_rough_bodies_and_a_body_that_only_pulls_are_not_judged():
     assert _warned(ROUGH.replace({"gas": None}), 0.01, 1e-5) == []
     assert _warned(SMOOTH, 0.2, 0.0) == []
+
+
+def failed(radiated):
+    """A motion that radiated a share of its largest kinetic energy before it was lost."""
+    problem = SimpleNamespace(
+        inputs=SimpleNamespace(structure=SimpleNamespace(waves=True)),
+        contact=SimpleNamespace(mechanisms=("adhesion",)),
+        body=SimpleNamespace(mechanisms=("waves",)),
+    )
+    impacts = SimpleNamespace(
+        maximum_kinetic=np.array([2e-16]), lost=np.array([[5e-15, radiated * 2e-16]])
+    )
+    return problem, SimpleNamespace(impacts=impacts)
+
+
+def test_waves_that_stop_a_body_which_could_not_be_followed_are_refused():
+    refuse_stopped(*failed(0.99 * MOST))
+    with pytest.raises(InputError, match=r"they take 3\.5e-16 J of one that has 2e-16 J") as caught:
+        refuse_stopped(*failed(1.75))
+    assert caught.value.key == "waves.model"

@@ -91,6 +91,17 @@ def test_pressure_is_the_slope_of_energy_and_of_the_work_of_first_approach(integ
         assert worst(-energy, pressure, 1e-3) < 1e-7
 
 
+@eqx.filter_jit
+def approached(interface, separation, memory, integrated):
+    return interface.first_approach(separation, integrated)
+
+
+@eqx.filter_jit
+def left_by(interface, memory):
+    """The interface as its closest approach left it."""
+    return interface.as_flattened(interface.flattened(memory, 0))
+
+
 def work_between(interface, memory, first, last):
     """Work per area [J/m^2] done on the surfaces along a way, and the means at its end."""
     node, weight = np.polynomial.legendre.leggauss(BATCH)
@@ -99,8 +110,11 @@ def work_between(interface, memory, first, last):
     ends = np.concatenate([np.linspace(first, begin, 5), np.linspace(begin, last, 31)[1:]])
     span = np.diff(ends)[:, None]
     place = ends[:-1, None] + 0.5 * span * (1.0 + node)
-    pressure = measured(interface, place.ravel(), memory).parts.sum(axis=0).reshape(place.shape)
-    end = measured(interface, [last], memory)
+    deeper = last < float(memory[0])
+    here = interface if deeper else left_by(interface, memory)
+    call = {"call": approached} if deeper else {}
+    pressure = measured(here, place.ravel(), memory, **call).parts.sum(axis=0).reshape(place.shape)
+    end = measured(here, [last], memory, **call)
     work = -float(np.sum(0.5 * span * pressure * weight))
     return work, end, interface.remember(memory, jnp.asarray(last))
 

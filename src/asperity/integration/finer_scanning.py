@@ -18,7 +18,7 @@ from .clock import Report
 
 _SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
 _RUN, _AGAIN = 0.85, 0.05  # share of the work that a run is, and that its second run counts as
-_STORED = 1e3  # times what bonds can lose: more than curves that are too coarse miss
+_STORED = 1e3  # times what bonds can lose; curves of 3 nodes miss more than that itself
 _RIGID = 4  # times the even pieces without a bulk; 8 leave 3e-6 of some menisci, 32 1e-13
 _NARROWING = 6  # besides; without them 16 even ones leave 1.5e-5 of menisci narrower than these
 

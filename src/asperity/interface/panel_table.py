@@ -12,8 +12,7 @@ from ..numerics.polynomials import NODES, chebyshev_sum, from_points, local, poi
 
 _TO_COEFFICIENTS = from_points(NODES)
 _SLOPE = np.arange(NODES) ** 2 * (-1.0) ** np.arange(1, NODES + 1)  # at the lower end
-TAIL = 2.0
-"""Power with which attraction across a gap falls beyond a table: that of an asperity."""
+_TAIL = 2.0  # power with which attraction across a gap falls: that of an asperity, beyond the table
 
 
 def places_of(ends: jax.Array) -> jax.Array:
@@ -47,7 +46,7 @@ class PanelTable(NamedTuple):
 
         The row of that number is the ``energy``; all others fall as the pressure does.
         """
-        tails = jnp.asarray([TAIL - (number == energy) for number in range(len(rows))])
+        tails = jnp.asarray([_TAIL - (number == energy) for number in range(len(rows))])
         return cls(ends, jnp.einsum("kn,qpn->kpq", _TO_COEFFICIENTS, jnp.stack(rows)), tails)
 
     def total(self) -> PanelTable:
