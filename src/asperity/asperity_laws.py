@@ -25,7 +25,7 @@ from .laws.liquid.meniscus import Formation
 from .laws.plastic import JacksonGreen, KogutEtsion, PlasticContact, ThorntonNing
 
 
-def plastic_law(inputs: Inputs, name: str) -> PlasticContact:
+def plastic_law(inputs: Inputs, name: str, tip: float | None = None) -> PlasticContact:
     """The law of one contact that yields, without adhesion, by its name in a case.
 
     Parameters
@@ -34,8 +34,10 @@ def plastic_law(inputs: Inputs, name: str) -> PlasticContact:
         The quantities of a case in which the strength of a solid is known.
     name
         "kogut-etsion", "jackson-green" or "thornton-ning".
+    tip
+        Its tip radius [m]; by default that of the case.
     """
-    soft, tip, modulus = inputs.yielding, inputs.tip_radius, inputs.modulus
+    soft, tip, modulus = inputs.yielding, tip or inputs.tip_radius, inputs.modulus
     assert soft is not None
     if name == "kogut-etsion":
         return KogutEtsion(tip, modulus, soft.hardness, soft.poisson)

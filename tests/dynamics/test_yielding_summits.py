@@ -1,5 +1,6 @@
 """First impacts of single bodies whose asperities yield: against forces summed finely."""
 
+import dataclasses
 from math import pi
 
 import numpy as np
@@ -8,14 +9,14 @@ import pytest
 import asperity
 from asperity._jax import jax, jnp
 from asperity.config import load_file
-from asperity.contact.asperity_table import asperity_table
+from asperity.contact.asperity_table import asperity_table, stacked
 from asperity.dynamics import Body
 from asperity.dynamics.single_impact import Yielding, single_impacts
 from asperity.dynamics.summit_path import Launch
 from asperity.dynamics.suspension import Dashpot
 from asperity.interface.summit_field import GaussianField
 from asperity.laws import Dmt, Meniscus
-from asperity.laws.law import Sum, as_float64
+from asperity.laws.law import Sum
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
 from chosen import long_but
 
@@ -33,18 +34,28 @@ BODIES, SUMMITS = 16, 16
 BODY = Body(MASS, 0.0, 0.0)
 
 
-def impacts(contact, law, speeds, offsets, before=np.inf, body=BODY):
-    """First impacts, or later ones of bodies that came as close before."""
+def twice(law):
+    """The same of a tip of twice the radius."""
+    if isinstance(law, Sum):
+        return Sum([twice(part) for part in law.parts])
+    return dataclasses.replace(law, radius=2.0 * law.radius)
+
+
+def impacts(contact, law, speeds, offsets, before=np.inf, body=BODY, kind=0):
+    """First impacts, or later ones of bodies that came as close before.
+
+    On tips of a class ``kind`` of two, of which the second has twice the radius.
+    """
     count = len(offsets)
     offsets = np.pad(offsets, ((0, 0), (0, SUMMITS - offsets.shape[1])), constant_values=-1.0)
     some = np.minimum(np.arange(BODIES), count - 1)
     speeds, before = (np.broadcast_to(x, count)[some] for x in (speeds, before))
     launches = Launch(0.5 * MASS * speeds**2, np.full(BODIES, np.inf))
-    contact = jax.tree_util.tree_map(as_float64, contact)
-    kinds = jnp.zeros((BODIES, SUMMITS), jnp.int32)
+    kinds = jnp.full((BODIES, SUMMITS), kind, jnp.int32)
+    contacts = [contact, twice(contact)]
     found = single_impacts(
-        asperity_table([law], 1e-11, contact), body, launches,
-        jnp.asarray(offsets[some]), kinds, True, Yielding(contact, jnp.asarray(before)),
+        asperity_table([law, twice(law)], 1e-11, contacts), body, launches,
+        jnp.asarray(offsets[some]), kinds, True, Yielding(stacked(contacts), jnp.asarray(before)),
     )  # fmt: skip
     return jax.tree_util.tree_map(lambda leaf: np.asarray(leaf)[:count], found)
 
@@ -52,7 +63,7 @@ def impacts(contact, law, speeds, offsets, before=np.inf, body=BODY):
 def summed(contact, law, speed, offsets):
     """Capture, restitution and pull-off from the forces of all at 60,000 separations."""
     dmt, meniscus = law.parts
-    top = offsets.max() + float(asperity_table([law], 1e-11, contact).interaction_range[0])
+    top = offsets.max() + float(asperity_table([law], 1e-11, [contact]).interaction_range[0])
 
     def beside(gap, bonded):
         pull = np.where(bonded, np.asarray(meniscus.bonded_force(gap)), 0.0)
@@ -76,12 +87,13 @@ def summed(contact, law, speed, offsets):
     return captured, 0.0 if captured else np.sqrt(gained[-1] / kinetic), -out.min()
 
 
+@pytest.mark.parametrize("kind", [0, 1])
 @pytest.mark.parametrize("name", long_but(CONTACTS, "kogut-etsion"))
-def test_one_hardly_adhesive_summit_keeps_what_its_contact_gives_back(name):
-    contact = CONTACTS[name]
+def test_one_hardly_adhesive_summit_keeps_what_its_contact_gives_back(name, kind):
+    contact = CONTACTS[name] if kind == 0 else twice(CONTACTS[name])
     deepest = jnp.geomspace(1e-9, 2e-8, 8)
     speeds = np.sqrt(2.0 * np.asarray(contact.loading_work(deepest)) / MASS)
-    found = impacts(contact, HARDLY, speeds, np.zeros((8, 1)))
+    found = impacts(CONTACTS[name], HARDLY, speeds, np.zeros((8, 1)), kind=kind)
     kept = np.asarray(contact.returned(deepest) / contact.loading_work(deepest))
     assert kept[0] > kept[-1]
     assert kept[-1] < 0.9

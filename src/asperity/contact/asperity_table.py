@@ -278,12 +278,12 @@ def _table_of(
 
 _class_axes: Any = Asperities(*[-1] * len(Asperities._fields))  # type: ignore[arg-type]
 _tables = Program(
-    jax.vmap(_table_of, (0, 0, None, None), _class_axes._replace(energy=0, slope=0)), AT_ONCE
+    jax.vmap(_table_of, (0, 0, 0, None), _class_axes._replace(energy=0, slope=0)), AT_ONCE
 )
 
 
 def asperity_table(
-    laws: Sequence[Law], energy: float, contact: PlasticContact | None = None
+    laws: Sequence[Law], energy: float, contacts: Sequence[PlasticContact] = ()
 ) -> Asperities:
     """One asperity of each class, by its laws.
 
@@ -293,8 +293,13 @@ def asperity_table(
         The laws of each class, alike but for their values.
     energy
         Energy [J] that no body comes with.
-    contact
-        The contact of tips that yield; the laws are then those beside it.
+    contacts
+        The contact of a tip of each class, where tips yield; the laws are then those beside it.
     """
-    together = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *laws)
-    return _tables(jnp.arange(len(laws)), together, contact, as_float64(energy))
+    beside = stacked(contacts) if contacts else None
+    return _tables(jnp.arange(len(laws)), stacked(laws), beside, as_float64(energy))
+
+
+def stacked(each: Sequence[Any]) -> Any:
+    """Laws or contacts that are alike but for their values as one, with arrays for its values."""
+    return jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *each)

@@ -13,7 +13,18 @@ from ..laws.plastic import PlasticContact
 from ..numerics.compilation import Program, kept
 from .damped_summits import arrive_damped, damped_kinetic_apart, leave_damped
 from .record import Body
-from .summit_path import Launch, Outward, SummitPath, arrive, end_of, kinetic_apart, leave, top_of
+from .summit_path import (
+    Arrival,
+    Departure,
+    Launch,
+    Outward,
+    SummitPath,
+    arrive,
+    end_of,
+    kinetic_apart,
+    leave,
+    top_of,
+)
 
 _AT_ONCE = 1 << 14  # gaps that are held in memory together: more leave the cache
 _LOOKS = 96  # gaps of each summit for which energies are held
@@ -25,7 +36,7 @@ class Yielding(NamedTuple):
     Attributes
     ----------
     contact
-        Contact of one tip, all being alike.
+        Contact of a tip of each class, with values of shape (classes,).
     closest_approach
         Closest approach [m] of each body on the same summits before; infinite at its first impact.
     """
@@ -111,6 +122,7 @@ def _impact(
     Tips that yield were pressed before, to a separation ``pressed_to`` [m].
     """
     summits = table.of(classes)
+    contact = jax.tree_util.tree_map(lambda values: values[classes], contact)
     found = PressedSummits.of(summits, contact, jnp.maximum(offsets - pressed_to, 0.0))
     inward = SummitPath(found, offsets)
     top = top_of(summits, launch, offsets - found.residual)
@@ -127,12 +139,7 @@ def _impact(
     ends = jnp.where(held, recovered + summits.breaking, end)
     out = Outward(outward, turning_point, end, recovered, ends)
     departure = (leave_damped if body.damped else leave)(body, out, arrival.kinetic)
-    apart = damped_kinetic_apart if body.damped else kinetic_apart
-    before = jnp.where(met, apart(body, arrival.before, top, end), 0.0)
-    drawn = arrival.met | (body.load.force(arrival.turning_point) > 0.0)
-    captured = (departure.captured & met) | (arrival.stays & drawn)
-    after = jnp.where(met, jnp.maximum(departure.after, 0.0), before)
-    kept = jnp.where(before > 0.0, jnp.sqrt(after / jnp.where(before > 0.0, before, 1.0)), ~met)
+    before, captured, restitution = balance(body, arrival, departure, met, (top, end))
     each = inward.forces(turning_point)
     squares = jnp.sum(each**2)
     lost = jnp.sum(held * pressed.flatness * summits.lost, axis=1)
@@ -142,7 +149,7 @@ def _impact(
         closest_approach=turning_point,
         captured=captured,
         impact_energy=before,
-        restitution=jnp.where(captured | arrival.stays, 0.0, kept),
+        restitution=restitution,
         contacting=jnp.sum(gaps < 0.0).astype(float),
         maximum_force=jnp.sum(each),
         loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
@@ -154,6 +161,33 @@ def _impact(
         unsolved=jnp.zeros(()),
         within_range=jnp.sum(gaps <= summits.approach_range),
     )
+
+
+def balance(
+    body: Body,
+    arrival: Arrival,
+    departure: Departure,
+    met: jax.Array,
+    within: tuple[jax.Array, jax.Array],
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Impact energy [J], whether a body is captured, and its restitution.
+
+    Parameters
+    ----------
+    body, arrival, departure
+        What moves, and how it comes and leaves.
+    met
+        Whether it meets a summit.
+    within
+        Its top, and where forces end on its way out [m].
+    """
+    apart = damped_kinetic_apart if body.damped else kinetic_apart
+    before = jnp.where(met, apart(body, arrival.before, *within), 0.0)
+    drawn = arrival.met | (body.load.force(arrival.turning_point) > 0.0)
+    captured = (departure.captured & met) | (arrival.stays & drawn)
+    after = jnp.where(met, jnp.maximum(departure.after, 0.0), before)
+    kept = jnp.where(before > 0.0, jnp.sqrt(after / jnp.where(before > 0.0, before, 1.0)), ~met)
+    return before, captured, jnp.where(captured | arrival.stays, 0.0, kept)
 
 
 def _impacts(

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._jax import jax, jnp
-from ..asperity_laws import plastic_law
-from ..contact.asperity_table import Asperities, asperity_table
+from ..contact.asperity_table import Asperities, asperity_table, stacked
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
@@ -75,17 +74,14 @@ class SingleBodies:
         self._inputs, lengths = inputs, _lengths(contact.interface)
         self._rms, self._range = map(float, lengths)
         self._lowest = turning_point - self._range - _BELOW * self._rms
-        self.field, self._laws, self._tips = place_summits(inputs, self._lowest)
+        self.field, self._tips, self._laws, self._contacts = place_summits(inputs, self._lowest)
         self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
         self._most = MOST_SUMMITS if self._modulus is None else MOST_COUPLED
         self._turning_point, self._count = turning_point, 0
         laws = terms(self._laws[0])
         names = [one.mechanism for one in laws if one.hysteretic]
-        self._contact = None
-        if inputs.yields:
+        if self._contacts:
             assert all(one.radius_power == 1.0 for one in laws)  # see PressedSummits
-            law = plastic_law(inputs, inputs.structure.plasticity)
-            self._contact = jax.tree_util.tree_map(as_float64, law)
             names.append(PLASTIC)
         body = problem.body
         # Without what a motion of the mean starts from, and where: one program serves all.
@@ -140,7 +136,7 @@ class SingleBodies:
                 return found
             # So deep, summits beyond the edges of the map would have been within range.
             self._lowest = lowest - self._rms
-            self.field = place_summits(self._inputs, self._lowest)[0]
+            self.field = place_summits(self._inputs, self._lowest).field
 
     def _all(
         self,
@@ -219,7 +215,7 @@ class SingleBodies:
         gained = np.max(-self._body.plain.load.potential_gain(begin, falls), axis=0)
         energy = _DEEPER * float(np.nanmax(launches.kinetic + gained))
         if self._table is None or self._table[0] < energy:
-            self._table = energy, asperity_table(self._laws, energy, self._contact)
+            self._table = energy, asperity_table(self._laws, energy, self._contacts)
             self._felt = float(np.max(np.asarray(self._table[1].approach_range)))
         return self._table[1]
 
@@ -233,7 +229,9 @@ class SingleBodies:
     ) -> SingleImpact:
         """WIDTH bodies, each with as many summits as the one that has most within range."""
         count = self._count
-        yielding = None if self._contact is None else Yielding(self._contact, as_float64(before))
+        yielding = None
+        if self._contacts:
+            yielding = Yielding(stacked(self._contacts), as_float64(before))
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
             if np.all(np.isinf(before)):

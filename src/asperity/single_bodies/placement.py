@@ -2,20 +2,42 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..asperity_laws import asperity_law, laws_beside
+from ..asperity_laws import asperity_law, laws_beside, plastic_law
 from ..errors import InputError
 from ..inputs import Inputs
 from ..interface.radius_classes import members
 from ..interface.summit_field import GaussianField, MeasuredField, SampledField, SummitField
 from ..laws.law import Law, Sum
+from ..laws.plastic import PlasticContact
 
 
-def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law], list[float]]:
-    """The summits of a case, and by class of tip radius their laws and that radius [m].
+class Placed(NamedTuple):
+    """The summits of a case.
 
-    Of tips that yield, the laws beside their contact.
+    Attributes
+    ----------
+    field
+        Where they are.
+    tips
+        Tip radius [m] of each class of them.
+    laws
+        The laws of each class; of tips that yield, those beside their contact.
+    contacts
+        That contact of each class; none of elastic tips.
+    """
+
+    field: SummitField
+    tips: list[float]
+    laws: list[Law]
+    contacts: list[PlasticContact]
+
+
+def place_summits(inputs: Inputs, lowest: float) -> Placed:
+    """The summits of a case, by class of tip radius.
 
     Parameters
     ----------
@@ -34,26 +56,36 @@ def place_summits(inputs: Inputs, lowest: float) -> tuple[SummitField, list[Law]
     assert placed is not None
     radius, density = inputs.radius, rough.asperity_density
     if rough.summits is None or not (placed.measured or inputs.structure.heights == "summits"):
-        tip = rough.asperity_radius
-        law = Sum(laws_beside(inputs, tip)) if inputs.yields else asperity_law(inputs, tip)
-        field = GaussianField(radius, density, rough.rms_height, rough.mean_height)
-        return field, [law], [tip]
+        gaussian = GaussianField(radius, density, rough.rms_height, rough.mean_height)
+        return _of_classes(gaussian, inputs, [rough.asperity_radius])
     found = rough.summits
     order = np.argsort(-found.heights, kind="stable")
     classes = np.zeros(found.count, np.int32)
-    laws, tips = [], []
+    tips = []
     for number, chosen in enumerate(members(found.radii, inputs.radius_classes)):
         classes[chosen] = number
         tips.append(float(found.radii[chosen].mean()))
-        laws.append(asperity_law(inputs, tips[-1], float(found.radii.min())))
     heights, classes = found.heights[order], classes[order]
     if not placed.measured:
-        return SampledField(radius, density, heights, classes), laws, tips
+        sampled = SampledField(radius, density, heights, classes)
+        return _of_classes(sampled, inputs, tips, float(found.radii.min()))
     rows, columns = found.positions[order].T
     positions = np.stack([columns * found.pixel_size[0], rows * found.pixel_size[1]], axis=1)
     assert rough.surface is not None
     within = _positions(rough.surface.physical_size, (2.0 * radius * (heights[0] - lowest)) ** 0.5)
-    return MeasuredField(radius, density, heights, classes, positions, within), laws, tips
+    field = MeasuredField(radius, density, heights, classes, positions, within)
+    return _of_classes(field, inputs, tips, float(found.radii.min()))
+
+
+def _of_classes(
+    field: SummitField, inputs: Inputs, tips: list[float], smallest: float | None = None
+) -> Placed:
+    """With the laws of each tip radius [m], the smallest of all being that [m]."""
+    if not inputs.yields:
+        return Placed(field, tips, [asperity_law(inputs, tip, smallest) for tip in tips], [])
+    laws: list[Law] = [Sum(laws_beside(inputs, tip, smallest)) for tip in tips]
+    contacts = [plastic_law(inputs, inputs.structure.plasticity, tip) for tip in tips]
+    return Placed(field, tips, laws, contacts)
 
 
 def _positions(size: tuple[float, float], away: float) -> np.ndarray:
