@@ -1,4 +1,4 @@
-"""Single bodies: first impacts on a rigid bulk, in air, and on a half-space, in turn.
+"""Single bodies: first impacts on a rigid bulk and on a half-space, also in air, in turn.
 
 ``python -m benchmarks.single_bodies`` prints these rows alone.
 """
@@ -19,7 +19,7 @@ from asperity.single_bodies import SingleBodies
 EXAMPLE = Path(__file__).parents[1] / "examples" / "single-bodies.toml"
 SPEED = "3 mm/s"
 SPEEDS = (3e-3, 12e-3)  # m/s
-BODIES = {"rigid": 100_000, "in air": 1000, "half-space": 1000}
+BODIES = {"rigid": 100_000, "in air": 1000, "half-space": 1000, "half-space in air": 1000}
 AIR = '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"\n'
 TURNS = 3
 _IMPACT = f'[impact]\nspeed = "{SPEED}"'
@@ -30,9 +30,9 @@ def _case(kind: str) -> str:
     """The example, with DMT's adhesion, launched with a speed."""
     kept = [row for row in EXAMPLE.read_text().splitlines() if "release_separation" not in row]
     text = "\n".join(kept).replace('"maugis"', '"dmt"').replace("[impact]", _IMPACT)
-    if kind == "in air":
-        return text.replace("[impact]", f'{AIR}[impact]\nrelease_separation = "60 nm"')
-    return text.replace('"rigid"', f'"{kind}"')
+    if "in air" in kind:
+        text = text.replace("[impact]", f'{AIR}[impact]\nrelease_separation = "60 nm"')
+    return text.replace('"rigid"', '"half-space"') if "half-space" in kind else text
 
 
 def rows() -> list[Row]:

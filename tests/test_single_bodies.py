@@ -190,11 +190,6 @@ def test_they_do_not_where_it_is_off_by_less_than_five_per_cent(times, speed):
             '"kelvin-filling"\nsurface_rms_height = "2 nm"',
             "`model` must not be 'kelvin-filling'",
         ),
-        (
-            '"rigid"',
-            '"half-space"\n[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"',
-            "`deformation` must be 'rigid' with single bodies (`placement`) that [gas] slows",
-        ),
         ('"random"', '"strewn"', "`placement` must be"),
         (
             '"rigid"',
@@ -339,10 +334,20 @@ def test_a_map_smaller_than_the_summits_within_range_is_refused(map_file: Path):
         bodies_of(text)
 
 
-def test_summits_of_a_map_do_not_yield(map_file: Path):
+def test_summits_of_a_map_yield_where_they_are(map_file: Path):
+    """Each with its own radius; the harder they are, the less they keep."""
     text = on_map(map_file, "measured").replace('source = "summits"\n', "")
-    with pytest.raises(InputError, match=r"`placement` must be 'random' with \[plasticity\]"):
-        load(f'{text}\n[plasticity]\nmodel = "kogut-etsion"\nhardness = "2 GPa"\n')
+    kept = []
+    for hardness in ("2 GPa", "3 GPa"):
+        given = f'\n[plasticity]\nmodel = "kogut-etsion"\nhardness = "{hardness}"\n'
+        problem, bodies = bodies_of(text + given)
+        found = bodies.impacts(launches(problem, 64, 20e-3))
+        free = ~found.captured
+        assert np.sum(free) > 8
+        lost = found.lost[free] / found.impact_energy[free, None]
+        np.testing.assert_allclose(1.0 - found.restitution[free] ** 2, lost.sum(axis=1), atol=1e-8)
+        kept.append(np.mean(found.lost[:, -1] / found.impact_energy))
+    assert kept[0] > max(0.01, 2.0 * kept[1])
 
 
 def test_measured_places_need_a_map():

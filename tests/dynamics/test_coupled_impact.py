@@ -1,9 +1,11 @@
 """Single bodies on a half-space: closed forms, a rigid bulk, and paths followed in small steps."""
 
+import dataclasses
 from math import pi
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from asperity._jax import jax, jnp
@@ -11,10 +13,13 @@ from asperity.contact.asperity_table import asperity_table
 from asperity.contact.coupled_summits import influence_between
 from asperity.dynamics import Body
 from asperity.dynamics.coupled_impact import Bulk, coupled_impacts
+from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.dynamics.summit_path import Launch
-from asperity.dynamics.suspension import Spring
+from asperity.dynamics.suspension import Dashpot, Spring
+from asperity.dynamics.wave_radiation import WaveRadiation
 from asperity.interface.summit_field import GaussianField
 from asperity.laws.law import terms
+from chosen import long_but
 from dynamics.test_single_impact import (
     BODY,
     FAST,
@@ -114,6 +119,106 @@ def test_a_spring_holds_a_body_on_a_half_space_too():
     swung = 0.5 * 5.0 * ((GAP - 20e-9) ** 2 - (rigid.end - 20e-9) ** 2)
     brought = 0.5 * MASS * FAST**2 + fall + swung
     np.testing.assert_allclose(rigid.impact_energy, brought, rtol=1e-12)
+
+
+SLOWED = Body(
+    MASS, 9.81, 0.0,
+    drags=(
+        SqueezeFilm(RADIUS, 1.8e-6, 8e-8, 2e-9), Dashpot(1e-6),
+        WaveRadiation.into(7e10, 0.17, 2200.0),
+    ),
+    forces=(Spring(0.5, 20e-9),),
+)  # fmt: skip
+"""What gas, a dashpot, waves, a spring and its weight act on."""
+
+
+@pytest.mark.parametrize("name", long_but(["jkr, wet", "hertz"], "jkr, wet"))
+def test_drags_slow_a_body_on_a_stiff_bulk_as_on_a_rigid_one(name):
+    """There its way is cut where forces step; here it is a curve between many points."""
+    launches, (offsets, positions) = launched(np.full(BODIES, FAST)), drawn(3)
+    rigid = rigid_impacts(LAWS[name], launches, offsets, SLOWED)
+    found = impacts(LAWS[name], launches, offsets, positions, 1e20, SLOWED)
+    np.testing.assert_array_equal(found.captured, rigid.captured)
+    np.testing.assert_array_equal(found.bonds, rigid.bonds)
+    np.testing.assert_allclose(found.closest_approach, rigid.closest_approach, atol=1e-13)
+    np.testing.assert_allclose(found.impact_energy, rigid.impact_energy, rtol=1e-12)
+    np.testing.assert_allclose(found.restitution, rigid.restitution, atol=4e-5)
+    film, dashpot, waves = (found.lost[:, k] / rigid.lost[:, k] for k in (-3, -2, -1))
+    np.testing.assert_allclose(film, 1.0, atol=1e-5)
+    np.testing.assert_allclose(dashpot, 1.0, atol=5e-6)
+    assert float(jnp.mean(waves)) == pytest.approx(1.0, abs=0.02)
+
+
+def test_losses_on_a_half_space_and_restitution_are_one_balance():
+    law, launches = LAWS["jkr, wet"], launched(np.full(BODIES, FAST))
+    found = impacts(law, launches, *drawn(3), body=SLOWED)
+    free = ~np.asarray(found.captured)
+    assert np.sum(free) > BODIES // 2
+    assert np.all(found.lost[:, 2:] > 0.0)
+    kept = found.impact_energy * found.restitution**2
+    gained = -SLOWED.plain.load.potential_gain(GAP, np.asarray(found.end) - GAP)
+    ledger = kept + np.sum(found.lost, axis=1) + found.interaction
+    np.testing.assert_allclose(ledger[free], (launches.kinetic + gained)[free], rtol=1e-12)
+
+
+def test_a_slowed_body_on_two_summits_is_followed_in_time():
+    """By an independent integrator, with the force on both in closed form."""
+    apart, law = 150e-9, LAWS["hertz"]
+    positions = np.array([[[0.0, 0.0], [apart, 0.0]]])
+    film, dashpot, waves = SLOWED.drags
+    silent = dataclasses.replace(waves, coefficient=0.0)
+    loose = dataclasses.replace(SLOWED, drags=(film, dashpot, silent))
+    found = impacts(law, launched([FAST], 0.5e-9), np.zeros((1, 2)), positions, body=loose)
+    unloaded = impacts(law, launched([FAST], 0.5e-9), np.zeros((1, 2)), positions)
+    stiffness = 4.0 / 3.0 * MODULUS * np.sqrt(TIP)
+    rigid = (0.5 * MASS * FAST**2 / (0.8 * stiffness)) ** 0.4
+    radii = jnp.full(2, np.sqrt(TIP * rigid))
+    lowered = float(influence_between(jnp.asarray(positions[0]), radii, MODULUS)[0, 1])
+    unit, rate = 1e-9, FAST / 1e-9
+
+    def contact(place):
+        if place >= 0.0:
+            return 0.0
+
+        def left(z):
+            return z + lowered * stiffness * z**1.5 + place
+
+        return 2.0 * stiffness * brentq(left, 0.0, -place, xtol=1e-26) ** 1.5
+
+    def slope(_, y):
+        place = y[0] * unit
+        outer = -float(loose.plain.load.force(place))
+        drag = float(film.drag(place) + 1e-6) * y[1] * FAST
+        return [y[1], (contact(place) + outer - drag) / (MASS * FAST * rate)]
+
+    def touches(_, y):
+        return y[0]
+
+    def turns(_, y):
+        return y[1]
+
+    answer = solve_ivp(slope, (0.0, 60.0), [0.5, -1.0], "DOP853", events=(touches, turns),
+                       rtol=1e-9, atol=1e-11)  # fmt: skip
+    inwards, outwards = answer.y_events[0][:2, 1]
+    assert float(found.restitution[0]) == pytest.approx(-outwards / inwards, rel=1e-6)
+    turn = answer.y_events[1][0, 0] * unit
+    assert float(found.closest_approach[0]) == pytest.approx(turn, rel=1e-6)
+    assert float(unloaded.closest_approach[0]) < turn
+
+
+def test_a_body_that_gas_stops_above_a_half_space_stays():
+    """One stops in the film, one meets summits that hold it, and one comes out again."""
+    thick = (SqueezeFilm(RADIUS, 1.8e-4, 8e-8, 2e-9), *SLOWED.drags[1:])
+    body = Body(MASS, 0.0, 0.0, drags=thick, forces=(Spring(0.0, 20e-9),))
+    offsets, positions = (some[2:3].repeat(3, axis=0) for some in drawn(3))
+    found = impacts(LAWS["jkr, wet"], launched([1e-3, 0.01, 0.8]), offsets, positions, body=body)
+    np.testing.assert_array_equal(found.captured, [False, True, False])
+    np.testing.assert_array_equal(found.restitution == 0.0, [True, True, False])
+    np.testing.assert_array_equal(found.contacting, [0.0, 2.0, 16.0])
+    assert found.closest_approach[0] == found.end[0]
+    assert not np.any(found.lost[0, :2])
+    brought = 0.5 * MASS * 1e-3**2
+    assert float(jnp.sum(found.lost[0, 2:])) == pytest.approx(brought, rel=1e-6)
 
 
 class Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from asperity.config import fields
-from asperity.config.base_table import Table, acts
+from asperity.config.base_table import Table
 from asperity.config.fields import Number, entry
 from asperity.errors import InputError, refuse_all
 from asperity.units import lengths
@@ -190,17 +190,4 @@ class Roughness(Table):
         if case.capillary.model == "kelvin-filling":
             rule = "must not be 'kelvin-filling' with single bodies (`placement`)"
             found.append(InputError(f"`model` {rule}: {_NO_OTHER}", key="capillary.model"))
-        slowing = {
-            "[gas]": case.gas is not None,
-            "[waves]": acts(case.waves),
-            "`damping`": case.suspension is not None and bool(case.suspension.damping),
-        }
-        if case.counterface.deformation == "half-space" and any(slowing.values()):
-            named = next(name for name, there in slowing.items() if there)
-            rule = f"must be 'rigid' with single bodies (`placement`) that {named} slows"
-            key = "counterface.deformation"
-            found.append(InputError(f"`deformation` {rule}; got 'half-space'", key=key))
-        if self.placement == "measured" and acts(case.plasticity):
-            rule = "`placement` must be 'random' with [plasticity], whose tips are all alike"
-            found.append(InputError(f"{rule}; got 'measured'", key="roughness.placement"))
         refuse_all(found)

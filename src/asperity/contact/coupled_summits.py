@@ -26,6 +26,8 @@ class SummitEquilibrium(NamedTuple):
         Its slope with the separation, shape (n,).
     forces
         Force on each [N], positive apart, shape (n,).
+    stiffness
+        Slope of their sum with the separation [N/m], but for attractions that rise at contact.
     energy
         Energy of all and of the half-space [J], with what bonds that hold have lost.
     solved
@@ -35,6 +37,7 @@ class SummitEquilibrium(NamedTuple):
     gaps: jax.Array
     rates: jax.Array
     forces: jax.Array
+    stiffness: jax.Array
     energy: jax.Array
     solved: jax.Array
 
@@ -114,29 +117,40 @@ class CoupledSummits(NamedTuple):
         (gaps, rates, _), change = fixed_point(step, (guess, one, jnp.asarray(0)), enough, _STEPS)
         work, forces, _ = self._response(gaps, bonded)
         energy = jnp.sum(work) + 0.5 * forces @ self.influence @ forces
-        return SummitEquilibrium(gaps, rates, forces, energy, change <= enough)
+        stiffness = -self._by_laws(gaps, bonded)[2] @ rates
+        return SummitEquilibrium(gaps, rates, forces, stiffness, energy, change <= enough)
 
     def _response(
         self, gaps: jax.Array, bonded: jax.Array
     ) -> tuple[jax.Array, jax.Array, jax.Array]:
         """Work [J], force [N] and its slope [N/m] of each, shape (n,)."""
-        some = self.summits
-        inside = _INSIDE * some.scale
-        low = jnp.max(jnp.where(bonded, -jnp.inf, some.forming), axis=0, initial=-jnp.inf)
-        high = jnp.min(jnp.where(bonded, some.breaking - inside, jnp.inf), axis=0, initial=jnp.inf)
-        within = jnp.clip(gaps, low, high)
-        bits = 2 ** jnp.arange(bonded.shape[0])
-        branch = jnp.tensordot(bits, bonded.astype(bits.dtype), axes=1)
-        work, slope, curvature = some.response(within, branch)
-        work = work + slope * (gaps - within)
-        curvature = jnp.where(within == gaps, curvature, 0.0)
-        depth = jnp.clip(-within, 0.0, self.ramp)
+        work, slope, curvature = self._by_laws(gaps, bonded)
+        depth = jnp.clip(-self._within(gaps, bonded), 0.0, self.ramp)
         missing = 1.0 - depth / self.ramp
         rises = (depth > 0.0) & (missing > 0.0)
         work = work + 0.5 * self.steps * depth * (1.0 + missing)
         slope = slope - jnp.where(rises, self.steps * missing, 0.0)
         curvature = curvature - jnp.where(rises, self.steps / self.ramp, 0.0)
         return work, -slope, -curvature
+
+    def _within(self, gaps: jax.Array, bonded: jax.Array) -> jax.Array:
+        """Gaps [m] at which the bonds can be as they are, shape (n,)."""
+        some = self.summits
+        inside = _INSIDE * some.scale
+        low = jnp.max(jnp.where(bonded, -jnp.inf, some.forming), axis=0, initial=-jnp.inf)
+        high = jnp.min(jnp.where(bonded, some.breaking - inside, jnp.inf), axis=0, initial=jnp.inf)
+        return jnp.clip(gaps, low, high)
+
+    def _by_laws(
+        self, gaps: jax.Array, bonded: jax.Array
+    ) -> tuple[jax.Array, jax.Array, jax.Array]:
+        """Work [J], its slope [N] and the slope of that [N/m] of each by its laws, shape (n,)."""
+        within = self._within(gaps, bonded)
+        bits = 2 ** jnp.arange(bonded.shape[0])
+        branch = jnp.tensordot(bits, bonded.astype(bits.dtype), axes=1)
+        work, slope, curvature = self.summits.response(within, branch)
+        work = work + slope * (gaps - within)
+        return work, slope, jnp.where(within == gaps, curvature, 0.0)
 
 
 def influence_between(

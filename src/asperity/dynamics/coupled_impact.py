@@ -10,10 +10,19 @@ from ..contact.coupled_summits import CoupledSummits, influence_between
 from ..contact.pressed_summits import PressedSummits
 from ..laws.law import Real
 from ..numerics.compilation import Program
-from .coupled_path import follow
+from .coupled_path import Path, follow
+from .damped_coupled import damped_path
 from .record import Body
-from .single_impact import SingleImpact
-from .summit_path import Launch, SummitPath, arrive, end_of, kinetic_apart, top_of
+from .single_impact import SingleImpact, balance
+from .summit_path import (
+    Arrival,
+    Departure,
+    Launch,
+    SummitPath,
+    arrive,
+    end_of,
+    top_of,
+)
 
 
 class Bulk(NamedTuple):
@@ -53,34 +62,47 @@ def _coupled_impact(
     depth = jnp.where(jnp.isfinite(deepest), jnp.maximum(offsets - deepest, 0.0), 0.0)
     influence = influence_between(positions, jnp.sqrt(tips[classes] * depth), modulus)
     coupled = CoupledSummits.on(summits, offsets, influence, depth > 0.0)
-    path = follow(coupled, body.load, top, jnp.where(rigid.met, rigid.before, jnp.nan), depth[0])
-    turn, end = path.at_turn, end_of(summits, offsets, path.bonded_at_turn, top)
+    along = damped_path if body.damped else _free_path
+    path, arrival, departure = along(body, coupled, launch, top, rigid, depth[0])
+    turn, end = path.at_turn, path.last.separation
     begin = end_of(summits, offsets, jnp.zeros_like(path.bonded_at_turn), top)
-    met = rigid.met & (deepest < begin)
-    before, after = (
-        kinetic_apart(body, each, top, end) for each in (rigid.before, path.last.kinetic)
-    )
-    captured = (jnp.minimum(path.least, after) < 0.0) & met
-    kept = jnp.where(met, jnp.sqrt(jnp.maximum(after, 0.0) / before), 1.0)
+    met = arrival.met & (arrival.turning_point < begin)
+    before, captured, restitution = balance(body, arrival, departure, met, (top, end))
     squares = jnp.sum(turn.forces**2)
     tabulated = jnp.min(turn.gaps - summits.gap_of_border(0)) >= 0.0
-    turning_point = jnp.where(path.arrived & tabulated, path.turning_point, jnp.nan)
+    turning_point = jnp.where(path.arrived & tabulated, arrival.turning_point, jnp.nan)
     return SingleImpact(
-        closest_approach=jnp.where(rigid.met, turning_point, top),
+        closest_approach=jnp.where(arrival.met, turning_point, top),
         captured=captured,
-        impact_energy=jnp.where(met, before, 0.0),
-        restitution=jnp.where(captured, 0.0, kept),
+        impact_energy=before,
+        restitution=restitution,
         contacting=jnp.sum(turn.gaps < 0.0).astype(float),
         maximum_force=turn.force,
         loaded=turn.force**2 / jnp.where(squares > 0.0, squares, 1.0),
         bonds=jnp.sum(path.bonded_at_turn, axis=1).astype(float),
-        lost=path.lost,
+        lost=jnp.concatenate([path.lost, arrival.taken + met * departure.taken]),
         interaction=path.freed - jnp.sum(path.lost),
         pull_off=path.tension,
         end=end,
         unsolved=(~path.sound).astype(float),
         within_range=jnp.sum(turn.gaps <= summits.approach_range),
     )
+
+
+def _free_path(
+    body: Body,
+    coupled: CoupledSummits,
+    _launch: Launch,
+    top: jax.Array,
+    free: Arrival,
+    depth: jax.Array,
+) -> tuple[Path, Arrival, Departure]:
+    """:func:`~asperity.dynamics.damped_coupled.damped_path` of a body that no drag slows."""
+    path = follow(coupled, body.load, top, jnp.where(free.met, free.before, jnp.nan), depth)
+    after = path.last.kinetic
+    captured = jnp.minimum(path.least, after) < 0.0
+    arrival = free._replace(turning_point=path.turning_point)
+    return path, arrival, Departure(captured, after, jnp.zeros(0))
 
 
 def _impacts(

@@ -13,8 +13,11 @@ import numpy as np
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities
 from ..contact.coupled_summits import CoupledSummits, SummitEquilibrium
+from ..laws.law import Real
 from ..numerics.trees import choose
 from .external_forces import Load
+from .force_curve import CurvePoint, ForceCurve
+from .summit_path import end_of
 
 _CLOSE = 1e-10  # of the shortest length of a law: how near a bond is to its change
 _LENGTH = 0.1  # of the depth of the first summit: over which forces change
@@ -25,28 +28,21 @@ _BEYOND = 1e-3  # of a step, by which a body then goes on
 _BETWEEN = np.linspace(0.0, 1.0, 17)[1:]  # of a step, where the least value of a cubic is sought
 
 
-class _Point(NamedTuple):
-    """Where a body is: separation, kinetic energy and force there."""
-
-    separation: jax.Array
-    kinetic: jax.Array
-    force: jax.Array
-
-
 class Path(NamedTuple):
     """State of a body along its path.
 
     ``last`` is the last point from where on no bond was missed, ``missed`` a separation behind one
     that was. ``freed`` is the energy that the contact loses as bonds change, ``lost`` what
     those that broke lose themselves; ``least`` and ``tension`` the least kinetic energy and the
-    largest tension on retraction. It is ``sound`` while all points that count are solved.
+    largest tension on retraction. It is ``sound`` while all points that count are solved. The
+    ``curve`` is of the points from where on no bond was missed, where it is asked for.
     """
 
     separation: jax.Array
     bonded: jax.Array
     state: SummitEquilibrium
     outward: jax.Array
-    last: _Point
+    last: CurvePoint
     missed: jax.Array
     freed: jax.Array
     lost: jax.Array
@@ -59,6 +55,7 @@ class Path(NamedTuple):
     sound: jax.Array
     still: jax.Array
     steps: jax.Array
+    curve: ForceCurve | None
 
 
 class _Choice(NamedTuple):
@@ -78,7 +75,10 @@ class _Choice(NamedTuple):
 
 
 class _Motion(NamedTuple):
-    """A body that comes by ``top`` with an ``energy``, and goes by steps of about a ``length``."""
+    """A body that comes by ``top`` with an ``energy``, and goes by steps of about a ``length``.
+
+    It turns where that is spent, or at a separation ``turn`` that is prescribed, if it is finite.
+    """
 
     coupled: CoupledSummits
     load: Load
@@ -86,25 +86,27 @@ class _Motion(NamedTuple):
     energy: jax.Array
     stored: jax.Array
     length: jax.Array
+    turn: jax.Array
 
     @property
     def close(self) -> jax.Array:
         """Separation [m] that a bond may be away from its change."""
         return _CLOSE * self.coupled.summits.scale[0]
 
-    def point(self, separation: jax.Array, state: SummitEquilibrium, freed: jax.Array) -> _Point:
+    def point(
+        self, separation: jax.Array, state: SummitEquilibrium, freed: jax.Array
+    ) -> CurvePoint:
         done = state.energy + freed - self.stored
         kinetic = self.energy - self.load.potential_gain(self.top, separation - self.top) - done
-        return _Point(separation, kinetic, state.force)
+        return CurvePoint(separation, kinetic, state.force, state.stiffness)
 
-    def choose(self, path: Path, here: _Point) -> _Choice:
+    def choose(self, path: Path, here: CurvePoint) -> _Choice:
         """By the separations left to each change of a bond, to the turning point, to the end."""
         ahead, close = _ahead(path), self.close
         bonds = _left_to_bonds(self.coupled.summits, path.state, path.bonded, ahead)
-        slope = here.force - self.load.force(path.separation)
-        spent = jnp.where(here.kinetic > 0.0, jnp.inf, -jnp.inf)
-        to_turn = jnp.where(slope > 0.0, here.kinetic / jnp.where(slope > 0.0, slope, 1.0), spent)
-        to_end = jnp.maximum(self.top - path.separation, 0.0)
+        to_turn = self._left_to_turn(here)
+        end = end_of(self.coupled.summits, self.coupled.offsets, path.bonded_at_turn, self.top)
+        to_end = jnp.maximum(end - path.separation, 0.0)
         to_end = jnp.where(jnp.any(path.bonded), jnp.inf, to_end)
         nearest = jnp.min(bonds, initial=jnp.inf)
         left = jnp.minimum(nearest, jnp.where(path.outward, to_end, to_turn))
@@ -121,6 +123,12 @@ class _Motion(NamedTuple):
         turns = acts & ~changes & ~path.outward
         return _Choice(left, chosen, acts, turns, acts | (left > close) | stuck, stuck)
 
+    def _left_to_turn(self, here: CurvePoint) -> jax.Array:
+        slope = here.force - self.load.force(here.separation)
+        spent = jnp.where(here.kinetic > 0.0, jnp.inf, -jnp.inf)
+        left = jnp.where(slope > 0.0, here.kinetic / jnp.where(slope > 0.0, slope, 1.0), spent)
+        return jnp.where(jnp.isfinite(self.turn), here.separation - self.turn, left)
+
     def move(self, path: Path, choice: _Choice) -> jax.Array:
         """How far it goes [m]: on, to where the next summit pulls most; or back."""
         ahead, gaps = _ahead(path), path.state.gaps
@@ -135,16 +143,17 @@ class _Motion(NamedTuple):
         move = ahead * jnp.where(choice.good, onward, jnp.maximum(choice.left, half_back))
         return jnp.where(choice.acts, 0.0, move)
 
-    def start(self) -> Path:
+    def start(self, *, recorded: bool) -> Path:
         summits, nothing = self.coupled.summits, jnp.zeros(())
         none = jnp.zeros(summits.forming.shape, bool)
         first = self.coupled.equilibrium(self.top, none, self.top - self.coupled.offsets)
+        here = CurvePoint(self.top, self.energy, first.force, first.stiffness)
         return Path(
             separation=self.top,
             bonded=none,
             state=first,
             outward=jnp.asarray(False),
-            last=_Point(self.top, self.energy, first.force),
+            last=here,
             missed=jnp.asarray(-jnp.inf),
             freed=nothing,
             lost=jnp.zeros(summits.forming.shape[0]),
@@ -157,6 +166,7 @@ class _Motion(NamedTuple):
             sound=first.solved,
             still=jnp.asarray(0),
             steps=jnp.asarray(0),
+            curve=ForceCurve.of(_MOST, here) if recorded else None,
         )
 
     def step(self, path: Path) -> Path:
@@ -196,7 +206,20 @@ class _Motion(NamedTuple):
             sound=path.sound & (state.solved | ~choice.good),
             still=jnp.where(changes, path.still + 1, 0),
             steps=path.steps + 1,
+            curve=_recorded(path, choice, here, there),
         )
+
+
+def _recorded(
+    path: Path, choice: _Choice, here: CurvePoint, there: CurvePoint
+) -> ForceCurve | None:
+    """The curve with where a body is, and with where it is once a bond has changed."""
+    if path.curve is None:
+        return None
+    moved = choice.good & (here.separation != path.last.separation)
+    curve = path.curve.append(here, moved)
+    curve = curve._replace(turn=jnp.where(path.outward, curve.turn, curve.size - 1))
+    return curve.append(there, jnp.any(choice.chosen) | choice.stuck, steps=True)
 
 
 def _ahead(path: Path) -> jax.Array:
@@ -218,7 +241,7 @@ def _left_to_bonds(
     return jnp.where(rate > 0.0, left / jnp.where(rate > 0.0, rate, 1.0), missed)
 
 
-def _least_between(start: _Point, end: _Point, load: Load) -> jax.Array:
+def _least_between(start: CurvePoint, end: CurvePoint, load: Load) -> jax.Array:
     """The least kinetic energy [J] between two points, by the cubic through both."""
     t, width = _BETWEEN, end.separation - start.separation
     slope, end_slope = (
@@ -230,7 +253,15 @@ def _least_between(start: _Point, end: _Point, load: Load) -> jax.Array:
 
 
 def follow(
-    coupled: CoupledSummits, load: Load, top: jax.Array, energy: jax.Array, depth: jax.Array
+    coupled: CoupledSummits,
+    load: Load,
+    top: jax.Array,
+    energy: jax.Array,
+    depth: jax.Array,
+    *,
+    turn: Real = -np.inf,
+    inward: jax.Array | bool = False,
+    recorded: bool = False,
 ) -> Path:
     """A body down to its turning point and out again.
 
@@ -246,13 +277,23 @@ def follow(
         Its kinetic energy there [J]; NaN for one that stays away.
     depth
         How deep its first summit will be pressed, about [m].
+    turn
+        Where it turns [m], where that is finite and not where its energy is spent.
+    inward
+        Whether its path ends where it turns.
+    recorded
+        Whether its curve is kept.
 
     Returns
     -------
     The end of its path; without ``arrived`` where that was not found.
     """
     length = jnp.maximum(coupled.summits.scale[0], _LENGTH * depth)
-    motion = _Motion(coupled, load, top, energy, jnp.zeros(()), length)
-    start = motion.start()
+    motion = _Motion(coupled, load, top, energy, jnp.zeros(()), length, jnp.asarray(turn))
+    start = motion.start(recorded=recorded)
     motion = motion._replace(stored=start.state.energy)
-    return jax.lax.while_loop(lambda path: ~path.arrived & (path.steps < _MOST), motion.step, start)
+
+    def goes_on(path: Path) -> jax.Array:
+        return ~(path.arrived | (path.outward & inward)) & (path.steps < _MOST)
+
+    return jax.lax.while_loop(goes_on, motion.step, start)

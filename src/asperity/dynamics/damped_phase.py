@@ -50,6 +50,12 @@ class PhaseProgress(NamedTuple):
     piece: jax.Array
     maximum_kinetic: jax.Array
 
+    @classmethod
+    def begun(cls, body: Body, kinetic: jax.Array) -> PhaseProgress:
+        """Of a body that enters the first piece with a kinetic energy [J]."""
+        none = jnp.zeros(len(body.drags))
+        return cls(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
+
 
 @kept
 class DampedPhase(NamedTuple):
@@ -147,31 +153,35 @@ def over_pieces(
     see
         What to see of a piece, by the progress so far and the motion on it.
     """
-    none = jnp.zeros(len(body.drags))
-    first = PhaseProgress(kinetic, jnp.zeros(()), none, jnp.asarray(True), jnp.asarray(0), kinetic)
 
     def over(now: PhaseProgress, k: jax.Array) -> tuple[PhaseProgress, Seen]:
         piece = piece_at(k)
-        active = now.going & (piece.leave != piece.enter)
-        end = jnp.where(active, piece.leave, piece.enter)  # beyond its turn a body stays
-        still = PieceMotion.none(body, now.kinetic)
-        moved = jax.lax.cond(
-            unvmap_any(active), lambda: move_on(body, piece, now.kinetic, end), lambda: still
-        )
-        on = active & moved.passed
-        after = PhaseProgress(
-            kinetic=jnp.where(on, moved.kinetic, now.kinetic),
-            time=now.time + jnp.where(on, moved.duration, 0.0),
-            dissipated=now.dissipated + jnp.where(on, moved.lost, 0.0),
-            going=jnp.where(active, on, now.going),
-            piece=jnp.where(now.going, k, now.piece),
-            maximum_kinetic=jnp.maximum(
-                now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)
-            ),
-        )
-        return after, see(now, piece, choose(active, moved, still))
+        after, moved = over_piece(body, now, piece, k)
+        return after, see(now, piece, moved)
 
-    return jax.lax.scan(over, first, jnp.arange(count))
+    return jax.lax.scan(over, PhaseProgress.begun(body, kinetic), jnp.arange(count))
+
+
+def over_piece(
+    body: Body, now: PhaseProgress, piece: Piece, number: jax.Array
+) -> tuple[PhaseProgress, PieceMotion]:
+    """A body on its way over one piece more, and its motion there; one that has turned stays."""
+    active = now.going & (piece.leave != piece.enter)
+    end = jnp.where(active, piece.leave, piece.enter)
+    still = PieceMotion.none(body, now.kinetic)
+    moved = jax.lax.cond(
+        unvmap_any(active), lambda: move_on(body, piece, now.kinetic, end), lambda: still
+    )
+    on = active & moved.passed
+    after = PhaseProgress(
+        kinetic=jnp.where(on, moved.kinetic, now.kinetic),
+        time=now.time + jnp.where(on, moved.duration, 0.0),
+        dissipated=now.dissipated + jnp.where(on, moved.lost, 0.0),
+        going=jnp.where(active, on, now.going),
+        piece=jnp.where(now.going, number, now.piece),
+        maximum_kinetic=jnp.maximum(now.maximum_kinetic, jnp.where(on, moved.maximum_kinetic, 0.0)),
+    )
+    return after, choose(active, moved, still)
 
 
 def _along(

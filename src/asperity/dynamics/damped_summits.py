@@ -15,7 +15,7 @@ from .._jax import jax, jnp
 from ..numerics.compilation import Program
 from .damped_phase import PhaseProgress, over_pieces
 from .damped_turning_point import turn_on
-from .drag import PieceMotion, move_on
+from .drag import Piece, PieceMotion, move_on
 from .external_forces import Along, Load
 from .record import Body
 from .summit_path import (
@@ -115,6 +115,15 @@ def _with_cuts(ends: jax.Array, cuts: list[jax.Array], body: Body) -> jax.Array:
     return ahead * jnp.sort(ahead * jnp.clip(more, low, high))
 
 
+def fly(body: Body, launch: Launch, top: jax.Array) -> tuple[PhaseProgress, jax.Array]:
+    """From where a body is released to its ``top`` [m], or to where it stops before [m]."""
+    ends = _apart(body, begin_of(launch, top), top)
+    now, _ = _over(body, None, ends, jnp.asarray(launch.kinetic))
+    place, moved = _turned(body, None, ends, now)
+    taken = now.dissipated + jnp.where(now.going, 0.0, moved.lost)
+    return now._replace(dissipated=taken), jnp.where(now.going, top, place)
+
+
 def arrive_damped(body: Body, path: SummitPath, launch: Launch, top: jax.Array) -> Arrival:
     """The way in of a body that drags slow, by the summits of ``path``."""
     free, summits = arrive(body, path, launch, top), path.pressed.summits
@@ -163,8 +172,13 @@ def leave_damped(body: Body, outward: Outward, kinetic: jax.Array) -> Departure:
     broken = jnp.concatenate([outward.ends - outward.recovered, touching])
     ends = _with_cuts(even, _steps_at(outward.recovered, broken, even), body)
     now, _ = _over(body, outward.path, ends, kinetic)
-    # A body that forces still push out creeps out of them where drag takes its speed.
     last = SummitPiece(outward.path, ends[now.piece], ends[now.piece + 1])
+    return departed(body, now, last)
+
+
+def departed(body: Body, now: PhaseProgress, last: Piece) -> Departure:
+    """The way out of a body, by its progress and the last piece that it entered."""
+    # A body that forces still push out creeps out of them where drag takes its speed.
     pushes = [last.push(place, body.load) for place in (last.enter, last.leave)]
     held = jnp.minimum(*pushes) <= 0.0
     return Departure(~now.going & held, jnp.where(now.going, now.kinetic, 0.0), now.dissipated)
