@@ -1,13 +1,20 @@
-"""Arguments and options of the commands, as typer shows them."""
+"""Arguments and options of the commands, as typer shows them, and those that most have."""
 
 from __future__ import annotations
 
+import functools
+import inspect
+from collections.abc import Callable
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 
 from asperity.cli import shell_completion
+from asperity.cli.reporter import Reporter
 from asperity.errors import InputError
+
+Command = Callable[..., None]
 
 
 def _one_manner(ctx: typer.Context, value: bool) -> bool:
@@ -111,6 +118,48 @@ Verbose = Annotated[
         "-v", "--verbose", callback=_one_manner, help="Say each step and how long it took."
     ),
 ]
+
+
+def reports(task: str = "", *, json: Any = OnlyJson) -> Callable[[Command], Command]:
+    """Give a command ``--json``, ``--quiet`` and ``--verbose``.
+
+    What carries it out is called with the `Reporter` that these three make, and then with the
+    command's own arguments.
+
+    Parameters
+    ----------
+    task : str
+        What carries it out, as ``module.function`` of this package; imported once the command is
+        called, whose own body is then empty. Without it the command carries itself out.
+    json : type
+        `Json` where the command writes files of its own accord.
+    """
+
+    def reporting(described: Command) -> Command:
+        @functools.wraps(described)
+        def command(
+            *given: Any, as_json: bool = False, quiet: bool = False, verbose: bool = False,
+            **options: Any,
+        ) -> None:  # fmt: skip
+            home, _, name = task.partition(".")
+            carry_out = getattr(import_module(f"asperity.cli.{home}"), name) if task else described
+            reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
+            carry_out(reporter, *given, **options)
+
+        signature = inspect.signature(described, eval_str=True)
+        own = [one for name, one in signature.parameters.items() if name != "reporter"]
+        shared = {"as_json": json, "quiet": Quiet, "verbose": Verbose}
+        options = [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
+            for name, kind in shared.items()
+        ]
+        shown = signature.replace(parameters=[*own, *options])
+        command.__signature__ = shown  # type: ignore[attr-defined]
+        return command
+
+    return reporting
+
+
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version, and those of the stack.")
 ]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from asperity.cli import shell_completion
-from asperity.cli.arguments import OnlyJson, Quiet, Replace, StoreName, Verbose
+from asperity.cli.arguments import Replace, StoreName, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines
 from asperity.errors import InputError
@@ -17,7 +17,9 @@ _NAMED = 8
 """Tasks that a message names."""
 
 
+@reports()
 def merge(
+    reporter: Reporter,
     stores: Annotated[
         list[str],
         typer.Argument(
@@ -29,14 +31,10 @@ def merge(
     ],
     output: StoreName = None,
     force: Replace = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Make one store of those of a study's shards."""
     from asperity.sweeps.store.merge import join, whole
 
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     path = Path(output) if output is not None else whole(Path(stores[0]))
     if path.resolve() in {Path(store).resolve() for store in stores}:
         raise InputError(f"`--output` must be none of the stores to merge; got {path}")
