@@ -33,6 +33,8 @@ from asperity.cli.arguments import (
     Unit,
     Version,
     VersionJson,
+    argument,
+    optional,
     reports,
 )
 from asperity.cli.attributing import sensitivity
@@ -190,11 +192,7 @@ def materials(
 def web(
     case: Annotated[
         str | None,
-        typer.Argument(
-            help="Case to begin with: as for run, but no record.",
-            show_default=False,
-            autocompletion=shell_completion.case,
-        ),
+        argument("Case to begin with: as for run, but no record.", values=shell_completion.case),
     ] = None,
     port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
     host: Annotated[
@@ -202,11 +200,10 @@ def web(
     ] = "127.0.0.1",
     names: Annotated[
         list[str] | None,
-        typer.Option(
-            "--name",
-            metavar="NAME",
-            help="Another name that the page may be asked for by, with --host; repeatable.",
-            show_default=False,
+        optional(
+            "name",
+            "NAME",
+            "Another name that the page may be asked for by, with --host; repeatable.",
         ),
     ] = None,
     browse: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,

@@ -7,9 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from asperity.cli.arguments import Folder, Json, Replace, StudyFile, reports
+from asperity.cli.arguments import Folder, Json, Replace, StudyFile, optional, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.working import completed
 from asperity.errors import InputError
@@ -28,9 +26,7 @@ _WIDEST = 28
 def sensitivity(
     reporter: Reporter,
     study: StudyFile,
-    measure: Annotated[
-        str, typer.Option("--measure", metavar="NAME", help="The measure.", show_default=False)
-    ],
+    measure: Annotated[str, optional("measure", "NAME", "The measure.")],
     output: Folder = None,
     force: Replace = False,
 ) -> None:

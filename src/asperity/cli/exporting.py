@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from asperity.cli import shell_completion
-from asperity.cli.arguments import At, Replace, optional, reports
+from asperity.cli.arguments import At, Replace, argument, optional, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.study_plots import held_axes, is_store
 from asperity.cli.working import Progress, completed
@@ -26,8 +26,8 @@ def export(
     reporter: Reporter,
     source: Annotated[
         str,
-        typer.Argument(metavar="STORE|CASE", help="A store, or a case for --force-table.",
-                       show_default=False, autocompletion=shell_completion.store_or_case),
+        argument("A store, or a case for --force-table.", "STORE|CASE",
+                 values=shell_completion.store_or_case),
     ],
     output: Annotated[
         str | None,

@@ -17,6 +17,7 @@ from asperity.cli.arguments import (
     Missing,
     Size,
     Unit,
+    argument,
     choice,
     optional,
     reports,
@@ -27,11 +28,10 @@ from asperity.cli.arguments import (
 def surface(
     files: Annotated[
         list[str],
-        typer.Argument(
-            metavar="FILE [FILE2]",
-            help="A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
+        argument(
+            "A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
             "instrument's.",
-            show_default=False,
+            "FILE [FILE2]",
         ),
     ],
     output: Folder = None,
@@ -80,11 +80,7 @@ def surface(
 @reports("generating.generate")
 def generate(
     file: Annotated[
-        str,
-        typer.Argument(
-            metavar="FILE", help="File to write: .npy .csv .xyz .nc, each also .gz.",
-            show_default=False,
-        ),
+        str, argument("File to write: .npy .csv .xyz .nc, each also .gz.", "FILE")
     ],
     size: Annotated[
         str | None, optional("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")

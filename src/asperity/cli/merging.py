@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from asperity.cli import shell_completion
-from asperity.cli.arguments import Replace, StoreName, reports
+from asperity.cli.arguments import Replace, StoreName, argument, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines
 from asperity.errors import InputError
@@ -22,12 +20,7 @@ def merge(
     reporter: Reporter,
     stores: Annotated[
         list[str],
-        typer.Argument(
-            metavar="STORE...",
-            help="Stores of shards.",
-            show_default=False,
-            autocompletion=shell_completion.store,
-        ),
+        argument("Stores of shards.", "STORE...", values=shell_completion.store),
     ],
     output: StoreName = None,
     force: Replace = False,

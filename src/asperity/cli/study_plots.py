@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from asperity.cli import shell_completion
-from asperity.cli.arguments import At, Folder, optional, reports
+from asperity.cli.arguments import At, Folder, argument, optional, reports
 from asperity.cli.reporter import Reporter, files_of, written_to
 from asperity.cli.terminal import WIDTH, wrapped
 from asperity.cli.working import completed
@@ -40,9 +40,9 @@ def plot(
     reporter: Reporter,
     record: Annotated[
         str,
-        typer.Argument(
-            metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.",
-            autocompletion=shell_completion.record_or_store,
+        argument(
+            "A record.nc, a curve.nc, or a store.", "RECORD|STORE",
+            values=shell_completion.record_or_store,
         ),
     ],
     output: Folder = None,
@@ -57,10 +57,8 @@ def plot(
     at: At = None,
     pareto: Annotated[
         tuple[str, str] | None,
-        typer.Option(
-            "--pareto", metavar="SENSE:NAME SENSE:NAME",
-            help="Of a store: the front of two measures, each min: or max:.", show_default=False,
-        ),
+        optional("pareto", "SENSE:NAME SENSE:NAME",
+                 "Of a store: the front of two measures, each min: or max:."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace pictures in DIR.")] = False,
 ) -> None:  # fmt: skip

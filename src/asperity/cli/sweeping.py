@@ -53,11 +53,7 @@ def sweep(
         str | None, optional("shard", "i/N", "Compute the i-th of N parts, for a job array.")
     ] = None,
     workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers", metavar="N", help="Worker processes of a local dask cluster.",
-            show_default=False,
-        ),
+        int | None, optional("workers", "N", "Worker processes of a local dask cluster.")
     ] = None,
     scheduler: Annotated[
         str | None, optional("scheduler", "ADDRESS", "A dask scheduler whose workers compute.")
