@@ -1,12 +1,12 @@
 """The command line: ``asperity run``, ``curve``, ``regime``, ``adhesion-map`` and the rest.
 
-Nothing but typer is imported with it, so that ``--help`` answers at once; every command imports
-what it needs when it is called.
+Nothing but typer is imported with it, so that ``--help`` answers at once. What a command needs, or
+what carries it out where its body is empty, is imported when it is called.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -31,9 +31,11 @@ from asperity.cli.arguments import (
     Tables,
     TwoSurfaces,
     Unit,
-    Verbose,
     Version,
     VersionJson,
+    argument,
+    optional,
+    reports,
 )
 from asperity.cli.attributing import sensitivity
 from asperity.cli.doctor import doctor
@@ -73,36 +75,26 @@ def asperity(
         context.fail("Missing command.")
 
 
-@app.command()
+@reports("computing.run", json=Json)
 def run(
     case: CaseName,
     output: Folder = None,
     force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
     publication: Published = False,
 ) -> None:
     """Compute a motion: bounce or stick.
 
     Writes record.nc, pictures and summary.txt to DIR, ./NAME-out unless given.
     """
-    _compute(
-        "solve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
-        published=publication or None,
-    )  # fmt: skip
 
 
-@app.command()
+@reports("computing.curve", json=Json)
 def curve(
     case: CaseName,
     output: Folder = None,
     load: Load = None,
     depth: Depth = None,
     force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Compute force against separation.
 
@@ -110,61 +102,32 @@ def curve(
     --depth, for which a case needs no [impact] table. Writes curve.nc, a picture and curve.txt to
     DIR, ./NAME-out unless given.
     """
-    from asperity.cli.speeds import turn_of
-
-    _compute(
-        "curve", case, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
-        given=turn_of(load, depth),
-    )  # fmt: skip
 
 
-@app.command()
+@reports("computing.restitution", json=Json)
 def restitution(
     case: CaseName,
     output: Folder = None,
     speeds: Speeds = None,
     points: SpeedPoints = None,
     force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Compute restitution against speed, and the critical velocity.
 
     Of the first impact, over decades of speed. Writes restitution.csv, restitution.json,
     restitution.txt and a picture as PNG and SVG to DIR, ./NAME-out unless given.
     """
-    from asperity.cli.speeds import speeds_of
-
-    _compute(
-        "restitution_curve", case, output=output, force=force, as_json=as_json, quiet=quiet,
-        verbose=verbose, given=speeds_of(speeds, points),
-    )  # fmt: skip
 
 
-def _compute(what: str, case: str, **options: Any) -> None:
-    from asperity.cli.computing import compute
-
-    compute(what, case, **options)
-
-
-@app.command()
-def regime(
-    case: CaseName,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-) -> None:
+@reports("regimes.tell_regime")
+def regime(case: CaseName) -> None:
     """Say which models hold in a case.
 
     Dimensionless numbers with a verdict on each, at the depth of the first impact. Writes nothing.
     """
-    from asperity.cli.regimes import tell_regime
-
-    tell_regime(case, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
-@app.command()
+@reports("regimes.draw_map", json=Json)
 def adhesion_map(
     cases: Cases,
     output: Annotated[
@@ -178,24 +141,14 @@ def adhesion_map(
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier map.")] = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Draw the adhesion map with cases on it.
 
     Writes FILE.png, FILE.svg, and the boundaries and the cases' places as FILE.csv.
     """
-    from asperity.cli.regimes import draw_map
-
-    draw_map(cases, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose)
 
 
-app.command()(surface)
-app.command()(generate)
-
-
-@app.command()
+@reports("reproducing.compute", json=Json)
 def reproduce(
     output: Folder = None,
     force: Force = False,
@@ -205,24 +158,14 @@ def reproduce(
     size: Size = None,
     unit: Unit = None,
     missing: Missing = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Compute the seed publication's tables and figures, and audit it.
 
     Writes its figures with their data, both tables side by side and the audit to DIR,
     ./reproduce-out unless given.
     """
-    from asperity.cli.reproducing import compute
-
-    compute(
-        output=output, force=force, refit=refit, tables=tables, as_json=as_json, quiet=quiet,
-        verbose=verbose, surfaces=surfaces, size=size, unit=unit, missing=missing,
-    )  # fmt: skip
 
 
-@app.command()
 def init(
     file: Annotated[str, typer.Argument(help="File to write.")] = "case.toml",
     as_json: OnlyJson = False,
@@ -236,7 +179,6 @@ def init(
     write_template(file, as_json=as_json)
 
 
-@app.command()
 def materials(
     names: Materials = None,
     as_json: OnlyJson = False,
@@ -247,15 +189,10 @@ def materials(
     list_materials(names or (), as_json=as_json)
 
 
-@app.command()
 def web(
     case: Annotated[
         str | None,
-        typer.Argument(
-            help="Case to begin with: as for run, but no record.",
-            show_default=False,
-            autocompletion=shell_completion.case,
-        ),
+        argument("Case to begin with: as for run, but no record.", values=shell_completion.case),
     ] = None,
     port: Annotated[int, typer.Option("--port", help="Port; 0 for any free one.")] = 8737,
     host: Annotated[
@@ -263,11 +200,10 @@ def web(
     ] = "127.0.0.1",
     names: Annotated[
         list[str] | None,
-        typer.Option(
-            "--name",
-            metavar="NAME",
-            help="Another name that the page may be asked for by, with --host; repeatable.",
-            show_default=False,
+        optional(
+            "name",
+            "NAME",
+            "Another name that the page may be asked for by, with --host; repeatable.",
         ),
     ] = None,
     browse: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
@@ -285,7 +221,10 @@ def web(
     show(case, port=port, host=host, names=names or [], browse=browse, as_json=as_json, quiet=quiet)
 
 
-for command in (plot, sweep, merge, export, sensitivity, doctor):
+for command in (
+    run, curve, restitution, regime, adhesion_map, surface, generate, reproduce, init, materials,
+    web, plot, sweep, merge, export, sensitivity, doctor,
+):  # fmt: skip
     app.command()(command)
 
 

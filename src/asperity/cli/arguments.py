@@ -1,13 +1,20 @@
-"""Arguments and options of the commands, as typer shows them."""
+"""Arguments and options of the commands, as typer shows them, and those that most have."""
 
 from __future__ import annotations
 
+import functools
+import inspect
+from collections.abc import Callable
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 
 from asperity.cli import shell_completion
+from asperity.cli.reporter import Reporter
 from asperity.errors import InputError
+
+Command = Callable[..., None]
 
 
 def _one_manner(ctx: typer.Context, value: bool) -> bool:
@@ -18,31 +25,36 @@ def _one_manner(ctx: typer.Context, value: bool) -> bool:
     return value
 
 
+def argument(words: str, metavar: str | None = None, *, values: Any = None) -> Any:
+    """An argument that has no default of its own; a shell completes ``values``."""
+    return typer.Argument(metavar=metavar, help=words, show_default=False, autocompletion=values)
+
+
+def optional(
+    name: str, metavar: str, words: str, note: str | None = None, *, values: Any = None
+) -> Any:
+    """An option that has no default of its own; a shell completes ``values``."""
+    shown = f"{words}{f'  [default: {note}]' if note else ''}"
+    return typer.Option(
+        f"--{name}", metavar=metavar, help=shown, show_default=False, autocompletion=values
+    )
+
+
+def choice(name: str, metavar: str, words: str, note: str, *values: str) -> Any:
+    """An option that takes one of some words."""
+    return optional(name, metavar, words, note, values=shell_completion.one_of(*values))
+
+
 CaseName = Annotated[
     str,
-    typer.Argument(
-        help="Name of a built-in case (glass-bead), a FILE.toml, or a record.nc to repeat.",
-        show_default=False,
-        autocompletion=shell_completion.case,
+    argument(
+        "Name of a built-in case (glass-bead), a FILE.toml, or a record.nc to repeat.",
+        values=shell_completion.case,
     ),
 ]
-Cases = Annotated[
-    list[str],
-    typer.Argument(
-        metavar="CASE...",
-        help="As for run.",
-        show_default=False,
-        autocompletion=shell_completion.case,
-    ),
-]
+Cases = Annotated[list[str], argument("As for run.", "CASE...", values=shell_completion.case)]
 Materials = Annotated[
-    list[str] | None,
-    typer.Argument(
-        metavar="[NAME]...",
-        help="Only these.",
-        show_default=False,
-        autocompletion=shell_completion.material,
-    ),
+    list[str] | None, argument("Only these.", "[NAME]...", values=shell_completion.material)
 ]
 Folder = Annotated[
     str | None,
@@ -59,29 +71,23 @@ Published = Annotated[
     ),
 ]
 Load = Annotated[
-    str | None,
-    typer.Option(
-        "--load", metavar="FORCE", help='Load at which unloading begins, such as "1 uN".',
-        show_default=False,
-    ),
-]  # fmt: skip
+    str | None, optional("load", "FORCE", 'Load at which unloading begins, such as "1 uN".')
+]
 Depth = Annotated[
     str | None,
-    typer.Option(
-        "--depth",
-        metavar="LENGTH",
-        help='Depth at which unloading begins, below a rigid separation of 0, such as "5 nm".',
-        show_default=False,
+    optional(
+        "depth",
+        "LENGTH",
+        'Depth at which unloading begins, below a rigid separation of 0, such as "5 nm".',
     ),
 ]
 Speeds = Annotated[
     str | None,
-    typer.Option(
-        "--speeds",
-        metavar="FROM,TO",
-        help='First and last speed of launch, such as "1 mm/s, 10 m/s"; by default chosen about '
+    optional(
+        "speeds",
+        "FROM,TO",
+        'First and last speed of launch, such as "1 mm/s, 10 m/s"; by default chosen about '
         "the critical velocity.",
-        show_default=False,
     ),
 ]
 SpeedPoints = Annotated[
@@ -111,27 +117,52 @@ Verbose = Annotated[
         "-v", "--verbose", callback=_one_manner, help="Say each step and how long it took."
     ),
 ]
+
+
+def reports(task: str = "", *, json: Any = OnlyJson) -> Callable[[Command], Command]:
+    """Give a command ``--json``, ``--quiet`` and ``--verbose``.
+
+    What carries it out is called with the `Reporter` that these three make, and then with the
+    command's own arguments.
+
+    Parameters
+    ----------
+    task : str
+        What carries it out, as ``module.function`` of this package; imported once the command is
+        called, whose own body is then empty. Without it the command carries itself out.
+    json : type
+        `Json` where the command writes files of its own accord.
+    """
+
+    def reporting(described: Command) -> Command:
+        @functools.wraps(described)
+        def command(
+            *given: Any, as_json: bool = False, quiet: bool = False, verbose: bool = False,
+            **options: Any,
+        ) -> None:  # fmt: skip
+            home, _, name = task.partition(".")
+            carry_out = getattr(import_module(f"asperity.cli.{home}"), name) if task else described
+            reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
+            carry_out(reporter, *given, **options)
+
+        signature = inspect.signature(described, eval_str=True)
+        own = [one for name, one in signature.parameters.items() if name != "reporter"]
+        shared = {"as_json": json, "quiet": Quiet, "verbose": Verbose}
+        options = [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
+            for name, kind in shared.items()
+        ]
+        shown = signature.replace(parameters=[*own, *options])
+        command.__signature__ = shown  # type: ignore[attr-defined]
+        return command
+
+    return reporting
+
+
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version, and those of the stack.")
 ]
 VersionJson = Annotated[bool, typer.Option("--json", help="With --version: one JSON object.")]
-
-
-def optional(
-    name: str, metavar: str, words: str, note: str | None = None, *, values: Any = None
-) -> Any:
-    """An option that takes a text and has no default of its own; a shell completes ``values``."""
-    shown = f"{words}{f'  [default: {note}]' if note else ''}"
-    return typer.Option(
-        f"--{name}", metavar=metavar, help=shown, show_default=False, autocompletion=values
-    )
-
-
-def choice(name: str, metavar: str, words: str, note: str, *values: str) -> Any:
-    """An option that takes one of some words."""
-    return optional(name, metavar, words, note, values=shell_completion.one_of(*values))
-
-
 Size = Annotated[
     str | None, optional("size", "'X x Y'", "Size of the map where the file does not state it.")
 ]
@@ -150,13 +181,7 @@ Missing = Annotated[
         "refuse", "keep", "fill",
     ),
 ]  # fmt: skip
-StudyFile = Annotated[
-    str,
-    typer.Argument(
-        metavar="STUDY.toml", help="The study.", show_default=False,
-        autocompletion=shell_completion.study,
-    ),
-]  # fmt: skip
+StudyFile = Annotated[str, argument("The study.", "STUDY.toml", values=shell_completion.study)]
 StoreName = Annotated[
     str | None,
     typer.Option(
@@ -167,29 +192,19 @@ StoreName = Annotated[
 Replace = Annotated[bool, typer.Option("--force", help="Replace what is there.")]
 At = Annotated[
     list[str] | None,
-    typer.Option(
-        "--at", metavar="KEY=VALUE", help="Take an axis' nearest value; may be repeated.",
-        show_default=False,
-    ),
-]  # fmt: skip
+    optional("at", "KEY=VALUE", "Take an axis' nearest value; may be repeated."),
+]
 Refit = Annotated[
     bool, typer.Option("--refit", help="Find the unknown inputs again from the tables.")
 ]
 Tables = Annotated[
     str | None,
-    typer.Option(
-        "--tables",
-        metavar="FILE.csv",
-        help="Tables to compare with, in place of the publication's.",
-        show_default=False,
-    ),
+    optional("tables", "FILE.csv", "Tables to compare with, in place of the publication's."),
 ]
 TwoSurfaces = Annotated[
     tuple[str, str] | None,
-    typer.Option(
-        "--surfaces",
-        metavar="FILE FILE",
-        help="Two measured surfaces for Figures 2 and 3; their tilt is removed.",
-        show_default=False,
+    optional(
+        "surfaces", "FILE FILE",
+        "Two measured surfaces for Figures 2 and 3; their tilt is removed.",
     ),
-]
+]  # fmt: skip

@@ -7,9 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from asperity.cli.arguments import Folder, Json, Quiet, Replace, StudyFile, Verbose
+from asperity.cli.arguments import Folder, Json, Replace, StudyFile, optional, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.working import completed
 from asperity.errors import InputError
@@ -24,16 +22,13 @@ SENSITIVITY_FILES = ("sensitivity.png", "sensitivity.svg", "sensitivity.json")
 _WIDEST = 28
 
 
+@reports(json=Json)
 def sensitivity(
+    reporter: Reporter,
     study: StudyFile,
-    measure: Annotated[
-        str, typer.Option("--measure", metavar="NAME", help="The measure.", show_default=False)
-    ],
+    measure: Annotated[str, optional("measure", "NAME", "The measure.")],
     output: Folder = None,
     force: Replace = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Say which axes of a study a measure depends on.
 
@@ -42,7 +37,6 @@ def sensitivity(
     """
     from asperity.results.results_folder import check_folder, write_folder
 
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     folder = None
     if output is not None or not reporter.as_json:
         folder = Path(output or f"{Path(study).stem}-sensitivity")

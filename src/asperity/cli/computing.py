@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from asperity.cli.reporter import Reporter
+from asperity.cli.speeds import speeds_of, turn_of
 from asperity.cli.terminal import say
 from asperity.cli.working import Progress, Work
 from asperity.errors import InputError, Outcome, SimulationError
@@ -57,37 +58,36 @@ class _Request:
     published: bool | None
 
 
-def compute(
+def run(reporter: Reporter, case: str, *, publication: bool, **options: Any) -> None:
+    """Compute a motion, keep it and say what came out; ``options`` are ``output`` and ``force``."""
+    _compute("solve", reporter, case, published=publication or None, **options)
+
+
+def curve(
+    reporter: Reporter, case: str, *, load: str | None, depth: str | None, **options: Any
+) -> None:
+    """As `run` for force against separation, which turns at a load or a depth."""
+    _compute("curve", reporter, case, given=turn_of(load, depth), **options)
+
+
+def restitution(
+    reporter: Reporter, case: str, *, speeds: str | None, points: int | None, **options: Any
+) -> None:
+    """As `run` for restitution against speed."""
+    _compute("restitution_curve", reporter, case, given=speeds_of(speeds, points), **options)
+
+
+def _compute(
     what: str,
+    reporter: Reporter,
     case: str,
     *,
     output: str | None,
     force: bool,
     given: Mapping[str, Any] | None = None,
     published: bool | None = None,
-    **manner: bool,
 ) -> None:
-    """Compute a case, keep the result, and say what came out.
-
-    Parameters
-    ----------
-    what : str
-        "solve" for a motion, "curve" for force against separation, "restitution_curve" for
-        restitution against speed.
-    given : mapping of str to object, optional
-        What else the computation takes.
-    published : bool, optional
-        Whether the publication's own measures are shown.
-    case : str
-        As the user named it.
-    output : str or None
-        Folder for the files.
-    force : bool
-        Whether earlier results may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
-    """
-    reporter = Reporter(**manner)
+    """Compute ``what``, a function of this program that takes a case and what is ``given``."""
     named = source_of(case)
     folder, earlier = None, False
     if output is not None or not reporter.as_json:

@@ -15,7 +15,7 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from asperity.cli.arguments import OnlyJson, Quiet, Verbose
+from asperity.cli.arguments import reports
 from asperity.cli.reporter import Reporter, seconds
 from asperity.cli.terminal import say, tell, wrapped
 from asperity.cli.working import Work
@@ -43,11 +43,10 @@ class Line(NamedTuple):
     ok: bool | None = None
 
 
+@reports()
 def doctor(
+    reporter: Reporter,
     empty_cache: EmptyCache = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Say what is installed and whether it works.
 
@@ -56,7 +55,6 @@ def doctor(
     """
     from asperity.cli import compile_cache
 
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     if empty_cache:
         if (place := compile_cache.folder()) is None:
             raise InputError("`--empty-cache` must have a compile cache to empty; it is off")
@@ -71,7 +69,7 @@ def doctor(
     if code or found is None:
         say("asperity: interrupted; what was found until then is above", whole=True)
         raise typer.Exit(code)
-    if as_json:
+    if reporter.as_json:
         reporter.answer(str, lambda: found)
     failed = [one["name"] for one in found["checks"] if not one["ok"]]
     if failed:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from asperity.cli import shell_completion
-from asperity.cli.arguments import At, OnlyJson, Quiet, Replace, Verbose, optional
+from asperity.cli.arguments import At, Replace, argument, optional, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.study_plots import held_axes, is_store
 from asperity.cli.working import Progress, completed
@@ -21,11 +21,13 @@ Exported = tuple[Path, dict[str, Any]]
 """A file that was written, and what is in it."""
 
 
+@reports()
 def export(
+    reporter: Reporter,
     source: Annotated[
         str,
-        typer.Argument(metavar="STORE|CASE", help="A store, or a case for --force-table.",
-                       show_default=False, autocompletion=shell_completion.store_or_case),
+        argument("A store, or a case for --force-table.", "STORE|CASE",
+                 values=shell_completion.store_or_case),
     ],
     output: Annotated[
         str | None,
@@ -41,9 +43,6 @@ def export(
     ] = None,
     at: At = None,
     force: Replace = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Write results for other programs.
 
@@ -59,7 +58,6 @@ def export(
         )
     if at and restitution is None:
         raise InputError("`at` must go with --restitution; got it without", key="at")
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     if force_table is not None:
         written, facts = _export_force(source, force_table, reporter, force=force)
     elif restitution is not None:

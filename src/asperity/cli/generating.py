@@ -50,23 +50,22 @@ class _Made(NamedTuple):
     error: SpectrumError | None
 
 
-def generate(
-    file: str, *, force: bool, as_json: bool, quiet: bool, verbose: bool, **options: Any
-) -> None:
+def generate(reporter: Reporter, file: str, *, force: bool, **options: Any) -> None:
     """Make a surface, write it, and say what it is.
 
     Parameters
     ----------
+    reporter : Reporter
+        What says it.
     file : str
         The file.
-    force, as_json, quiet, verbose : bool
-        The options of these names.
+    force : bool
+        Whether it may be replaced.
     options
         ``size``, ``points``, ``roll_off``, ``cut_off``, ``rms_height`` as text; ``hurst``,
         ``rms_slope``, ``seed``, ``skewness``, ``kurtosis`` as numbers; ``heights``, a file; None
         where one is not given.
     """
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     check_target(Path(file), force=force)
     distribution = "kurtosis" if options["heights"] is None else "heights"
     with in_options(heights=distribution):

@@ -1,6 +1,7 @@
 """The commands for measured surfaces: ``surface`` and ``generate``.
 
-Like `asperity.cli` itself this module imports typer alone; every command imports what it needs.
+Like `asperity.cli` itself this module imports typer alone; what carries a command out is imported
+once it is called.
 """
 
 from __future__ import annotations
@@ -14,24 +15,23 @@ from asperity.cli.arguments import (
     Force,
     Json,
     Missing,
-    OnlyJson,
-    Quiet,
     Size,
     Unit,
-    Verbose,
+    argument,
     choice,
     optional,
+    reports,
 )
 
 
+@reports("surface_command.describe", json=Json)
 def surface(
     files: Annotated[
         list[str],
-        typer.Argument(
-            metavar="FILE [FILE2]",
-            help="A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
+        argument(
+            "A measured surface, or two that face each other: .npy .csv .xyz .nc, or an "
             "instrument's.",
-            show_default=False,
+            "FILE [FILE2]",
         ),
     ],
     output: Folder = None,
@@ -69,32 +69,18 @@ def surface(
         str | None, optional("l-filter", "LENGTH", "Cut wavelengths above this, such as '5 um'.")
     ] = None,
     force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Describe a measured surface, or two as one.
 
     With two files the options hold for both. Writes a one-page picture, surface.txt and
     surface.json to DIR, ./NAME-out unless given.
     """
-    from asperity.cli.surface_command import describe
-
-    describe(
-        files, output=output, force=force, as_json=as_json, quiet=quiet, verbose=verbose,
-        size=size, unit=unit, channel=channel, missing=missing,
-        form_removal=form_removal, line_levelling=line_levelling, direction=direction,
-        degree=degree, s_filter=s_filter, l_filter=l_filter,
-    )  # fmt: skip
 
 
+@reports("generating.generate")
 def generate(
     file: Annotated[
-        str,
-        typer.Argument(
-            metavar="FILE", help="File to write: .npy .csv .xyz .nc, each also .gz.",
-            show_default=False,
-        ),
+        str, argument("File to write: .npy .csv .xyz .nc, each also .gz.", "FILE")
     ],
     size: Annotated[
         str | None, optional("size", "'X x Y'", "Size of the map, such as '10 um x 10 um'.")
@@ -136,20 +122,9 @@ def generate(
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace FILE.")] = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Make a self-affine random surface.
 
     Periodic, with Gaussian heights unless another distribution is asked for. An existing file is
     not overwritten unless --force is given.
     """
-    from asperity.cli.generating import generate as make
-
-    make(
-        file, force=force, as_json=as_json, quiet=quiet, verbose=verbose, size=size,
-        points=points, hurst=hurst, roll_off=roll_off, cut_off=cut_off,
-        rms_height=rms_height, rms_slope=rms_slope, seed=seed, skewness=skewness,
-        kurtosis=kurtosis, heights=heights,
-    )  # fmt: skip

@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from asperity.cli import shell_completion
-from asperity.cli.arguments import OnlyJson, Quiet, Replace, StoreName, Verbose
+from asperity.cli.arguments import Replace, StoreName, argument, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines
 from asperity.errors import InputError
@@ -17,26 +15,19 @@ _NAMED = 8
 """Tasks that a message names."""
 
 
+@reports()
 def merge(
+    reporter: Reporter,
     stores: Annotated[
         list[str],
-        typer.Argument(
-            metavar="STORE...",
-            help="Stores of shards.",
-            show_default=False,
-            autocompletion=shell_completion.store,
-        ),
+        argument("Stores of shards.", "STORE...", values=shell_completion.store),
     ],
     output: StoreName = None,
     force: Replace = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:
     """Make one store of those of a study's shards."""
     from asperity.sweeps.store.merge import join, whole
 
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     path = Path(output) if output is not None else whole(Path(stores[0]))
     if path.resolve() in {Path(store).resolve() for store in stores}:
         raise InputError(f"`--output` must be none of the stores to merge; got {path}")

@@ -29,17 +29,16 @@ _NAMES, _VALUES = 22, 17
 _WIDEST = 24  # of a case's name on the map
 
 
-def tell_regime(case: str, **manner: bool) -> None:
+def tell_regime(reporter: Reporter, case: str) -> None:
     """Print the numbers of a case with what each says.
 
     Parameters
     ----------
+    reporter : Reporter
+        What prints them.
     case : str
         As the user named it.
-    **manner : bool
-        As `Reporter` takes them.
     """
-    reporter = Reporter(**manner)
     (found,) = _assessed([source_of(case)], reporter)
     reporter.answer(lambda: _regime_text(found), lambda: _regime_object(found))
 
@@ -58,21 +57,20 @@ def _regime_object(found: Assessment) -> dict[str, Any]:
     return shown
 
 
-def draw_map(cases: Sequence[str], *, output: str | None, force: bool, **manner: bool) -> None:
+def draw_map(reporter: Reporter, cases: Sequence[str], *, output: str | None, force: bool) -> None:
     """Draw the adhesion map with cases on it.
 
     Parameters
     ----------
+    reporter : Reporter
+        What says where they lie.
     cases : sequence of str
         As the user named them.
     output : str or None
         The picture's path; the other files go beside it.
     force : bool
         Whether an earlier map may be replaced.
-    **manner : bool
-        As `Reporter` takes them.
     """
-    reporter = Reporter(**manner)
     given = [source_of(case) for case in cases]
     for one in given:
         _need_a_place(one)

@@ -25,37 +25,36 @@ FOLDER = "reproduce-out"
 
 
 def compute(
+    reporter: Reporter,
     *,
     output: str | None,
     force: bool,
     refit: bool,
     tables: str | None,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool = False,
-    surfaces: tuple[str, str] | None = None,
+    surfaces: tuple[str, str] | None,
     **options: Any,
 ) -> None:
     """Compute, keep the result, and say what came out.
 
     Parameters
     ----------
+    reporter : Reporter
+        What says it.
     output : str or None
         Folder for the files.
     tables : str or None
         CSV of tables to compare with.
-    refit, force, as_json, quiet, verbose : bool
+    refit, force : bool
         The options of these names.
     surfaces : tuple of str or None
         Files of the two surfaces of Figures 2 and 3.
     options
         ``size``, ``unit`` and ``missing`` of these files, None where not given.
     """
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     read_tables(tables)  # before anything is computed
     _refuse_loose(surfaces, options)
     folder = None
-    if output is not None or not as_json:
+    if output is not None or not reporter.as_json:
         folder = Path(output or FOLDER)
         check_folder(folder, REPRODUCTION_FILES, force=force)
     done, code = _computed(

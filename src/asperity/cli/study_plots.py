@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from asperity.cli import shell_completion
-from asperity.cli.arguments import At, Folder, OnlyJson, Quiet, Verbose, optional
+from asperity.cli.arguments import At, Folder, argument, optional, reports
 from asperity.cli.reporter import Reporter, files_of, written_to
 from asperity.cli.terminal import WIDTH, wrapped
 from asperity.cli.working import completed
@@ -35,12 +35,14 @@ def is_store(path: str) -> bool:
     return Path(path).is_dir() or Path(path).suffix.lower() == ".zarr"
 
 
+@reports()
 def plot(
+    reporter: Reporter,
     record: Annotated[
         str,
-        typer.Argument(
-            metavar="RECORD|STORE", help="A record.nc, a curve.nc, or a store.",
-            autocompletion=shell_completion.record_or_store,
+        argument(
+            "A record.nc, a curve.nc, or a store.", "RECORD|STORE",
+            values=shell_completion.record_or_store,
         ),
     ],
     output: Folder = None,
@@ -55,21 +57,15 @@ def plot(
     at: At = None,
     pareto: Annotated[
         tuple[str, str] | None,
-        typer.Option(
-            "--pareto", metavar="SENSE:NAME SENSE:NAME",
-            help="Of a store: the front of two measures, each min: or max:.", show_default=False,
-        ),
+        optional("pareto", "SENSE:NAME SENSE:NAME",
+                 "Of a store: the front of two measures, each min: or max:."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace pictures in DIR.")] = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Draw a record's pictures again, or the results of a study.
 
     Beside the record, in place of those there, unless DIR is given; of a store to NAME-out.
     """
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     if not is_store(record):
         given = {"measure": measure, "x": x, "y": y, "at": at, "pareto": pareto}
         for name, value in given.items():

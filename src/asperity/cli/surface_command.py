@@ -28,33 +28,28 @@ _PREPARATION = tuple(field.name for field in fields(Preparation))
 
 
 def describe(
-    files: list[str],
-    *,
-    output: str | None,
-    force: bool,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool = False,
-    **options: Any,
+    reporter: Reporter, files: list[str], *, output: str | None, force: bool, **options: Any
 ) -> None:
     """Describe one surface or two, keep the answer, and say it.
 
     Parameters
     ----------
+    reporter : Reporter
+        What says it.
     files : list of str
         One or two files.
     output : str or None
         Folder for the files.
-    force, as_json, quiet, verbose : bool
-        The options of these names.
+    force : bool
+        Whether earlier results may be replaced.
     options
         As `treatment`.
     """
     if len(files) > _MOST_FILES:
         raise InputError(f"one or two files must be given; got {len(files)}; name two at most")
-    asked, reporter = treatment(options), Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
+    asked = treatment(options)
     folder = None
-    if output is not None or not as_json:
+    if output is not None or not reporter.as_json:
         folder = Path(output or "-".join([*map(_stem, files), "out"]))
         check_folder(folder, SURFACE_FILES, force=force)
     with reporter.watch(compiles=False) as progress:

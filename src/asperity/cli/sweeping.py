@@ -10,15 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from asperity.cli.arguments import (
-    OnlyJson,
-    Quiet,
-    Replace,
-    StoreName,
-    StudyFile,
-    Verbose,
-    optional,
-)
+from asperity.cli.arguments import Replace, StoreName, StudyFile, optional, reports
 from asperity.cli.reporter import Reporter
 from asperity.cli.tallying import about, lines, lines_of, progress_of, took
 from asperity.cli.terminal import exit_code_of, say
@@ -46,7 +38,9 @@ class _Request(NamedTuple):
     scheduler: str | None
 
 
+@reports()
 def sweep(
+    reporter: Reporter,
     study: StudyFile,
     output: StoreName = None,
     resume: Annotated[
@@ -59,20 +53,13 @@ def sweep(
         str | None, optional("shard", "i/N", "Compute the i-th of N parts, for a job array.")
     ] = None,
     workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers", metavar="N", help="Worker processes of a local dask cluster.",
-            show_default=False,
-        ),
+        int | None, optional("workers", "N", "Worker processes of a local dask cluster.")
     ] = None,
     scheduler: Annotated[
         str | None, optional("scheduler", "ADDRESS", "A dask scheduler whose workers compute.")
     ] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Compute a very large study.")] = False,
     force: Replace = False,
-    as_json: OnlyJson = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Compute all cases of a study.
 
@@ -81,7 +68,6 @@ def sweep(
     """
     from asperity.sweeps.compute.runner import one_thread
 
-    reporter = Reporter(as_json=as_json, quiet=quiet, verbose=verbose)
     one_thread(at_once=True)
     _refuse_both(force=force, resume=resume)
     _refuse_both(force=force, repair=repair)

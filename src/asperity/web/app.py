@@ -33,7 +33,6 @@ from asperity.web.guard import Guard
 from asperity.web.jobs import Busy, Desk, Job, Report, Task
 from asperity.web.json_answers import HANDLERS, event_line
 from asperity.web.missing_keys import completed, remedies
-from asperity.web.openapi import DESCRIPTION
 from asperity.web.requests import Asked, asked, changed, refuse_depth
 from asperity.web.surface_uploads import Surfaces
 
@@ -74,7 +73,6 @@ def application(first: tuple[str, str] | None = None, names: Iterable[str] = LOC
     static = resources.files("asperity.web") / "static"
     routes = [
         Route("/", page.index),
-        Route("/openapi.json", page.description),
         Route("/api/form", page.form),
         Route("/api/map", page.map),
         Route("/api/cases/{name}", page.case),
@@ -108,9 +106,6 @@ class _Page:
     async def index(self, request: Request) -> Response:
         page = resources.files("asperity.web") / "static" / "index.html"
         return Response(page.read_bytes(), media_type="text/html; charset=utf-8")
-
-    async def description(self, request: Request) -> Response:
-        return JSONResponse(DESCRIPTION)
 
     async def form(self, request: Request) -> Response:
         return Response(self._form, media_type="application/json")
