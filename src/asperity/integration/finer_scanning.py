@@ -12,7 +12,7 @@ from ..contact.contact import YieldingContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..errors import Outcome, SimulationError
-from ..regimes.accuracy import CLOSED, balance_error
+from ..regimes.accuracy import CLOSED, balance_error, energy_at_stake
 from ..results.conversion import Solution
 from .clock import Report
 
@@ -78,7 +78,7 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
         return None
     rows = motion.impacts
     losable = np.asarray(rows.bonds) @ np.sum(motion.table.losses, axis=0)
-    by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0)) / rows.maximum_kinetic[0]
+    by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0) / energy_at_stake(rows))
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     if isinstance(contact, ElasticContact):
