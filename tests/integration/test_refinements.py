@@ -13,7 +13,7 @@ from asperity.config.resolve import resolve
 from asperity.dynamics import Impacts
 from asperity.errors import Outcome, SimulationError
 from asperity.integration import refinements
-from asperity.integration.refinements import refined, with_more_rings
+from asperity.integration.refinements import refined, with_deeper_curves, with_more_rings
 from asperity.model import build
 
 SOFT = build(resolve(builtin("published-exact").replace({"counterface.deformation": "half-space"})))
@@ -75,6 +75,57 @@ def test_what_has_no_rings_or_is_stepped_in_time_is_not_run_on_more():
     rigid = SOFT._replace(contact=SOFT.contact.rigid)
     assert with_more_rings(rigid, moved(4e-5)) is None
     assert with_more_rings(SOFT._replace(delayed="menisci that take time"), moved(4e-5)) is None
+
+
+def left(deepest, kinetic, contact=SOFT.contact, **more):
+    """A motion that ended at a separation of curves that begin at 0."""
+    rows = moved(0.0).impacts._replace(
+        closest_approach=np.array([deepest]), maximum_kinetic=np.array([kinetic])
+    )
+    motion = SimpleNamespace(impacts=rows, table=SimpleNamespace(ends=np.array([0.0, 1.0])))
+    usual = {"outcome": Outcome.FAILED, "trajectory": None, "contact": contact}
+    return SimpleNamespace(motion=motion, **{**usual, **more})
+
+
+def test_a_body_that_leaves_its_curves_gets_deeper_ones_by_the_energy_that_it_has_there():
+    body = SOFT.body
+    given = body.release, body.kinetic, body.load.potential
+    deeper = with_deeper_curves(left(0.0, 1e-12))
+    assert float(deeper.lower_bound(*given)) < float(SOFT.contact.lower_bound(*given))
+    # Where that was not enough, it is twice as much at least.
+    again = with_deeper_curves(left(0.0, 1.1 * float(deeper.drawn), deeper))
+    assert float(again.drawn) == 2.0 * float(deeper.drawn)
+    # Not what ended within them, or further out, or by a number that is none.
+    for other in (
+        left(0.5, 1.0),
+        left(np.nan, 1.0),
+        left(0.0, 1.0, outcome=Outcome.REST),
+        left(0.0, 1.0, trajectory="stepped"),
+        left(0.0, 1.0, SOFT.contact.rigid),
+    ):
+        assert with_deeper_curves(other) is None
+
+
+def test_curves_are_made_deeper_until_the_body_stays_within_them(monkeypatch):
+    monkeypatch.setattr(refinements, "over_folds", lambda problem, run, report: run(problem, 1))
+    monkeypatch.setattr(refinements, "balanced", lambda problem, run, report: run(problem, report))
+    drawn = []
+
+    def run(problem, report, patience):
+        drawn.append(problem.contact.drawn)
+        stays = len(drawn) == 3
+        return left(0.0, 1.0, problem.contact, outcome=Outcome.REST if stays else Outcome.FAILED)
+
+    assert refined(SOFT, run, None).outcome is Outcome.REST
+    assert drawn == [None, 1.0, 2.0]
+
+
+@pytest.mark.long
+def test_a_body_that_attraction_draws_in_deep_is_answered():
+    """A million times the energy that it brings; it left its curves."""
+    found = solve(load(text_of(drawn(401, 89))), critical=False)
+    assert found.outcome is Outcome.ESCAPED
+    assert found.events["closest_approach_separation"][0] < -6e-10
 
 
 @pytest.mark.long

@@ -32,6 +32,10 @@ class Inaccurate(SimulationError):
     """Force curves miss the tolerance however they are cut."""
 
 
+class Left(SimulationError):
+    """A motion left the separations at which its contact is tabulated."""
+
+
 class CutPanels(NamedTuple):
     """Panels of one case's curves, cut again and again.
 
