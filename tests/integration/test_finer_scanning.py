@@ -9,7 +9,7 @@ from asperity import solve
 from asperity.config import builtin, load
 from asperity.config.resolve import resolve
 from asperity.errors import Outcome, SimulationError
-from asperity.integration import single_case
+from asperity.integration import refinements
 from asperity.integration.finer_scanning import balanced, with_finer_scanning
 from asperity.integration.single_case import cut_in_steps, integrate
 from asperity.model import build
@@ -59,7 +59,7 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
 
         return balanced(problem, kept, noted)
 
-    monkeypatch.setattr(single_case, "balanced", recorded)
+    monkeypatch.setattr(refinements, "balanced", recorded)
     never_goes_back(solve(SOFT, critical=False))
     before, found = runs
     assert found.contact.resolved.later > 0

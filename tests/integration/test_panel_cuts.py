@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
-from asperity.integration.panel_cuts import CutPanels
+from asperity._jax import jnp
+from asperity.contact import SmoothContact
+from asperity.dynamics.curve_table import tabulate
+from asperity.integration.panel_cuts import CutPanels, Inaccurate, Unsolved, curve_failure
+from asperity.laws import Hertz
 
 NODES = 16
 GOAL = 1e-9
@@ -76,3 +80,29 @@ def test_the_tail_beyond_the_end_of_forces_is_cut_where_it_counts(first):
     panels, errors, _ = cut_until_fine(tail, 50, np.array(first), reach=0.25)
     assert np.max(errors) <= GOAL
     assert np.any(panels.cuts > 0.26)
+
+
+@pytest.mark.parametrize(
+    ("error", "residual", "kind", "words"),
+    [
+        (1e-5, 0.0, Inaccurate, r"relative error of 1\.0e-05, not `numerics.tolerance` = 1\.0e-08"),
+        (1e-5, 2e-3, Unsolved, r"do not agree: relative force error 2\.0e-03"),
+        (0.0, np.nan, Unsolved, "do not agree: no number solves them"),
+        (np.nan, np.nan, Unsolved, "do not agree: no number solves them"),
+        (np.nan, 0.0, Inaccurate, "no numbers somewhere"),
+    ],
+)
+def test_a_failure_names_what_does_not_hold(error, residual, kind, words):
+    with pytest.raises(kind, match=words):
+        raise curve_failure(error, 1e-8, residual)
+
+
+def test_curves_that_are_no_numbers_have_no_error_that_is_small():
+    """It was 0, as where nothing acts."""
+
+    def errors(modulus):
+        contact = SmoothContact(Hertz(1e-6, modulus))
+        return np.asarray(tabulate(contact, jnp.asarray(-1e-8), jnp.asarray(1e-8)).errors)
+
+    assert np.max(errors(1e9)) < 1e-6
+    assert np.isnan(np.max(errors(np.nan)))

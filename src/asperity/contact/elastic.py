@@ -12,7 +12,7 @@ from ..halfspace import ring_mesh, rings_of_mesh
 from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
-from ..laws.law import Real
+from ..laws.law import Real, quantity_or_none
 from ..numerics.trees import zeros_of
 from .contact import Held, Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
@@ -50,6 +50,9 @@ class ElasticContact(DeformingContact):
     resolved
         As there; of several pieces the last one is where the rings that lag behind reach the
         branch.
+    drawn
+        Energy [J] that attraction adds to what a body brings, where its curves must reach deeper
+        for that; None, and no such energy, without it.
 
     Notes
     -----
@@ -58,6 +61,8 @@ class ElasticContact(DeformingContact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
+    drawn: Real | None = quantity_or_none()
+
     def __init__(
         self,
         interface: RoughPlanes,
@@ -65,12 +70,14 @@ class ElasticContact(DeformingContact):
         modulus: Real,
         rings: int = 80,
         resolved: Resolution | None = None,
+        drawn: Real | None = None,
     ) -> None:
         self.interface = interface
         self.shape = shape
         self.modulus = modulus
         self.rings = rings_of_mesh(rings)
         self.resolved = resolved or resolution(interface, deforms=True)
+        self.drawn = drawn
 
     @property
     def rigid(self) -> RigidContact:
@@ -254,6 +261,7 @@ class ElasticContact(DeformingContact):
         """The rigid contact's, less the depth at which Hertz stores the energy alone."""
         lowest = self.rigid.lower_bound(release, kinetic, potential)
         fall = jnp.maximum(kinetic + potential(release) - potential(lowest), 0.0)
+        fall = fall if self.drawn is None else fall + self.drawn
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         # The deeper fall through that depth feeds it once more.
         fall = fall + potential(lowest) - potential(lowest - depth)

@@ -65,8 +65,9 @@ class FoldingContact(ElasticContact):
         resolved: Resolution,
         folds: jax.Array,
         sizes: jax.Array,
+        drawn: Real | None = None,
     ) -> None:
-        super().__init__(interface, shape, modulus, rings, resolved)
+        super().__init__(interface, shape, modulus, rings, resolved, drawn)
         self.folds, self.sizes = folds, sizes
 
     @property

@@ -237,7 +237,7 @@ def _tabulated(
     # Against the work from outside down to each panel: what a body that turns there has done.
     work = jnp.cumsum(done[:, ::-1], axis=1)[:, ::-1]
     work = work + _LEAST * jnp.max(work)
-    error = jnp.where(work > 0.0, tail / jnp.where(work > 0.0, work, 1.0), 0.0)
+    error = jnp.where(work == 0.0, 0.0, tail / jnp.where(work == 0.0, 1.0, work))  # NaN of NaN
     losses = jnp.stack(contact.losses())
     errors = jnp.max(error, axis=0), jnp.max(states.error)
     return Table(ends, values, _works(ends, values), *errors, losses, contact.means(*span))

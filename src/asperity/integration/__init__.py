@@ -4,7 +4,8 @@
 be stopped between compiled calls, and fills up a batch whose cases have ended.
 `steps`: what it compiles. `batch_records`: what it works on.
 `single_case`: one case as a batch of one, or stepped in time. `jumping`: where its equilibria fold.
-`finer_scanning`: scanning curves of more pieces, where energies do not add up.
+`refinements`: what is run again, and how. `finer_scanning`: scanning curves of more pieces, where
+energies do not add up.
 `clock`: reports, the stop, and the time in compiled code.
 """
 

@@ -12,12 +12,12 @@ from ..contact.contact import YieldingContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..errors import Outcome, SimulationError
-from ..regimes.accuracy import CLOSED, balance_error
+from ..regimes.accuracy import CLOSED, balance_error, energy_at_stake
 from ..results.conversion import Solution
 from .clock import Report
 
 _SOON, _LATER = 5, 24  # pieces for each law, at least; 3 leave 2e-3 on a soft bulk, these 1e-7
-_RUN, _AGAIN = 0.85, 0.05  # share of the work that a run is, and that its second run counts as
+_RUN, _AGAIN = 0.85, 0.025  # share of the work that a run is, and that another one counts as
 _STORED = 1e3  # times what bonds can lose; curves of 3 nodes miss more than that itself
 _RIGID = 4  # times the even pieces without a bulk; 8 leave 3e-6 of some menisci, 32 1e-13
 _NARROWING = 6  # besides; without them 16 even ones leave 1.5e-5 of menisci narrower than these
@@ -44,11 +44,38 @@ def balanced(
     """
     found = run(problem, report)
     finer = with_finer_scanning(problem, found.motion)
+    return the_closer(found, finer, run, report, "finer scanning curves")
+
+
+def the_closer(
+    found: Solution,
+    finer: Problem | None,
+    run: Callable[[Problem, Report], Solution],
+    report: Report,
+    why: str,
+    before: int = 0,
+) -> Solution:
+    """What was found, or what a run of a finer problem gives where its energies add up better.
+
+    Parameters
+    ----------
+    found
+        The motion of a problem.
+    finer
+        The finer problem, None without one.
+    run, report
+        As for :func:`balanced`.
+    why
+        What is finer.
+    before
+        How many kinds of finer runs may have come before.
+    """
     if finer is None or found.outcome is Outcome.INTERRUPTED:
         return found
-    report(_RUN, "finer scanning curves")
+    begin = _RUN + before * _AGAIN
+    report(begin, why)
     try:
-        again = run(finer, lambda share, text: report(_RUN + _AGAIN * share, text))
+        again = run(finer, lambda share, text: report(begin + _AGAIN * share, text))
     except SimulationError:  # stopped, or not to be had: the first answer says what it misses
         return found
     if not again.outcome.ok:
@@ -78,7 +105,7 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
         return None
     rows = motion.impacts
     losable = np.asarray(rows.bonds) @ np.sum(motion.table.losses, axis=0)
-    by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0)) / rows.maximum_kinetic[0]
+    by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0) / energy_at_stake(rows))
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
         return None
     if isinstance(contact, ElasticContact):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,10 @@ class Unsolved(SimulationError):
 
 class Inaccurate(SimulationError):
     """Force curves miss the tolerance however they are cut."""
+
+
+class Left(SimulationError):
+    """A motion left the separations at which its contact is tabulated."""
 
 
 class CutPanels(NamedTuple):
@@ -108,12 +113,14 @@ class CutPanels(NamedTuple):
 
 def curve_failure(error: float, tolerance: float, residual: float) -> SimulationError:
     """Why curves do not hold: the contact itself comes first, whose noise no panel follows."""
-    if residual > RESIDUAL:
+    if not residual <= RESIDUAL:
+        off = "no number solves them" if isnan(residual) else f"relative force error {residual:.1e}"
         return Unsolved(
-            f"pressure and deformation do not agree: relative force error {residual:.1e}. The "
-            "contact has no equilibrium that follows from the one before (strong adhesion on "
-            "soft bodies folds it)"
+            f"pressure and deformation do not agree: {off}. The contact has no equilibrium that "
+            "follows from the one before (strong adhesion on soft bodies folds it)"
         )
+    if isnan(error):
+        return Inaccurate("force curves are no numbers somewhere that the body may come")
     return Inaccurate(
         f"force curves reach a relative error of {error:.1e}, "
         f"not `numerics.tolerance` = {tolerance:.1e}"

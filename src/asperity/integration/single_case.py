@@ -7,7 +7,7 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact, RigidContact, interaction_range_of
+from ..contact import Contact, ElasticContact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
 from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
 from ..contact.rough import RoughContact
@@ -23,9 +23,8 @@ from ..results.conversion import Solution
 from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
-from .finer_scanning import balanced
-from .jumping import over_folds
-from .panel_cuts import PATIENCE, Inaccurate
+from .panel_cuts import PATIENCE
+from .refinements import refined
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
@@ -78,27 +77,10 @@ def integrate(
         If the curves miss the tolerance, or the motion is stopped before its first impact.
     """
 
-    def run(problem: Problem, patience: int) -> Solution:
-        def moved(problem: Problem, report: Report) -> Solution:
-            return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
+    def run(problem: Problem, report: Report, patience: int) -> Solution:
+        return _integrated(problem, report, stop, many=many, drawn=drawn, patience=patience)
 
-        return balanced(problem, moved, report)
-
-    try:
-        return over_folds(problem, run, report)
-    except Inaccurate:
-        deep = _place_by_place(problem)
-        if deep is None:
-            raise
-    return over_folds(deep, run, report)
-
-
-def _place_by_place(problem: Problem) -> Problem | None:
-    """The problem with another quadrature: see :meth:`RigidContact.place_by_place`."""
-    if not isinstance(problem.contact, RigidContact) or problem.in_time:
-        return None
-    contact = problem.contact.place_by_place()
-    return None if contact is None else problem._replace(contact=contact)
+    return refined(problem, run, report)
 
 
 def _integrated(

@@ -19,7 +19,7 @@ from ..dynamics.time_series import Series, ascending, sample
 from ..errors import Outcome
 from ..laws.law import as_float64
 from ..numerics.compilation import AT_ONCE, Program
-from ..regimes.accuracy import CLOSED, balance_error
+from ..regimes.accuracy import CLOSED, balance_error, energy_at_stake
 from ..regimes.few_asperities import bodies_differ
 from ..regimes.plastic_validity import kept_elastic
 from ..regimes.validity import (
@@ -253,7 +253,7 @@ def _histories(
 def _known(motion: Motion) -> float:
     """Energy [J] to which losses are known: by the ledger, or as well as it is to close."""
     share = max(2.0 * balance_error(motion), CLOSED)
-    return share * float(motion.impacts.maximum_kinetic[0])
+    return share * float(np.max(energy_at_stake(motion.impacts)))
 
 
 def losses_by_name(contact: Contact, body: Body, lost: np.ndarray) -> dict[str, np.ndarray]:

@@ -213,7 +213,7 @@ def _ledger(ledger: Mapping[str, Any]) -> list[Variable]:
         meaning = f"energy lost to {name} over the whole motion"
         found.append(Variable(f"total_lost_{name}", (), _numbers(value), "J", meaning))
     energy_balance_error = _numbers(ledger.get("energy_balance_error"))
-    meaning = "largest departure of the energy balance over the impact energy"
+    meaning = "largest departure of the energy balance over the impact energy or that lost"
     found.append(Variable("energy_balance_error", (), energy_balance_error, "1", meaning))
     return found
 

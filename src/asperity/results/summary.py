@@ -165,7 +165,7 @@ def _energy(ledger: dict[str, Any]) -> list[tuple[str, str]]:
         about = f"  ({share} of the energy lost)" if energy > 0.0 else ""
         rows.append((f"lost to {mechanism}", amount(energy, "J") + about))
     error = ledger.get("energy_balance_error")
-    closed = "-" if error is None else f"{error:.1e} of the impact energy"
+    closed = "-" if error is None else f"{error:.1e} of the impact energy or of that lost"
     return [*rows, ("balance closes to", closed)]
 
 

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.config import Case
+from asperity.dynamics import Impacts
 from asperity.errors import ENDS, InputError, SimulationError
+from asperity.integration.batch_records import taken
 from asperity.integration.clock import Clock
+from asperity.regimes.accuracy import balance_errors
 from asperity.regimes.validity import AtDepth, check_surface
 from asperity.results.conversion import losses_by_name
 from asperity.results.result import Result
@@ -186,8 +189,9 @@ def _write(study: Study, out: Columns, group: Group, solution: BatchSolution) ->
         found |= _turns(past) if study.motions else {}
         for name in found.keys() & out.keys():
             _put(out[name], rows[moved], found[name][moved])
-        error = past["energy_balance_error"][moved].max(axis=1)
-        out["energy_balance_error"][rows[moved]] = error / past["maximum_kinetic"][moved, 0]
+        none: Any = None
+        impacts = Impacts(**taken(past, moved), fall=none, rise=none)
+        out["energy_balance_error"][rows[moved]] = balance_errors(impacts)
     for place, failure in solution.failures.items():
         _fail(out, int(rows[place]), str(failure))
     for place, problem in enumerate(group.problems):

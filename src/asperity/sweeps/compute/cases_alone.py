@@ -9,7 +9,7 @@ import numpy as np
 from asperity.contact import ElasticContact, RigidContact
 from asperity.errors import SimulationError
 from asperity.integration.jumping import likely_to_jump
-from asperity.integration.panel_cuts import Inaccurate, Unsolved
+from asperity.integration.panel_cuts import Inaccurate, Left, Unsolved
 from asperity.sweeps.compute.building import Built, Group, Values, case_at
 from asperity.sweeps.compute.integrate_batch import BatchSolution
 
@@ -40,8 +40,9 @@ def without_jumps(study: Study, values: Values, whole: Built) -> Built:
 def unfinished(group: Group, solution: BatchSolution) -> list[int]:
     """Rows of cases that failed beside others and may not alone: failures no longer.
 
-    Those on a half-space without an equilibrium, which may jump; those of a rigid body whose curves
-    miss the tolerance while places share a quadrature.
+    Those on a half-space without an equilibrium, which may jump, and those that attraction draws
+    out of their curves; those of a rigid body whose curves miss the tolerance while places share a
+    quadrature.
 
     Parameters
     ----------
@@ -50,9 +51,9 @@ def unfinished(group: Group, solution: BatchSolution) -> list[int]:
     """
     contact = group.batch.contact
     if type(contact) is ElasticContact:
-        ends: type[SimulationError] = Unsolved
+        ends: tuple[type[SimulationError], ...] = (Unsolved, Left)
     elif isinstance(contact, RigidContact) and contact.place_by_place() is not None:
-        ends = Inaccurate
+        ends = (Inaccurate,)
     else:
         return []
     found = [place for place, why in solution.failures.items() if isinstance(why, ends)]

@@ -9,11 +9,10 @@ import numpy as np
 from asperity._jax import jax
 from asperity.contact import ElasticContact
 from asperity.dynamics import Body
-from asperity.errors import SimulationError
 from asperity.integration.batch_motion import REFINEMENTS, BatchMotion
 from asperity.integration.batch_records import ImpactRows, slices, taken
 from asperity.integration.clock import Clock
-from asperity.integration.panel_cuts import PATIENCE
+from asperity.integration.panel_cuts import PATIENCE, Left
 from asperity.integration.steps import Steps
 from asperity.sweeps.compute.building import Group
 from asperity.sweeps.study.columns import FAILED
@@ -113,7 +112,7 @@ def _solution(motions: BatchMotion) -> BatchSolution:
     moved, progress = made > 0, begun.progress
     outcome = np.where(moved, progress.outcome, FAILED)
     for place in np.flatnonzero(moved & (outcome == FAILED)).tolist():
-        failures[place] = SimulationError("the motion left the tabulated separations")
+        failures[place] = Left("the motion left the tabulated separations")
     history = {name: x for name, x in rows.impacts._asdict().items() if x is not None}
     return out._replace(
         outcome=outcome,

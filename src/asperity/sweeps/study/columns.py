@@ -56,7 +56,7 @@ ALWAYS: tuple[Column, ...] = (
         "energy_balance_error",
         "float64",
         "1",
-        "largest error of the energy balance over the impact energy",
+        "largest error of the energy balance over the impact energy or that lost",
     ),
     Column("reason", "uint8", "", "why the case failed", "byte"),
 )
