@@ -18,7 +18,7 @@ const MEASURES = [
   ["time to rest", (a) => amount(a.measures.time_to_rest, "s")],
   ["loss in and out", (a) => amount(a.curve.loss, "J")],
   ["energy at release", (a) => amount(a.ledger.initial, "J")],
-  ["balance closes to", (a) => `${(a.ledger.energy_balance_error ?? NaN).toExponential(1)} of the impact energy`],
+  ["balance closes to", (a) => `${(a.ledger.energy_balance_error ?? NaN).toExponential(1)} of the impact energy or of that lost`],
   ["adhesion law", (a) => a.regime.adhesion_law ?? "–"],
   ["liquid", (a) => a.regime.liquid_regime ?? "–"],
 ];
