@@ -15,6 +15,7 @@ from asperity.config import load
 from asperity.config.resolve import resolve
 from asperity.dynamics.summit_path import Launch
 from asperity.errors import InputError
+from asperity.interface.summit_field import MeasuredField, SampledField
 from asperity.model import build
 from asperity.single_bodies import SingleBodies, launching
 
@@ -211,6 +212,26 @@ def test_too_many_summits_are_refused_with_their_number(monkeypatch):
         asperity.solve(load(CASE), critical=False)
 
 
+def test_summits_too_few_to_carry_most_bodies_are_refused():
+    few = "6.3e13 1/m^2", "1e11 1/m^2"
+    with pytest.raises(InputError, match=r"92\.6 % would meet none above -4\.92 nm") as told:
+        bodies_of(CASE.replace(*few))
+    assert told.value.key == "roughness.asperity_density"
+    alone = beside(OPEN.replace(*few))
+    assert alone.realisations is None
+    assert "no single bodies beside this mean: single bodies need summits" in alone.warnings[-1]
+
+
+def test_bodies_that_come_deeper_than_summits_stand_are_counted():
+    """At least a share exp(-n), with n that stand under a body on average: these meet none."""
+    found = asperity.solve(load(CASE.replace("6.3e13", "1.5e12")), critical=False)
+    under = 2.0 * np.pi * 25e-6 * 1.5e12 * 1.64e-9 * 3.00038
+    sunk = int(np.sum(found.realisations.values["closest_approach"] < -3.0 * 1.64e-9))
+    assert np.exp(-under) - 0.08 < sunk / 256 < 0.7
+    (line,) = [line for line in found.warnings if "come deeper than -4.92 nm" in line]
+    assert line.startswith(f"{sunk} of 256 single bodies")
+
+
 def test_a_seed_is_an_axis_of_a_study(result):
     """Each case has the numbers of its run; where it has no single bodies, none."""
     keep = ["captured", "capture_probability", "capture_probability_high", "median_pull_off"]
@@ -326,6 +347,21 @@ def test_measured_summits_are_drawn_with_their_radii_or_left_where_they_are(map_
     random, measured = (found[name]["closest_approach"] for name in ("random", "measured"))
     assert np.std(measured) == pytest.approx(np.std(random), rel=0.5)
     assert not np.any(random == measured)
+
+
+def test_where_a_map_is_given_and_the_rest_left_open_bodies_stand_on_it(map_file: Path):
+    """At random places where the map is too small, and that is said."""
+    kinds = []
+    for radius in ("10 um", "1 mm"):
+        given = 'placement = "measured"\nrealisations = 256\nseed = 3\n'
+        text = on_map(map_file, "measured").replace(given, "")
+        problem = build(resolve(load(text.replace("10 um", radius))))
+        bodies = SingleBodies(problem._replace(inputs=problem.inputs.with_bodies()), 2e-9)
+        kinds.append((type(bodies.field), bodies.note[:47]))
+    assert kinds == [
+        (MeasuredField, ""),
+        (SampledField, "single bodies stand on summits at random places"),
+    ]
 
 
 def test_a_map_smaller_than_the_summits_within_range_is_refused(map_file: Path):

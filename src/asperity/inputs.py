@@ -201,11 +201,14 @@ class Placement(NamedTuple):
         Bodies, each on summits of its own.
     seed
         Of their places.
+    required
+        Whether a map too small for that is refused; else they stand at random places.
     """
 
     measured: bool
     realisations: int
     seed: int
+    required: bool = True
 
 
 class Assumptions(NamedTuple):

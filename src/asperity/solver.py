@@ -194,7 +194,7 @@ def _result(
                 problem = problem._replace(inputs=alone)
                 why = f"there are no single bodies beside this mean: {error}"
     result = result_of(case, name, problem, solution, elastic, most, bodies)
-    result.warnings.extend([why] if why else [])
+    result.warnings.extend([why] if why else [] if bodies is None else bodies.warnings)
     return result
 
 

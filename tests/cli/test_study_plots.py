@@ -640,6 +640,38 @@ def test_a_table_of_restitution_reads_back_to_the_same_floats(stores, tmp_path, 
     )
 
 
+@pytest.mark.parametrize("ending", READERS)
+def test_a_table_of_single_bodies_holds_their_mean_and_how_many_are_captured(
+    stores, tmp_path, ending
+):
+    found = open_study(stores["speeds"])
+    share = np.linspace(1.0, 0.0, found[SPEED].size)
+    kept = {
+        "mean_restitution": 1.0 - share, "mean_restitution_error": 0.01 * share,
+        "capture_probability": share, "capture_probability_low": 0.9 * share,
+        "capture_probability_high": share,
+    }  # fmt: skip
+    bodies = found.assign({name: (SPEED, x) for name, x in kept.items()})
+    table = restitution_table.restitution_of(bodies)
+    text = restitution_table.write_restitution(table, tmp_path / f"e{ending}").read_text()
+    wanted = [found[SPEED].values, *kept.values()]
+    if ending == ".foam":
+        wanted = wanted[:2]
+        assert f"// capture probability: {share.tolist()}" in text
+        rows = np.array(READERS[ending](text), dtype=float)
+    elif ending == ".h":
+        names = re.findall(r"double asperity_(\w+)", text)
+        assert names[1:4] == ["restitution", "standard_error", "capture_probability"]
+        rows = np.array(READERS[ending](text), dtype=float)
+    else:
+        assert re.search("(?i)restitution.*standard error.*capture probability", text)
+        rows = np.array(READERS[ending](text), dtype=float)
+    np.testing.assert_array_equal(rows, np.stack(wanted, axis=1))
+    assert "single bodies" in table.about[-1]
+    with pytest.raises(InputError, match="`keep` must hold impact_speed and mean_restitution"):
+        restitution_table.restitution_of(bodies.drop_vars("mean_restitution"))
+
+
 def test_a_table_of_restitution_needs_one_axis(stores):
     found = open_study(stores["many"])
     with pytest.raises(InputError, match=rf"--at {ROUGH}=VALUE --at {HUMID}=VALUE"):

@@ -218,8 +218,8 @@ def test_a_case_shows_motion_forces_ledger_curve_map_verdict_and_warnings(shared
         label = page.locator(f"#{panel} [role=img]").get_attribute("aria-label")
         assert label, panel
     expect(page.locator("#verdicts .said")).to_have_text(
-        "No verdict: 0.56 asperities are expected to touch at closest approach, so about half of "
-        "single bodies touch none and the others one or two; the numbers are means over many bodies"
+        "No verdict: 0.56 asperities are expected to touch at closest approach, but a single body "
+        "falls until a summit carries it; the numbers are means over many bodies"
     )
     assert page.locator("#warning-list li").all_text_contents() == result.warnings
     expect(page.locator("#bars")).to_contain_text("lost to capillary")

@@ -86,7 +86,11 @@ def _export_table(source: str, output: str, reporter: Reporter, *, force: bool) 
 def _export_restitution(
     source: str, file: str, held: dict[str, str], reporter: Reporter, *, force: bool
 ) -> Exported:
-    from asperity.sweeps.analysis.restitution_table import restitution_of, write_restitution
+    from asperity.sweeps.analysis.restitution_table import (
+        COLUMNS,
+        restitution_of,
+        write_restitution,
+    )
     from asperity.sweeps.analysis.view import at
     from asperity.sweeps.store.dataset import dataset_of
     from asperity.sweeps.store.store import Store
@@ -94,7 +98,7 @@ def _export_restitution(
     with reporter.step("restitution"):
         found = Store.open(source)
         found.refuse_empty()
-        names = [n for n in ("outcome", "impact_speed", "restitution") if n in found.columns]
+        names = [name for name in ("outcome", *COLUMNS) if name in found.columns]
         dataset, taken = at(dataset_of(found, names), held)
         table = restitution_of(dataset, taken)
         path = write_restitution(table, file, force=force)

@@ -204,7 +204,7 @@ def _beside(case: CaseTables) -> Placement | None:
         table.model_copy(update={"placement": "random"}).check_beside(case)
     except InputError:
         return None
-    return Placement(measured=False, realisations=BESIDE, seed=0)
+    return Placement(table.files is not None, BESIDE, seed=0, required=False)
 
 
 def _tolerance(case: CaseTables) -> Tolerance:

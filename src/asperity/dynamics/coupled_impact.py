@@ -13,7 +13,7 @@ from ..numerics.compilation import Program
 from .coupled_path import Path, follow
 from .damped_coupled import damped_path
 from .record import Body
-from .single_impact import SingleImpact, balance
+from .single_impact import SingleImpact, balance, effectively_loaded
 from .summit_path import (
     Arrival,
     Departure,
@@ -68,7 +68,6 @@ def _coupled_impact(
     begin = end_of(summits, offsets, jnp.zeros_like(path.bonded_at_turn), top)
     met = arrival.met & (arrival.turning_point < begin)
     before, captured, restitution = balance(body, arrival, departure, met, (top, end))
-    squares = jnp.sum(turn.forces**2)
     tabulated = jnp.min(turn.gaps - summits.gap_of_border(0)) >= 0.0
     turning_point = jnp.where(path.arrived & tabulated, arrival.turning_point, jnp.nan)
     return SingleImpact(
@@ -78,7 +77,7 @@ def _coupled_impact(
         restitution=restitution,
         contacting=jnp.sum(turn.gaps < 0.0).astype(float),
         maximum_force=turn.force,
-        loaded=turn.force**2 / jnp.where(squares > 0.0, squares, 1.0),
+        loaded=effectively_loaded(turn.gaps),
         bonds=jnp.sum(path.bonded_at_turn, axis=1).astype(float),
         lost=jnp.concatenate([path.lost, arrival.taken + met * departure.taken]),
         interaction=path.freed - jnp.sum(path.lost),

@@ -68,7 +68,7 @@ class SingleImpact(NamedTuple):
     maximum_force
         Contact force there [N].
     loaded
-        Effective number of loaded summits there, (sum F)^2 / sum F^2.
+        Effective number of loaded summits there, (sum F)^2 / sum F^2 by the loads of Hertz.
     bonds
         Bonds of each law there, shape (laws,).
     lost
@@ -140,8 +140,6 @@ def _impact(
     out = Outward(outward, turning_point, end, recovered, ends)
     departure = (leave_damped if body.damped else leave)(body, out, arrival.kinetic)
     before, captured, restitution = balance(body, arrival, departure, met, (top, end))
-    each = inward.forces(turning_point)
-    squares = jnp.sum(each**2)
     lost = jnp.sum(held * pressed.flatness * summits.lost, axis=1)
     kept_by_tips = inward.work(turning_point) - outward.work(turning_point)
     yielding = jnp.zeros(0) if contact is None else kept_by_tips[None]
@@ -151,8 +149,8 @@ def _impact(
         impact_energy=before,
         restitution=restitution,
         contacting=jnp.sum(gaps < 0.0).astype(float),
-        maximum_force=jnp.sum(each),
-        loaded=jnp.sum(each) ** 2 / jnp.where(squares > 0.0, squares, 1.0),
+        maximum_force=inward.force(turning_point),
+        loaded=effectively_loaded(gaps),
         bonds=jnp.sum(held, axis=1).astype(float),
         lost=jnp.concatenate([lost, yielding, arrival.taken + met * departure.taken]),
         interaction=jnp.zeros(()),
@@ -161,6 +159,17 @@ def _impact(
         unsolved=jnp.zeros(()),
         within_range=jnp.sum(gaps <= summits.approach_range),
     )
+
+
+def effectively_loaded(gaps: jax.Array) -> jax.Array:
+    """As how many alike ones summits with some gaps [m] carry, by Hertz's loads; 0 where none does.
+
+    As the effective number of the mean field: forces with what attracts would sum to less than one
+    of them.
+    """
+    loads = jnp.maximum(-gaps, 0.0) ** 1.5
+    squares = jnp.sum(loads**2)
+    return jnp.sum(loads) ** 2 / jnp.where(squares > 0.0, squares, 1.0)
 
 
 def balance(

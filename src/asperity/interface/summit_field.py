@@ -14,6 +14,7 @@ WIDTH = 256
 
 _GRID = np.linspace(9.0, -60.0, 6901)  # heights over the rms height, from where next to none is
 _NEWTON = 3
+_LOW = 3.0  # rms heights
 _FAR = -1.0  # m, where there are no more summits
 
 
@@ -41,6 +42,11 @@ class SummitField(abc.ABC):
         :math:`2 \pi R n \int_x^\infty (z - x)\,\phi(z)\,\mathrm{d}z` of them.
         """
         return 2.0 * pi * self.radius * self.density * self._mean_above(np.asarray(offset))
+
+    @property
+    @abc.abstractmethod
+    def base(self) -> float:
+        """Height [m] below which next to no summit stands."""
 
     @abc.abstractmethod
     def _mean_above(self, offset: np.ndarray) -> np.ndarray:
@@ -127,6 +133,11 @@ class GaussianField(RandomField):
     rms_height: float
     mean_height: float = 0.0
 
+    @property
+    def base(self) -> float:
+        """One summit of 740 is lower."""
+        return self.mean_height - _LOW * self.rms_height
+
     def _mean_above(self, offset: np.ndarray) -> np.ndarray:
         return self.rms_height * _above((offset - self.mean_height) / self.rms_height)
 
@@ -160,6 +171,10 @@ class SampledField(RandomField):
 
     heights: np.ndarray
     classes: np.ndarray
+
+    @property
+    def base(self) -> float:
+        return float(self.heights[-1])
 
     def _mean_above(self, offset: np.ndarray) -> np.ndarray:
         mean = np.interp(-offset, -self.heights, self._at_heights)

@@ -18,10 +18,11 @@ from .dimensionless_numbers import (
     tabor_number,
 )
 from .loaded_asperities import loaded_asperities, mean_is_enough
-from .verdicts import Verdict, missed, verdicts
+from .verdicts import CARRIED, Verdict, verdicts
 
 __all__ = [
     "BORDER_FACTOR",
+    "CARRIED",
     "DMT_BELOW",
     "ELASTICITY_PER_TABOR",
     "JKR_ABOVE",
@@ -37,7 +38,6 @@ __all__ = [
     "load_parameter",
     "loaded_asperities",
     "mean_is_enough",
-    "missed",
     "plasticity_index",
     "region",
     "regions",

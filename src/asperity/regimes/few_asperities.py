@@ -9,7 +9,7 @@ from ..dynamics.problem import Problem
 from ..inputs import Inputs
 from .dimensionless_numbers import Regime
 from .loaded_asperities import mean_is_enough
-from .verdicts import missed
+from .verdicts import CARRIED
 
 
 def few_warnings(problem: Problem, regime: Regime, motion: Motion) -> list[str]:
@@ -52,9 +52,8 @@ def _few(contacting: float, loaded: float) -> str:
     """What such a mean means."""
     if contacting < 1.0:
         return (
-            f"only {contacting:.2g} asperities are expected to touch at closest approach: "
-            f"{missed(contacting)}, and the numbers are means over many bodies, which none of them "
-            "shows"
+            f"only {contacting:.2g} asperities are expected to touch at closest approach, but "
+            f"{CARRIED}: the numbers are means over many bodies, which none of them shows"
         )
     return (
         f"{contacting:.2g} asperities are expected to touch at closest approach, and {loaded:.2g} "

@@ -37,17 +37,8 @@ class Verdict(NamedTuple):
     verdict: str
 
 
-def missed(contacting: float) -> str:
-    """What it means that fewer than one asperity is expected to touch.
-
-    Parameters
-    ----------
-    contacting
-        Expected number, below 1: by Poisson's law a share exp(-contacting) of bodies touches none.
-    """
-    if contacting < 0.5:
-        return "most single bodies touch none and a few touch one"
-    return "about half of single bodies touch none and the others one or two"
+CARRIED = "a single body falls until a summit carries it"
+"""What is not said by a mean of which fewer than one asperity is expected to touch."""
 
 
 def verdicts(inputs: Inputs, regime: Regime, contacting: float) -> dict[str, Verdict]:
@@ -146,7 +137,7 @@ def _touching(inputs: Inputs, value: float) -> Verdict:
     if inputs.asperities is None:
         return Verdict(None, "1", "the body is smooth: it is its own one asperity")
     if value < 1.0:
-        return Verdict(value, "1", f"below 1: {missed(value)}; only means over many are told")
+        return Verdict(value, "1", f"below 1: {CARRIED}; only means over many are told")
     return Verdict(value, "1", "expected at closest approach, in the mean")
 
 

@@ -16,7 +16,7 @@ QUANTILES = (0.1, 0.5, 0.9)
 KINDS = {
     "restitution": ("1", "coefficient of restitution, 0 where captured or stopped"),
     "contacting": ("1", "summits in contact at the turning point"),
-    "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2"),
+    "loaded": ("1", "effective number of loaded summits there, (sum F)^2 / sum F^2 by Hertz"),
     "maximum_force": ("N", "contact force there"),
     "pull_off": ("N", "largest tension on retraction"),
     "unsolved": ("1", "1 where summits had no equilibrium at some separation, else 0"),
@@ -43,12 +43,15 @@ class Realisations:
     first : dict of str to numpy.ndarray
         The summits within range of the first body at its turning point: "x" and "y", their
         coordinates from its axis, and their "gap" [m].
+    warnings : tuple of str
+        What to know before the numbers are used.
     """
 
     captured: np.ndarray
     values: dict[str, np.ndarray]
     lost: dict[str, np.ndarray]
     first: dict[str, np.ndarray]
+    warnings: tuple[str, ...] = ()
 
     @property
     def size(self) -> int:
@@ -73,11 +76,13 @@ class Realisations:
         """What a study can keep of them, by the names of its measures."""
         low, high = self.capture_interval
         medians = ("restitution", "contacting", "loaded", "pull_off")
+        mean, error = mean_and_error(self.values["restitution"])
         return {
             "capture_probability": self.capture_probability,
             "capture_probability_low": low,
             "capture_probability_high": high,
-            "mean_restitution": float(np.mean(self.values["restitution"])),
+            "mean_restitution": mean,
+            "mean_restitution_error": error,
             **{f"median_{name}": self.quantiles(name)[1] for name in medians},
         }
 
@@ -90,7 +95,7 @@ class Realisations:
             "capture_interval": list(self.capture_interval),
             "shares": list(QUANTILES),
             "quantiles": {name: self.quantiles(name) for name in self.values},
-            "mean_restitution": float(np.mean(self.values["restitution"])),
+            "mean_restitution": mean_and_error(self.values["restitution"])[0],
             "lost": {name: self.quantiles(name) for name in self.lost},
         }
 
@@ -98,6 +103,11 @@ class Realisations:
 def quantiles_of(values: np.ndarray) -> list[float]:
     """The `QUANTILES` of values, each one of them: some may be infinite."""
     return [float(x) for x in np.quantile(values, QUANTILES, method="inverted_cdf")]
+
+
+def mean_and_error(values: np.ndarray) -> tuple[float, float]:
+    """The mean of values, and its standard error."""
+    return float(np.mean(values)), float(np.std(values)) / values.size**0.5
 
 
 def clopper_pearson(hits: int, trials: int) -> tuple[float, float]:

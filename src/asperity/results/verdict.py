@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.errors import Outcome
-from asperity.regimes import missed
+from asperity.regimes import CARRIED
 from asperity.results.realisations import Realisations, percent, restitution_text
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def verdict(result: ResultData) -> str:
         contacting = result.regime["contacting_asperities"]
         return (
             f"no verdict: {contacting:.2g} asperities are expected to touch at closest approach, "
-            f"so {missed(contacting)}; the numbers are means over many bodies"
+            f"but {CARRIED}; the numbers are means over many bodies"
         )
     if not result.measures["rebound_height"]:
         return "touched nothing before the run ended"

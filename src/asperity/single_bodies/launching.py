@@ -6,7 +6,6 @@ import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
-from typing import Any
 
 import numpy as np
 
@@ -21,13 +20,13 @@ from ..dynamics.record import Body
 from ..dynamics.single_impact import SingleImpact, Yielding, single_impacts
 from ..dynamics.summit_path import Launch
 from ..errors import InputError, SimulationError
-from ..integration.batch_motion import RELEASE_KEY
+from ..inputs import Placement
 from ..interface.plastic_interface import PLASTIC
 from ..interface.rough_planes import RoughPlanes
 from ..interface.summit_field import WIDTH, MeasuredField
 from ..laws.law import as_float64, terms
 from ..numerics.compilation import AT_ONCE, Program
-from .placement import place_summits
+from .placement import Placed, place_summits, refuse_inside
 
 MOST_SUMMITS = 2048
 """Summits under one body that are followed one by one, on a rigid bulk."""
@@ -64,7 +63,7 @@ class SingleBodies:
     Raises
     ------
     InputError
-        If a map is too small for bodies that come so deep.
+        If a map is too small for bodies that come so deep, or most have no summit under them.
     """
 
     def __init__(self, problem: Problem, turning_point: float) -> None:
@@ -74,7 +73,8 @@ class SingleBodies:
         self._inputs, lengths = inputs, _lengths(contact.interface)
         self._rms, self._range = map(float, lengths)
         self._lowest = turning_point - self._range - _BELOW * self._rms
-        self.field, self._tips, self._laws, self._contacts = place_summits(inputs, self._lowest)
+        self.note = ""
+        self.field, self._tips, self._laws, self._contacts = self._place(inputs.placement)
         self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
         self._most = MOST_SUMMITS if self._modulus is None else MOST_COUPLED
         self._turning_point, self._count = turning_point, 0
@@ -90,6 +90,16 @@ class SingleBodies:
         self._seed = inputs.placement.seed
         self._table: tuple[float, Asperities] | None = None
         self._felt = self._range
+
+    def _place(self, placed: Placement) -> Placed:
+        """The summits: at random places where a map is too small that need not be large enough."""
+        try:
+            return place_summits(self._inputs, placed, self._lowest)
+        except InputError as error:
+            if placed.required:
+                raise
+            self.note = f"single bodies stand on summits at random places: {error}"
+        return place_summits(self._inputs, placed._replace(measured=False), self._lowest)
 
     def impacts(
         self,
@@ -136,7 +146,8 @@ class SingleBodies:
                 return found
             # So deep, summits beyond the edges of the map would have been within range.
             self._lowest = lowest - self._rms
-            self.field = place_summits(self._inputs, self._lowest).field
+            assert self._inputs.placement is not None
+            self.field = place_summits(self._inputs, self._inputs.placement, self._lowest).field
 
     def _all(
         self,
@@ -235,7 +246,7 @@ class SingleBodies:
         while True:
             offsets, classes = self.field.summits(self._seed, number, count)
             if np.all(np.isinf(before)):
-                _refuse_inside(launches.release, offsets[:, 0])
+                refuse_inside(launches.release, offsets[:, 0])
             summits = launches, as_float64(offsets), jnp.asarray(classes)
             if self._modulus is None:
                 found = single_impacts(table, self._body, *summits, with_pull_off, yielding)
@@ -280,18 +291,6 @@ class SingleBodies:
                 f"feel a force; here {number:.3g} or more do",
                 key="roughness.placement",
             )
-
-
-def _refuse_inside(release: Any, highest: np.ndarray) -> None:
-    """Refuse bodies that would be released [m] on a summit, by their highest offsets [m]."""
-    inside = np.asarray(release) <= highest
-    if np.any(inside):
-        raise InputError(
-            "`release_separation` must lie above the highest summit of every single body, that of "
-            f"one at {np.max(highest[inside]) * 1e9:.4g} nm; got "
-            f"{np.min(release[inside]) * 1e9:.4g} nm",
-            key=RELEASE_KEY,
-        )
 
 
 def _power_of_two(number: int) -> int:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from math import exp, log
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..asperity_laws import asperity_law, laws_beside, plastic_law
 from ..errors import InputError
-from ..inputs import Inputs
+from ..inputs import Inputs, Placement
+from ..integration.batch_motion import RELEASE_KEY
 from ..interface.radius_classes import members
 from ..interface.summit_field import GaussianField, MeasuredField, SampledField, SummitField
 from ..laws.law import Law, Sum
@@ -36,24 +38,26 @@ class Placed(NamedTuple):
     contacts: list[PlasticContact]
 
 
-def place_summits(inputs: Inputs, lowest: float) -> Placed:
+def place_summits(inputs: Inputs, placed: Placement, lowest: float) -> Placed:
     """The summits of a case, by class of tip radius.
 
     Parameters
     ----------
     inputs
         The quantities of a case with single bodies.
+    placed
+        Where they are to stand.
     lowest
         Offset [m] of a summit that is just within range of a body.
 
     Raises
     ------
     InputError
-        If a map is smaller than the summits within range of a body spread.
+        If a map is smaller than the summits within range of a body spread, or most bodies have no
+        summit under them.
     """
-    rough, placed = inputs.asperities, inputs.placement
+    rough = inputs.asperities
     assert rough is not None
-    assert placed is not None
     radius, density = inputs.radius, rough.asperity_density
     if rough.summits is None or not (placed.measured or inputs.structure.heights == "summits"):
         gaussian = GaussianField(radius, density, rough.rms_height, rough.mean_height)
@@ -81,6 +85,8 @@ def _of_classes(
     field: SummitField, inputs: Inputs, tips: list[float], smallest: float | None = None
 ) -> Placed:
     """With the laws of each tip radius [m], the smallest of all being that [m]."""
+    assert inputs.asperities is not None
+    _refuse_bare(field, measured=inputs.asperities.summits is not None)
     if not inputs.yields:
         return Placed(field, tips, [asperity_law(inputs, tip, smallest) for tip in tips], [])
     laws: list[Law] = [Sum(laws_beside(inputs, tip, smallest)) for tip in tips]
@@ -104,3 +110,29 @@ def _positions(size: tuple[float, float], away: float) -> np.ndarray:
             key="roughness.placement",
         )
     return np.array([[away, away], [size[0] - away, size[1] - away]])
+
+
+def _refuse_bare(field: SummitField, *, measured: bool) -> None:
+    """Refuse summits so few that most bodies would fall on the surface between them."""
+    under = float(field.expected_above(field.base))
+    if under < log(2.0):
+        key = "placement" if measured else "asperity_density"
+        raise InputError(
+            f"single bodies need summits under them: of {field.density:.3g} 1/m^2 "
+            f"{100 * exp(-under):.3g} % would meet none above {field.base * 1e9:.3g} nm, and fall "
+            "on the surface between, which is not described; "
+            f"{field.density * log(2.0) / under:.2g} 1/m^2 or more carry most",
+            key=f"roughness.{key}",
+        )
+
+
+def refuse_inside(release: Any, highest: np.ndarray) -> None:
+    """Refuse bodies that would be released [m] on a summit, by their highest offsets [m]."""
+    inside = np.asarray(release) <= highest
+    if np.any(inside):
+        raise InputError(
+            "`release_separation` must lie above the highest summit of every single body, that of "
+            f"one at {np.max(highest[inside]) * 1e9:.4g} nm; got "
+            f"{np.min(release[inside]) * 1e9:.4g} nm",
+            key=RELEASE_KEY,
+        )

@@ -73,7 +73,15 @@ def realise(
         most = min(REBOUNDS, problem.inputs.tolerance.max_impacts - 1)
         followed = _until_captured(bodies, first, most, stop)
         values |= dict(zip(("rebounds", "flight_time"), followed, strict=True))
-    return Realisations(np.asarray(first.captured), values, lost, bodies.first(first))
+    warnings = [bodies.note] if bodies.note else []
+    if sunk := int(np.sum(values["closest_approach"] < bodies.field.base)):
+        warnings.append(
+            f"{sunk} of {placed.realisations} single bodies come deeper than "
+            f"{bodies.field.base * 1e9:.3g} nm, below which next to no summit stands: the surface "
+            "between would carry them, and is not described"
+        )
+    captured = np.asarray(first.captured)
+    return Realisations(captured, values, lost, bodies.first(first), tuple(warnings))
 
 
 def _until_captured(

@@ -18,7 +18,7 @@ from ..dynamics.single_impact import SingleImpact
 from ..dynamics.summit_path import Launch
 from ..integration import Report, silently
 from ..model import build
-from ..results.realisations import QUANTILES, clopper_pearson, quantiles_of
+from ..results.realisations import QUANTILES, clopper_pearson, mean_and_error, quantiles_of
 from ..results.result import Result
 from ..single_bodies import SingleBodies
 
@@ -118,8 +118,7 @@ def capture_probability(
         report(number / speeds.size, f"{count} single bodies, {number} of {speeds.size} speeds")
         found = launched(speed)
         kept = np.asarray(found.restitution)
-        error = np.std(kept) / sqrt(count)
-        rows.append([np.sum(found.captured), np.mean(kept), error, *quantiles_of(kept)])
+        rows.append([np.sum(found.captured), *mean_and_error(kept), *quantiles_of(kept)])
     hits, means, errors, *quantiles = np.array(rows[::-1]).T
     low, high = np.array([clopper_pearson(int(hit), count) for hit in hits]).T
     half: list[float | None] = [None] * 3

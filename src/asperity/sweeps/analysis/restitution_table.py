@@ -6,6 +6,7 @@ floats.
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,6 +24,15 @@ if TYPE_CHECKING:
     import xarray
 
 _NEEDED = ("impact_speed", "restitution")
+_BODIES = {
+    "mean_restitution_error": "standard error",
+    "capture_probability": "capture probability",
+    "capture_probability_low": "lower bound of it",
+    "capture_probability_high": "upper bound of it",
+}
+
+COLUMNS = (*_NEEDED, "mean_restitution", *_BODIES)
+"""Measures of a study that a table may hold."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +44,18 @@ class Restitution:
     speed
         Impact speeds [m/s], ascending, shape (points,).
     restitution
-        Coefficients of restitution, 0 where the first impact captures, shape (points,).
+        Coefficients of restitution, 0 where the first impact captures, shape (points,); where a
+        study has single bodies, their mean.
+    beside
+        What is known of single bodies besides, by its name in words, shape (points,) each; the
+        bounds are those of 95 %.
     about
         What they belong to, in lines.
     """
 
     speed: np.ndarray
     restitution: np.ndarray
+    beside: dict[str, np.ndarray]
     about: tuple[str, ...]
 
 
@@ -50,7 +65,8 @@ def restitution_of(dataset: xarray.Dataset, taken: str = "") -> Restitution:
     Parameters
     ----------
     dataset
-        A grid's results with ``impact_speed`` and ``restitution``, all axes but one held fixed.
+        A grid's results with ``impact_speed`` and ``restitution``, or ``mean_restitution`` where it
+        has single bodies, all axes but one held fixed.
     taken
         What is held fixed, in words.
 
@@ -60,15 +76,18 @@ def restitution_of(dataset: xarray.Dataset, taken: str = "") -> Restitution:
         Where the study is a sample, has not kept both measures, varies along several axes, or
         two cases have one speed.
     """
-    missing = [name for name in _NEEDED if name not in dataset]
+    bodies = {"mean_restitution", *_BODIES} & {str(name) for name in dataset}
+    needed = ("impact_speed", "mean_restitution") if bodies else _NEEDED
+    missing = [name for name in needed if name not in dataset]
     if missing:
+        of = " of single bodies" if bodies else ""
         raise InputError(
-            f"`keep` must hold {' and '.join(_NEEDED)} for a table of restitution; "
+            f"`keep` must hold {' and '.join(needed)} for a table of restitution{of}; "
             f"got no {missing[0]}",
             key="keep",
         )
     key = _only_axis(dataset)
-    speed, bounce = (numbers(dataset, name) for name in _NEEDED)
+    speed, bounce = (numbers(dataset, name) for name in needed)
     known = np.isfinite(speed) & np.isfinite(bounce)
     order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
     if order.size < 2:
@@ -85,9 +104,11 @@ def restitution_of(dataset: xarray.Dataset, taken: str = "") -> Restitution:
         f"base case: {dataset.attrs['base']}",
         *([taken] if taken else []),
         *([f"{lost} of {known.size} cases have no restitution and are left out"] if lost else []),
-        "coefficient of restitution of the first impact, 0 where it captures",
+        f"{'mean ' if bodies else ''}coefficient of restitution of the first impact"
+        f"{' of single bodies' if bodies else ''}, 0 where it captures",
     ]
-    return Restitution(speed[order], bounce[order], tuple(about))
+    beside = {_BODIES[one]: numbers(dataset, one)[order] for one in _BODIES if one in bodies}
+    return Restitution(speed[order], bounce[order], beside, tuple(about))
 
 
 def _only_axis(dataset: xarray.Dataset) -> str:
@@ -115,6 +136,9 @@ def write_restitution(
     table: Restitution, file: str | os.PathLike[str], *, force: bool = False
 ) -> Path:
     """Write restitution against speed; the file's ending says in which form.
+
+    What is known of single bodies besides follows in columns or arrays of its own, in ``.foam`` as
+    comments.
 
     ``.dat``
         two columns under ``#`` comments, for anything that reads columns.
@@ -145,19 +169,22 @@ def write_restitution(
 
 def _commented(sign: str) -> Callable[[Restitution], str]:
     def columns(table: Restitution) -> str:
-        heads = [*table.about, "impact speed [m/s], coefficient of restitution [-]"]
+        names = ["coefficient of restitution", *table.beside]
+        heads = [*table.about, ", ".join(["impact speed [m/s]", *(f"{n} [-]" for n in names)])]
         return "\n".join([*(f"{sign} {line}" for line in heads), *_rows(table, " "), ""])
 
     return columns
 
 
 def _named(table: Restitution) -> str:
-    return "\n".join(["Speed (m/s),Restitution", *_rows(table, ","), ""])
+    names = [name.capitalize() for name in table.beside]
+    return "\n".join([",".join(["Speed (m/s)", "Restitution", *names]), *_rows(table, ","), ""])
 
 
 def _foam(table: Restitution) -> str:
-    heads = [*table.about, "(impact speed [m/s]  coefficient of restitution [-])"]
-    rows = [f"    ({row})" for row in _rows(table, " ")]
+    beside = [f"{name}: {values.tolist()}" for name, values in table.beside.items()]
+    heads = [*table.about, *beside, "(impact speed [m/s]  coefficient of restitution [-])"]
+    rows = [f"    ({row})" for row in _rows(dataclasses.replace(table, beside={}), " ")]
     return "\n".join([*(f"// {line}" for line in heads), "(", *rows, ")", ""])
 
 
@@ -171,6 +198,7 @@ def _c(table: Restitution) -> str:
     for name, values, unit in (
         ("speed", table.speed, "m/s"),
         ("restitution", table.restitution, "-"),
+        *((name.replace(" ", "_"), values, "-") for name, values in table.beside.items()),
     ):
         numbers_written = ",\n".join(f"    {value!r}" for value in values.tolist())
         lines.append(
@@ -181,8 +209,9 @@ def _c(table: Restitution) -> str:
 
 
 def _rows(table: Restitution, between: str) -> list[str]:
-    pairs = zip(table.speed.tolist(), table.restitution.tolist(), strict=True)
-    return [f"{speed!r}{between}{bounce!r}" for speed, bounce in pairs]
+    columns = (table.speed, table.restitution, *table.beside.values())
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return [between.join(map(repr, row)) for row in rows]
 
 
 _FORMS: dict[str, Callable[[Restitution], str]] = {

@@ -75,6 +75,7 @@ OF_BODIES: tuple[Column, ...] = (
     Column("capture_probability_low", "float64", "1", "lower bound of the captured share"),
     Column("capture_probability_high", "float64", "1", "upper bound of the captured share"),
     Column("mean_restitution", "float64", "1", "mean restitution of single bodies"),
+    Column("mean_restitution_error", "float64", "1", "standard error of that mean"),
     Column("median_restitution", "float64", "1", "median restitution of single bodies"),
     Column("median_contacting", "float64", "1", "median of contacting summits"),
     Column("median_loaded", "float64", "1", "median of effectively loaded summits"),
