@@ -175,7 +175,8 @@ def _result(
     report(0.9, "measures")
     stopped = solution.outcome in (Outcome.FAILED, Outcome.INTERRUPTED)
     elastic = None if stopped else _kept_elastic(problem.inputs, lambda _, text: report(0.9, text))
-    asked, bodies, why = problem.inputs.placement is not None, None, ""
+    asked, bodies = problem.inputs.placement is not None, None
+    warnings: tuple[str, ...] = ()
     placed = beside_mean(problem, solution) if beside and not stopped else problem
     if placed.inputs.placement is not None and not stopped:
         try:
@@ -183,7 +184,7 @@ def _result(
                 placed, problem.body, float(solution.motion.impacts.closest_approach[0]),
                 lambda _, text: report(0.9, text), stop, rebounds=asked and most is None,
             )  # fmt: skip
-            problem = placed
+            problem, warnings = placed, bodies.warnings
         except (InputError, SimulationError) as error:
             if stop is not None and stop.is_set():
                 solution = solution._replace(outcome=Outcome.INTERRUPTED)
@@ -192,9 +193,9 @@ def _result(
             else:
                 alone = dataclasses.replace(problem.inputs, beside=None)
                 problem = problem._replace(inputs=alone)
-                why = f"there are no single bodies beside this mean: {error}"
+                warnings = (f"there are no single bodies beside this mean: {error}",)
     result = result_of(case, name, problem, solution, elastic, most, bodies)
-    result.warnings.extend([why] if why else [] if bodies is None else bodies.warnings)
+    result.warnings.extend(warnings)
     return result
 
 

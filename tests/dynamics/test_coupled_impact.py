@@ -36,6 +36,7 @@ from dynamics.test_single_impact import impacts as rigid_impacts
 
 SUMMITS, BODIES = 16, 64  # of every test: a program is compiled for each number of laws
 FIELD = GaussianField(RADIUS, 2e13, 1.2e-9)
+STIFFNESS = 4.0 / 3.0 * MODULUS * np.sqrt(TIP)  # N/m^1.5, of a summit by Hertz
 
 
 def impacts(law, launches, offsets, positions, modulus=MODULUS, body=BODY):
@@ -58,24 +59,31 @@ def drawn(seed):
     return offsets[:BODIES], positions[:BODIES]
 
 
+def lowered_by_each_other(positions, energy):
+    """Displacement of two summits per load of one another [m/N], as wide as on a rigid bulk.
+
+    And the indentation there [m] of one that carries half of the energy.
+    """
+    rigid = (energy / (0.8 * STIFFNESS)) ** 0.4
+    radii = jnp.full(2, np.sqrt(TIP * rigid))
+    return float(influence_between(jnp.asarray(positions), radii, MODULUS)[0, 1]), rigid
+
+
 def test_two_summits_share_a_load():
     """Both carry F = k z^(3/2) at an indentation z, and each lowers the other by C F."""
     apart, energy = 150e-9, 0.5 * MASS * np.array([1e-3, FAST]) ** 2
     law = LAWS["hertz"]
     positions = np.broadcast_to([[0.0, 0.0], [apart, 0.0]], (2, 2, 2))
     found = impacts(law, launched([1e-3, FAST]), np.zeros((2, 2)), positions)
-    stiffness = 4.0 / 3.0 * MODULUS * np.sqrt(TIP)
     for k in range(2):
-        rigid = (energy[k] / (0.8 * stiffness)) ** 0.4  # the widths of contacts are those
-        radii = jnp.full(2, np.sqrt(TIP * rigid))
-        lowered = float(influence_between(jnp.asarray(positions[k]), radii, MODULUS)[0, 1])
+        lowered, rigid = lowered_by_each_other(positions[k], energy[k])
         assert lowered == pytest.approx(1.0 / (pi * MODULUS * apart), rel=0.03)
 
         def left(z, lowered=lowered, energy=energy[k]):
-            return 0.8 * stiffness * z**2.5 + lowered * stiffness**2 * z**3 - energy
+            return 0.8 * STIFFNESS * z**2.5 + lowered * STIFFNESS**2 * z**3 - energy
 
         z = brentq(left, 0.0, rigid, xtol=1e-25)
-        force = stiffness * z**1.5
+        force = STIFFNESS * z**1.5
         assert float(found.maximum_force[k]) == pytest.approx(2.0 * force, rel=1e-7)
         approach = -z - lowered * force
         assert float(found.closest_approach[k]) == pytest.approx(approach, rel=1e-7)
@@ -170,10 +178,7 @@ def test_a_slowed_body_on_two_summits_is_followed_in_time():
     loose = dataclasses.replace(SLOWED, drags=(film, dashpot, silent))
     found = impacts(law, launched([FAST], 0.5e-9), np.zeros((1, 2)), positions, body=loose)
     unloaded = impacts(law, launched([FAST], 0.5e-9), np.zeros((1, 2)), positions)
-    stiffness = 4.0 / 3.0 * MODULUS * np.sqrt(TIP)
-    rigid = (0.5 * MASS * FAST**2 / (0.8 * stiffness)) ** 0.4
-    radii = jnp.full(2, np.sqrt(TIP * rigid))
-    lowered = float(influence_between(jnp.asarray(positions[0]), radii, MODULUS)[0, 1])
+    lowered, _ = lowered_by_each_other(positions[0], 0.5 * MASS * FAST**2)
     unit, rate = 1e-9, FAST / 1e-9
 
     def contact(place):
@@ -181,9 +186,9 @@ def test_a_slowed_body_on_two_summits_is_followed_in_time():
             return 0.0
 
         def left(z):
-            return z + lowered * stiffness * z**1.5 + place
+            return z + lowered * STIFFNESS * z**1.5 + place
 
-        return 2.0 * stiffness * brentq(left, 0.0, -place, xtol=1e-26) ** 1.5
+        return 2.0 * STIFFNESS * brentq(left, 0.0, -place, xtol=1e-26) ** 1.5
 
     def slope(_, y):
         place = y[0] * unit

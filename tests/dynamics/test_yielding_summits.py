@@ -9,7 +9,7 @@ import pytest
 import asperity
 from asperity._jax import jax, jnp
 from asperity.config import load_file
-from asperity.contact.asperity_table import asperity_table, stacked
+from asperity.contact.asperity_table import asperity_table
 from asperity.dynamics import Body
 from asperity.dynamics.single_impact import Yielding, single_impacts
 from asperity.dynamics.summit_path import Launch
@@ -18,6 +18,7 @@ from asperity.interface.summit_field import GaussianField
 from asperity.laws import Dmt, Meniscus
 from asperity.laws.law import Sum
 from asperity.laws.plastic import JacksonGreen, KogutEtsion, ThorntonNing
+from asperity.numerics.trees import stacked
 from chosen import long_but
 
 TIP, MODULUS = 450e-9, 6.6e10  # m, Pa

@@ -14,6 +14,7 @@ from ..laws.law import Law, Real, as_float64, terms
 from ..laws.plastic import PlasticContact
 from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.polynomials import points_between
+from ..numerics.trees import stacked
 from .smooth import kinks_of
 
 _CELLS = 512  # between two gaps at which a law is not smooth
@@ -298,8 +299,3 @@ def asperity_table(
     """
     beside = stacked(contacts) if contacts else None
     return _tables(jnp.arange(len(laws)), stacked(laws), beside, as_float64(energy))
-
-
-def stacked(each: Sequence[Any]) -> Any:
-    """Laws or contacts that are alike but for their values as one, with arrays for its values."""
-    return jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *each)

@@ -166,7 +166,7 @@ class _Motion(NamedTuple):
             sound=first.solved,
             still=jnp.asarray(0),
             steps=jnp.asarray(0),
-            curve=ForceCurve.of(_MOST, here) if recorded else None,
+            curve=ForceCurve.of(2 * _MOST, here) if recorded else None,
         )
 
     def step(self, path: Path) -> Path:

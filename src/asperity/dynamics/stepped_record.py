@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._jax import jax, jnp
+from .._jax import jnp
 from ..contact.contact import Contact
 from ..errors import ENDS, Outcome
+from ..numerics.trees import stacked
 from .curve_table import (
     ATTRACTION,
     CONTACTING,
@@ -126,8 +127,7 @@ class Ledger(NamedTuple):
         table, reference = self.prepared
         origin = float(self.energy(done[0].begin)[0])
         largest = self.maximum_kinetic(done[0])
-        rows = [self._row(one, origin, largest) for one in done]
-        impacts: Impacts = jax.tree_util.tree_map(lambda *leaves: np.stack(leaves), *rows)
+        impacts = stacked([self._row(one, origin, largest) for one in done])
         code = ENDS.index(outcome) if outcome in ENDS else IN_MOTION
         time = done[-1].end.time[0]
         over = Progress.over(*(jnp.asarray(x) for x in (time, code, len(done))))

@@ -10,7 +10,7 @@ from math import ceil
 import numpy as np
 
 from .._jax import jax, jnp
-from ..contact.asperity_table import Asperities, asperity_table, stacked
+from ..contact.asperity_table import Asperities, asperity_table
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
@@ -26,6 +26,7 @@ from ..interface.rough_planes import RoughPlanes
 from ..interface.summit_field import WIDTH, MeasuredField
 from ..laws.law import as_float64, terms
 from ..numerics.compilation import AT_ONCE, Program
+from ..numerics.trees import stacked
 from .placement import Placed, place_summits, refuse_inside
 
 MOST_SUMMITS = 2048
