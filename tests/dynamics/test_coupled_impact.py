@@ -301,6 +301,24 @@ def test_a_path_in_small_steps_gives_the_same():
         assert float(found.closest_approach[k]) == pytest.approx(turn, abs=1.1 * step)
 
 
+def test_bonds_of_summits_that_overlap_break_where_these_lose_their_equilibrium():
+    """Two tips 25 nm apart, of which one is lower by up to 4 pm, beside a third."""
+    law, step = LAWS["jkr, wet"], 2e-12
+    lower = np.linspace(0.0, 4e-12, BODIES)
+    offsets = np.stack([np.full(BODIES, 3e-10), np.zeros(BODIES), -lower], axis=1)
+    positions = np.array([[0.0, 200e-9], [0.0, 0.0], [25e-9, 0.0]])
+    found = impacts(
+        law, launched(np.full(BODIES, FAST)), offsets, np.broadcast_to(positions, (BODIES, 3, 2))
+    )
+    assert not np.any(found.unsolved)
+    radii = jnp.sqrt(TIP * (offsets[-1] - rigid_turn(law, offsets[-1])))
+    influence = np.asarray(influence_between(jnp.asarray(positions), radii, MODULUS))
+    energy = 0.5 * MASS * FAST**2
+    restitution, turn = followed(law, offsets[-1], influence, energy, step, 0.02 * step)
+    assert float(found.restitution[-1]) == pytest.approx(restitution, abs=3e-5)
+    assert float(found.closest_approach[-1]) == pytest.approx(turn, abs=1.1 * step)
+
+
 def rigid_turn(law, offsets):
     """Where such a body turns on a rigid bulk [m]."""
     return float(rigid_impacts(law, launched([FAST]), offsets[None]).closest_approach[0])

@@ -11,6 +11,7 @@ from .asperity_table import Asperities
 
 _ENOUGH = 1e-7  # of the shortest length of a law: the last change of a gap, the next its square
 _WHOLE, _STEPS = 10, 80  # of Newton's method: whole ones, and all
+_ROUNDING = 1e-15  # of a gap
 _INSIDE = 1e-13  # of that length: within what a bond bears
 _RAMP = 1.5  # times what attractions that end with contact move a summit: over which they rise
 
@@ -111,7 +112,8 @@ class CoupledSummits(NamedTuple):
             change, rates = jnp.linalg.solve(matrix, jnp.stack([left, one], axis=1)).T
             # Steps to and fro over an end of the piece of a law are halved.
             share = jnp.where(made < _WHOLE, 1.0, 0.5)
-            return (gaps - share * change, rates, made + 1), jnp.max(jnp.abs(change))
+            beyond_rounding = jnp.abs(change) - _ROUNDING * jnp.abs(gaps)
+            return (gaps - share * change, rates, made + 1), jnp.max(beyond_rounding)
 
         enough = _ENOUGH * self.summits.scale[0]
         (gaps, rates, _), change = fixed_point(step, (guess, one, jnp.asarray(0)), enough, _STEPS)

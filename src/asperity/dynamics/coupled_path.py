@@ -113,15 +113,18 @@ class _Motion(NamedTuple):
         back = ahead * (path.separation - path.last.separation)
         between = ahead * (path.missed - path.last.separation)
         # Where a bond is missed however near one comes, its summits have no equilibrium with it.
-        folds = ahead * (path.missed - path.separation) <= close
+        folds = (ahead * (path.missed - path.separation) <= close) & (left > close)
         near = (left >= -close) | (back <= close) | (between <= close)
-        stuck = path.still >= _AT_ONE
-        acts = (((left <= close) & near) | folds) & ~stuck
+        solved = path.state.solved
+        stuck = (path.still >= _AT_ONE) | (~solved & (back == 0.0))
+        stuck = stuck | (solved & folds & (nearest == jnp.inf))
+        acts = (((left <= close) & near) | folds) & solved & ~stuck
         changes = acts & ((nearest <= left) | folds)
         chosen = (bonds == nearest) & changes
         chosen = chosen & (jnp.cumsum(chosen.ravel()).reshape(chosen.shape) == 1)
         turns = acts & ~changes & ~path.outward
-        return _Choice(left, chosen, acts, turns, acts | (left > close) | stuck, stuck)
+        good = acts | ((left > close) & solved) | stuck
+        return _Choice(left, chosen, acts, turns, good, stuck)
 
     def _left_to_turn(self, here: CurvePoint) -> jax.Array:
         slope = here.force - self.load.force(here.separation)
@@ -140,7 +143,8 @@ class _Motion(NamedTuple):
         onward = jnp.where(onward < to_missed, onward, 0.5 * to_missed)
         onward = jnp.where(choice.stuck, _BEYOND * longest, onward)
         half_back = -0.5 * ahead * (path.separation - path.last.separation)
-        move = ahead * jnp.where(choice.good, onward, jnp.maximum(choice.left, half_back))
+        back = jnp.where(path.state.solved, jnp.maximum(choice.left, half_back), half_back)
+        move = ahead * jnp.where(choice.good, onward, back)
         return jnp.where(choice.acts, 0.0, move)
 
     def start(self, *, recorded: bool) -> Path:
@@ -178,7 +182,8 @@ class _Motion(NamedTuple):
         changes = jnp.any(chosen)
         separation = path.separation + move
         new = self.coupled.equilibrium(separation, bonded ^ chosen, state.gaps + state.rates * move)
-        freed = path.freed + jnp.where(changes, state.energy - new.energy, 0.0)
+        released = state.energy - new.energy - 0.5 * (state.force + new.force) * move
+        freed = path.freed + jnp.where(changes | choice.stuck, released, 0.0)
         there = self.point(separation, new, freed)
         last = choose(choice.good, here, path.last)
         outward = path.outward | turns
