@@ -20,6 +20,8 @@ _FINER = 16  # between two of them on approach
 _ROUNDS, _NEAR = 3, 7  # about the least energy on retraction
 _ABOUT = np.linspace(-1.0, 1.0, 9)  # times the range of bonds, about each of the highest summits
 _HIGHEST = 32  # of these, which decide; at those below one separation each is looked at
+_ONE_BY_ONE = 1024  # of the highest, as many of all others, of which each bond is looked at
+_AT_ONCE = 1 << 22  # gaps of which energies are held together
 _CLOSE = 1e-14  # of a separation: less is lost in rounding
 _SHARES = np.linspace(0.0, 1.0, _SEPARATIONS + 1)
 
@@ -206,6 +208,11 @@ class Outward(NamedTuple):
     recovered: jax.Array
     ends: jax.Array
 
+    @property
+    def together(self) -> int:
+        """Separations at which the energies of all summits are held in memory."""
+        return max(_AT_ONCE // self.recovered.size, 1)
+
     def even(self, shares: np.ndarray) -> jax.Array:
         """Separations from the start to the end [m], ascending.
 
@@ -215,7 +222,7 @@ class Outward(NamedTuple):
 
     def looked_at(self) -> tuple[jax.Array, jax.Array]:
         """Separations [m] to look at, the ends of bonds among them, and their steps."""
-        even, ends = self.even(_SHARES[2::2]), self.ends.ravel()
+        even, ends = self.even(_SHARES[2::2]), self.ends[:, _some(self.recovered.size)].ravel()
         ends = ends - _CLOSE * jnp.abs(ends)  # just before they break
         separations = jnp.clip(jnp.concatenate([even, ends]), even[0], self.end)
         return separations, jnp.interp(separations, even, jnp.diff(even, prepend=self.start))
@@ -228,10 +235,12 @@ class Outward(NamedTuple):
         widest = jnp.max(jnp.vstack(lengths))
         highest = jax.lax.top_k(self.recovered, min(_HIGHEST, self.recovered.size))[0]
         about = (highest[:, None] + widest * _ABOUT).ravel()
-        more = jnp.concatenate([self.recovered + summits.pull_off_gap, about])
+        peaks = (self.recovered + summits.pull_off_gap)[_some(self.recovered.size)]
+        more = jnp.concatenate([peaks, about])
         more = jnp.clip(more, self.start, jnp.max(separations))
         steps = jnp.minimum(jnp.append(step, jnp.full(more.shape, widest)), widest)
-        return -jnp.minimum(_least(self.path.force, jnp.append(separations, more), steps), 0.0)
+        separations = jnp.append(separations, more)
+        return -jnp.minimum(_least(self.path.force, separations, steps, self.together), 0.0)
 
 
 def evenly(
@@ -247,12 +256,24 @@ def leave(body: Body, outward: Outward, kinetic: jax.Array) -> Departure:
     """The way out of a body that no drag slows, with a kinetic energy [J] where it turns."""
     energy = _energy(outward.path, body.load, kinetic, outward.start)
     after = energy(outward.end)
-    captured = jnp.minimum(_least(energy, *outward.looked_at()), after) < 0.0
+    least = _least(energy, *outward.looked_at(), outward.together)
+    captured = jnp.minimum(least, after) < 0.0
     return Departure(captured, after, jnp.zeros(0))
 
 
-def _least(value: Curve, separations: jax.Array, step: jax.Array) -> jax.Array:
-    """The least value at some separations that are a ``step`` [m] apart, and about it."""
+def _some(count: int) -> np.ndarray:
+    """Numbers of the highest summits, and of some of all others."""
+    if count <= 2 * _ONE_BY_ONE:
+        return np.arange(count)
+    others = np.linspace(_ONE_BY_ONE, count - 1, _ONE_BY_ONE).astype(int)
+    return np.append(np.arange(_ONE_BY_ONE), others)
+
+
+def _least(value: Curve, separations: jax.Array, step: jax.Array, together: int) -> jax.Array:
+    """The least value at some separations that are a ``step`` [m] apart, and about it.
+
+    Computed at so many ``together``.
+    """
     within = jnp.min(separations), jnp.max(separations)
 
     def nearer(_: int, now: tuple[jax.Array, ...]) -> tuple[jax.Array, ...]:
@@ -262,6 +283,6 @@ def _least(value: Curve, separations: jax.Array, step: jax.Array) -> jax.Array:
         best = jnp.argmin(found)
         return near[best], width * 2.0 / (_NEAR - 1), found[best]
 
-    found = jax.vmap(value)(separations)
+    found = jax.lax.map(value, separations, batch_size=together)
     best = jnp.argmin(found)
     return jax.lax.fori_loop(0, _ROUNDS, nearer, (separations[best], step[best], found[best]))[2]

@@ -29,7 +29,7 @@ from ..numerics.compilation import AT_ONCE, Program
 from ..numerics.trees import stacked
 from .placement import Placed, place_summits, refuse_inside
 
-MOST_SUMMITS = 2048
+MOST_SUMMITS = 1 << 15
 """Summits under one body that are followed one by one, on a rigid bulk."""
 
 MOST_COUPLED = 128

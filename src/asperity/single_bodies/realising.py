@@ -11,6 +11,7 @@ from ..dynamics.problem import Problem
 from ..dynamics.single_impact import SingleImpact
 from ..dynamics.summit_path import Launch
 from ..integration import Report, silently
+from ..interface.summit_field import MeasuredField
 from ..results.realisations import KINDS, Realisations
 from .launching import SingleBodies
 
@@ -74,6 +75,10 @@ def realise(
         followed = _until_captured(bodies, first, most, stop)
         values |= dict(zip(("rebounds", "flight_time"), followed, strict=True))
     warnings = [bodies.note] if bodies.note else []
+    if isinstance(bodies.field, MeasuredField):
+        warnings.append(
+            "single bodies stand on one map: intervals are over positions on it, not other maps"
+        )
     if sunk := int(np.sum(values["closest_approach"] < bodies.field.base)):
         warnings.append(
             f"{sunk} of {placed.realisations} single bodies come deeper than "
