@@ -844,8 +844,10 @@ def test_kinetic_and_potential_energy_differ_for_every_eye(common):
 
 
 def test_single_bodies_have_their_share_against_speed(page, tmp_path):
-    """A chart that others do not have, beside a mean of few; the share falls with the speed."""
-    expect(page.locator("#capture")).to_be_hidden()
+    """Charts that others do not have, beside a mean of few; the share falls with the speed."""
+    for name in ("#capture", "#restitution"):
+        expect(page.locator(name)).to_be_hidden()
+    expect(page.locator("#measures")).not_to_contain_text("single bodies")
     own = tmp_path / "bodies.toml"
     own.write_text(SINGLE_BODIES)
     page.locator("#own-case").set_input_files(own)
@@ -861,3 +863,16 @@ def test_single_bodies_have_their_share_against_speed(page, tmp_path):
     assert np.all(share <= high)
     label = page.locator("#capture .plot").get_attribute("aria-label")
     assert label.startswith("captured share [–] against speed [mm/s].")
+    low, high = drawn["half_interval"]
+    half = drawn["half_velocity"]
+    assert drawn["speed"][4] < low < half < high < drawn["speed"][6]
+    half, low, high = (f"{1e3 * speed:.4g} mm/s" for speed in (half, low, high))
+    words = f"{half} (95 % interval: {low} to {high}; 256 bodies at each speed)"
+    assert words in label
+    expect(page.locator("#measures")).to_contain_text(words)
+    expect(page.locator("#restitution canvas")).to_be_visible()
+    lowest, median, highest = (np.array(drawn[name]) for name in ("lowest", "median", "highest"))
+    np.testing.assert_array_equal(median == 0.0, share >= 0.5)
+    np.testing.assert_array_equal(lowest == 0.0, share >= 0.1)
+    assert np.all(lowest <= median)
+    assert np.all(median <= highest)

@@ -6,6 +6,7 @@ import threading
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from math import sqrt
 
 import numpy as np
@@ -23,8 +24,8 @@ from ..results.result import Result
 from ..single_bodies import SingleBodies
 
 _NEARBY, _SPEEDS = 4.0, 9  # times a case's own speed; speeds that are drawn at once
-_FEW, _FEWEST = 256, 32  # bodies then: on a rigid bulk, and on a half-space
 _HALVINGS = 8  # of the interval between two speeds where the share falls below a half
+_FEW, _FEWEST = (256, 3), (32, 0)  # bodies and halvings then: on a rigid bulk, on a half-space
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -80,6 +81,7 @@ def capture_probability(
     stop: threading.Event | None = None,
     *,
     most: int | None = None,
+    halvings: int = _HALVINGS,
 ) -> CaptureProbability | None:
     """Launch the single bodies of a case at every speed; None where it has none.
 
@@ -94,7 +96,10 @@ def capture_probability(
     report, stop
         As for :func:`asperity.integration.integrate`.
     most
-        Bodies at most, where the speed at which half are captured is not wanted.
+        Bodies at most; all without it.
+    halvings
+        Of the interval between two speeds in which less than half begin to be captured. Within
+        what is left the speed is interpolated.
 
     Raises
     ------
@@ -121,10 +126,13 @@ def capture_probability(
         rows.append([np.sum(found.captured), *mean_and_error(kept), *quantiles_of(kept)])
     hits, means, errors, *quantiles = np.array(rows[::-1]).T
     low, high = np.array([clopper_pearson(int(hit), count) for hit in hits]).T
-    half: list[float | None] = [None] * 3
-    if most is None:
-        report(1.0, "where half of the single bodies are captured")
-        half = [_crossing(launched, speeds, hits, level) for level in _levels(count)]
+
+    @cache
+    def captured(speed: float) -> int:
+        return int(np.sum(launched(speed).captured))
+
+    report(1.0, "where half of the single bodies are captured")
+    half = [_crossing(captured, speeds, hits, level, halvings) for level in _levels(count)]
     return CaptureProbability(
         bodies=count,
         probability=hits / count,
@@ -165,28 +173,34 @@ def capture_nearby(
     if result.realisations is None or not speed:
         return None
     problem = build(resolve(case).with_bodies())
-    most = _FEW if isinstance(problem.contact, RigidContact) else _FEWEST
+    most, halvings = _FEW if isinstance(problem.contact, RigidContact) else _FEWEST
     turning_point = float(result.events["closest_approach_separation"][0])
     speeds = speed * np.geomspace(1.0 / _NEARBY, _NEARBY, _SPEEDS)
-    found = capture_probability(problem, turning_point, speeds, stop=stop, most=most)
+    found = capture_probability(
+        problem, turning_point, speeds, stop=stop, most=most, halvings=halvings
+    )
     return None if found is None else (speeds, found)
 
 
 def _crossing(
-    launched: Callable[[float], SingleImpact], speeds: np.ndarray, hits: np.ndarray, level: int
+    captured: Callable[[float], int],
+    speeds: np.ndarray,
+    hits: np.ndarray,
+    level: int,
+    halvings: int = _HALVINGS,
 ) -> float | None:
     """The speed [m/s] from which fewer bodies than a number are captured."""
     enough = np.flatnonzero(hits >= level)
     if not enough.size or enough[-1] == speeds.size - 1:
         return None
-    slower, faster = speeds[enough[-1] : enough[-1] + 2].tolist()
-    for _ in range(_HALVINGS):
+    (slower, faster), (more, fewer) = (x[enough[-1] :][:2].tolist() for x in (speeds, hits))
+    for _ in range(halvings):
         middle = sqrt(slower * faster)
-        if np.sum(launched(middle).captured) >= level:
-            slower = middle
+        if (found := captured(middle)) >= level:
+            slower, more = middle, found
         else:
-            faster = middle
-    return sqrt(slower * faster)
+            faster, fewer = middle, found
+    return float(slower * (faster / slower) ** ((more - level + 0.5) / (more - fewer)))
 
 
 def _levels(count: int) -> tuple[int, int, int]:

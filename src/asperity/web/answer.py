@@ -36,7 +36,7 @@ def answer(
     result, curve
         Motion and force curve of the case.
     bodies
-        Speeds [m/s], and how many of its single bodies are captured there.
+        Speeds [m/s], and what its single bodies do there.
 
     Returns
     -------
@@ -84,9 +84,15 @@ def answer(
 
 
 def _capture(speed: np.ndarray, found: CaptureProbability) -> dict[str, Any]:
-    """The captured share of single bodies against speed, with its interval."""
+    """What single bodies do against speed: the captured share, and quantiles of restitution."""
     series = {"speed": speed, "share": found.probability, "low": found.low, "high": found.high}
-    return {"bodies": found.bodies, **{name: packed(values) for name, values in series.items()}}
+    series |= zip(("lowest", "median", "highest"), found.restitution.T, strict=True)
+    return {
+        "bodies": found.bodies,
+        "half_velocity": found.half_velocity,
+        "half_interval": list(found.half_interval),
+        **{name: packed(values) for name, values in series.items()},
+    }
 
 
 def packed(values: np.ndarray) -> str:

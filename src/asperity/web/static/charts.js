@@ -19,6 +19,9 @@ export function tint(colour) {
   return (document.documentElement.dataset.theme === "dark" ? DARK : LIGHT)[colour] ?? colour;
 }
 
+// A band lets what lies behind it shine through.
+const paint = (colour, band) => (band ? `${tint(colour)}55` : tint(colour));
+
 export class Chart {
   constructor(id) {
     this.figure = document.getElementById(id);
@@ -35,7 +38,8 @@ export class Chart {
     if (this.plot && width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
   }
 
-  // Draw groups of lines {x, lines: [{label, y, colour, dashed}]}; axes {x: [name, unit], y: [name, unit]}.
+  // Draw groups of lines {x, lines: [{label, y, colour, dashed, band}]}; axes {x: [name, unit], y: [name, unit]}.
+  // A line whose band is "upper" has it down to the line before it, whose band is "lower".
   show({ groups, axes, range, logarithmic = false, points = false, spoken }) {
     const lines = groups.flatMap((group) => group.lines);
     const [acrossBy, acrossUnit] = axes.x[1] ? scaled(largest(range ? [range] : groups.map((g) => g.x)), axes.x[1]) : [1, ""];
@@ -53,19 +57,21 @@ export class Chart {
   build(kind, titles, lines, { logarithmic, points }) {
     this.kind = kind;
     this.plot?.destroy();
-    const series = lines.map(({ label, colour, dashed }) => ({
-      label, stroke: tint(colour), width: 1.6, dash: dashed ? [7, 4] : undefined, spanGaps: true,
-      points: { show: points, size: 5, fill: tint(colour) },
+    const series = lines.map(({ label, colour, dashed, band }) => ({
+      label, stroke: paint(colour, band), width: band ? 1 : 1.6, dash: dashed ? [7, 4] : undefined, spanGaps: true,
+      points: { show: points && !band, size: 5, fill: tint(colour) },
     }));
     const options = {
       width: Math.max(this.figure.clientWidth - 16, 200), height: HEIGHT, legend: { show: false },
       scales: { x: { time: false }, y: logarithmic ? { distr: 3 } : {} },
       cursor: { drag: { x: true, y: false } },
       series: [{ label: titles[0] }, ...series],
+      bands: lines.flatMap(({ colour, band }, at) => (band === "upper" ? [{ series: [at + 1, at], fill: paint(colour, band) }] : [])),
       axes: [axis(titles[0], 30), axis(titles[1], 62)],
     };
     this.plot = new uPlot(options, [[0], ...lines.map(() => [null])], this.place);
-    this.legend.replaceChildren(...lines.map(({ label, colour, dashed }) => chip(label, tint(colour), dashed)));
+    const named = lines.filter(({ band }) => band !== "lower");
+    this.legend.replaceChildren(...named.map(({ label, colour, dashed, band }) => chip(label, paint(colour, band), dashed)));
   }
 
   restyle() {

@@ -170,7 +170,7 @@ export class Design {
     for (const key of ["time", "separation", "central_separation", "speed"]) motion[key] = unpacked(motion[key]);
     for (const part of [motion.forces, motion.energies]) for (const key in part) part[key] = unpacked(part[key]);
     for (const key of ["separation", "loading", "unloading"]) curve[key] = unpacked(curve[key]);
-    if (capture) for (const key of ["speed", "share", "low", "high"]) capture[key] = unpacked(capture[key]);
+    if (capture) for (const key of ["speed", "share", "low", "high", "lowest", "median", "highest"]) capture[key] = unpacked(capture[key]);
     this.answer = answer;
     this.refusal = null;
     this.shown = number;

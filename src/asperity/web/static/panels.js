@@ -8,6 +8,7 @@ const MEASURES = [
   ["first restitution", (a) => amount(a.measures.restitution[0])],
   ["captured at first impact", (a) => (a.measures.captured ? "yes" : "no")],
   ["critical velocity", critical],
+  ["half of single bodies are captured at", half],
   ["contact time", (a) => amount(a.measures.contact_time, "s")],
   ["largest force", (a) => amount(a.measures.maximum_force, "N")],
   ["pull-off force", (a) => amount(a.measures.pull_off, "N") + preload(a)],
@@ -23,6 +24,8 @@ const MEASURES = [
   ["liquid", (a) => a.regime.liquid_regime ?? "–"],
 ];
 
+const BODIES = "#CC79A7"; // single bodies, as in the pictures of the program
+
 const text = (tag, words, properties = {}) => Object.assign(document.createElement(tag), { textContent: words, ...properties });
 
 // The critical velocity, or why there is none; it is asked for after the rest.
@@ -33,6 +36,16 @@ function critical({ measures }) {
   return amount(measures.critical_velocity, "m/s") + note;
 }
 
+// The speed at which half of single bodies are captured; null where the case has none.
+function half({ capture }) {
+  if (!capture) return null;
+  const { half_velocity, half_interval: [low, high], speed, bodies } = capture;
+  const words = (value, beyond = "") => (value === null ? beyond : amount(value, "m/s"));
+  if (half_velocity === null) return `no speed that was tried, ${words(speed[0])} to ${words(speed.at(-1))}`;
+  const interval = `${words(low, "below those tried")} to ${words(high, "above those tried")}`;
+  return `${words(half_velocity)} (95 % interval: ${interval}; ${bodies} bodies at each speed)`;
+}
+
 // The load that pull-off and work depend on.
 function preload({ measures }) {
   return measures.preload === null ? "" : ` after ${amount(measures.preload, "N")}`;
@@ -40,7 +53,7 @@ function preload({ measures }) {
 
 export class Panels {
   constructor() {
-    this.charts = Object.fromEntries(["motion", "curve", "forces", "energy", "rebounds", "capture"].map((id) => [id, new Chart(id)]));
+    this.charts = Object.fromEntries(["motion", "curve", "forces", "energy", "rebounds", "capture", "restitution"].map((id) => [id, new Chart(id)]));
     this.whole = false; // whether forces are shown over the whole motion
     this.button = text("button", "whole motion", { type: "button" });
     this.button.setAttribute("aria-pressed", "false");
@@ -57,7 +70,7 @@ export class Panels {
     const two = answered.length > 1;
     const named = (label, design) => (two ? `${design.letter} ${label}` : label);
     const group = (design, x, series) => ({
-      x, lines: series.map(([label, y, colour]) => ({ label: named(label, design), y, colour, dashed: design.letter === "B" })),
+      x, lines: series.map(([label, y, colour, band]) => ({ label: named(label, design), y, colour, band, dashed: design.letter === "B" })),
     });
     captions(answered);
     this.motion(answered, group);
@@ -65,7 +78,7 @@ export class Panels {
     this.energies(answered, group);
     this.curve(answered, group);
     this.rebounds(answered, group);
-    this.capture(answered.filter((one) => one.answer.capture), group);
+    this.bodies(answered.filter((one) => one.answer.capture), group);
     ledger(answered, two);
     measures(answered, two);
     document.querySelectorAll("#panels figure, #ledger, #numbers").forEach((one) => one.classList.toggle("stale", designs.some((d) => d.stale)));
@@ -111,17 +124,29 @@ export class Panels {
     });
   }
 
-  // The share of single bodies, where a case has them.
-  capture(placed, group) {
-    this.charts.capture.figure.hidden = !placed.length;
+  // What single bodies do against speed, where a case has them.
+  bodies(placed, group) {
+    const { capture, restitution } = this.charts;
+    for (const { figure } of [capture, restitution]) figure.hidden = !placed.length;
     if (!placed.length) return;
-    const told = placed.map(({ answer, letter }) => `${letter}: ${answer.capture.bodies} bodies at each speed`);
-    this.charts.capture.show({
-      groups: placed.map((d) => group(d, d.answer.capture.speed, [
-        ["captured share", d.answer.capture.share, "#0072B2"],
-        ["lower bound (95 %)", d.answer.capture.low, "#E69F00"], ["upper bound (95 %)", d.answer.capture.high, "#E69F00"],
-      ])),
-      axes: { x: ["speed", "m/s"], y: ["captured share", ""] }, points: true, spoken: told.join("; "),
+    const drawn = (chart, name, lines, spoken) => chart.show({
+      groups: placed.flatMap((d) => lines(d.answer).filter(([x]) => x.length).map(([x, ...series]) => group(d, x, series))),
+      axes: { x: ["speed", "m/s"], y: [name, ""] }, points: true,
+      spoken: placed.map(({ answer, letter }) => `${letter}: ${spoken(answer)}`).join("; "),
+    });
+    drawn(capture, "captured share", ({ capture: { speed, share, low, high, half_velocity, half_interval } }) => {
+      const bar = half_velocity === null ? [] : [half_interval[0], half_velocity, half_interval[1]].filter((one) => one !== null);
+      return [
+        [speed, ["captured share", share, BODIES], ["", low, BODIES, "lower"], ["95 % interval", high, BODIES, "upper"]],
+        [bar, ["half are captured, 95 % interval", bar.map(() => 0.5), "#000000"]],
+      ];
+    }, (answer) => `half of the bodies are captured at ${half(answer)}`);
+    drawn(restitution, "restitution", ({ measures, capture: { speed, lowest, median, highest } }) => [
+      [speed, ["median", median, BODIES], ["", lowest, BODIES, "lower"], ["10 to 90 % of the bodies", highest, BODIES, "upper"]],
+      [[measures.impact_speed], ["mean field, this case", [measures.restitution[0] ?? NaN], "#0072B2"]],
+    ], ({ measures, capture: { bodies, lowest, median, highest } }) => {
+      const [low, middle, high] = [lowest, median, highest].map((values) => amount(values[values.length >> 1]));
+      return `${bodies} bodies at each speed; at ${amount(measures.impact_speed, "m/s")} 80 % of them have ${low} to ${high}, the median is ${middle}`;
     });
   }
 
@@ -182,9 +207,9 @@ function ledger(answered, two) {
 }
 
 function measures(answered, two) {
-  const rows = MEASURES.map(([name, of]) => {
+  const rows = MEASURES.filter(([, of]) => answered.some(({ answer }) => of(answer) !== null)).map(([name, of]) => {
     const row = document.createElement("tr");
-    row.append(text("th", name, { scope: "row" }), ...answered.map(({ answer }) => text("td", of(answer))));
+    row.append(text("th", name, { scope: "row" }), ...answered.map(({ answer }) => text("td", of(answer) ?? "–")));
     return row;
   });
   const head = document.createElement("tr");
