@@ -5,7 +5,7 @@ import pytest
 
 from asperity.inputs import Asperities
 from asperity.interface.summit_field import GaussianField
-from asperity.regimes import loaded_asperities, mean_is_enough
+from asperity.regimes import clustering, loaded_asperities, mean_is_enough
 
 RADIUS, RMS = 25e-6, 1.64e-9
 ROUGH = Asperities(6.3e13, 450e-9, RMS)
@@ -54,6 +54,30 @@ def test_measured_summits_count_with_their_heights_and_radii():
     # A few blunt tips carry more than others, so that fewer carry the load.
     summits.radii = np.where(np.arange(heights.size) % 10 == 0, 4.5e-6, 450e-9)
     assert loaded_asperities(rough, 5.0, 1.5 * RMS, measured=True) < gaussian
+
+
+def test_summits_that_stand_together_count_as_one():
+    """Four at each place carry as a fourth of their number; on independent ones nothing changes."""
+    from types import SimpleNamespace
+
+    side, pixel, random = 60e-6, 1e-9, np.random.default_rng(2)
+    counts = [16, 4]  # thousand places with one summit, or four
+    found = []
+    for together, number in zip((1, 4), counts, strict=True):
+        places = random.uniform(0.0, side / pixel, (1000 * number, 2)).repeat(together, axis=0)
+        heights = random.normal(0.0, RMS, 1000 * number).repeat(together)
+        order = np.argsort(places[:, 0])
+        summits = SimpleNamespace(
+            heights=heights[order],
+            radii=np.full(heights.size, 450e-9),
+            positions=places[order],
+            pixel_size=(pixel, pixel),
+        )
+        surface = SimpleNamespace(physical_size=(side, side))
+        rough = Asperities(6.3e13, 450e-9, RMS, surface=surface, summits=summits)  # type: ignore[arg-type]
+        found.append(clustering(rough, RADIUS, RMS))
+    assert found[0] > 0.8
+    assert found[1] == pytest.approx(0.25, rel=0.2)
 
 
 @pytest.mark.parametrize(

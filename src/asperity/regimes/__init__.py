@@ -17,7 +17,7 @@ from .dimensionless_numbers import (
     plasticity_index,
     tabor_number,
 )
-from .loaded_asperities import loaded_asperities, mean_is_enough
+from .loaded_asperities import clustering, loaded_asperities, mean_is_enough
 from .verdicts import CARRIED, Verdict, verdicts
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "Verdict",
     "adhesion_map",
     "choose_adhesion",
+    "clustering",
     "hertz_load",
     "load_parameter",
     "loaded_asperities",

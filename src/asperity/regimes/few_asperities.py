@@ -8,7 +8,7 @@ from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..inputs import Inputs
 from .dimensionless_numbers import Regime
-from .loaded_asperities import mean_is_enough
+from .loaded_asperities import clustering, mean_is_enough
 from .verdicts import CARRIED
 
 
@@ -35,16 +35,23 @@ def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
     problem, regime, motion
         As for :func:`asperity.regimes.validity.warnings_of`.
     """
-    loaded, impacts = regime.loaded_asperities, motion.impacts
+    loaded, impacts, inputs = regime.loaded_asperities, motion.impacts, problem.inputs
     if not loaded:
         return False  # without asperities, or where gas or a spring keeps bodies away from them
     energy = float(impacts.maximum_kinetic[0])
     lost = np.asarray(impacts.lost[0])[: len(names := problem.contact.mechanisms)]
-    filled = problem.inputs.structure.liquid == "kelvin-filling"  # no asperity bears that liquid
+    filled = inputs.structure.liquid == "kelvin-filling"  # no asperity bears that liquid
     bonds = float(np.sum(lost, where=[not (filled and name == "capillary") for name in names]))
-    potential = problem.body.plain.load.potential(float(impacts.closest_approach[0]))
+    closest = float(impacts.closest_approach[0])
+    potential = problem.body.plain.load.potential(closest)
     left = float(impacts.leaving[0]) - float(potential)
     left = left if np.isfinite(left) else energy - bonds
+    differ = not mean_is_enough(loaded, left / energy, bonds / energy)
+    placed = inputs.with_bodies().placement
+    if differ or inputs.structure.deformation != "rigid" or placed is None or not placed.measured:
+        return differ
+    assert inputs.asperities is not None
+    loaded *= clustering(inputs.asperities, inputs.radius, closest)
     return not mean_is_enough(loaded, left / energy, bonds / energy)
 
 

@@ -19,6 +19,7 @@ MOST_OFF = 0.05
 
 _SPREAD = 2.0  # standard deviations of single bodies from the border of capture
 
+_POSITIONS = 16  # of a body on a map, along each side
 _HIGHEST = 9.0  # rms heights above the mean: the highest asperities
 _POINTS = 4001
 
@@ -62,6 +63,43 @@ def loaded_asperities(
     if not first * squares > 0.0:
         return 0.0
     return max(contacting, 0.0) * 0.64 * load**2 / (first * squares)
+
+
+def clustering(rough: Asperities, radius: float, separation: float) -> float:
+    r"""Share of a number of loaded asperities that is independent on a map [-].
+
+    Of independent summits the sum of loads has the variance :math:`\langle\sum F^2\rangle`
+    (Campbell's theorem). It is compared with the variance over positions on the map, by Hertz's
+    loads on a rigid bulk; at most 1, and 1 where the map is too small for any position.
+
+    Parameters
+    ----------
+    rough
+        The asperities.
+    radius
+        Radius of the body [m].
+    separation
+        Its closest approach [m].
+    """
+    if rough.summits is None or rough.surface is None:
+        return 1.0
+    some, (width, length) = rough.summits, rough.surface.physical_size
+    high = some.heights > separation
+    heights, radii = some.heights[high] - separation, some.radii[high]
+    y, x = (some.positions[high] * some.pixel_size[::-1]).T  # in the order of their rows
+    far = float(np.sqrt(2.0 * radius * np.max(heights, initial=0.0)))
+    if not 0.0 < 2.0 * far < min(width, length):
+        return 1.0
+    sums, squares = [], []
+    for at_y in np.linspace(far, length - far, _POSITIONS):
+        near = slice(*np.searchsorted(y, (at_y - far, at_y + far)))
+        for at_x in np.linspace(far, width - far, _POSITIONS):
+            apart = (x[near] - at_x) ** 2 + (y[near] - at_y) ** 2
+            overlaps = np.maximum(heights[near] - apart / (2.0 * radius), 0.0)
+            sums.append(np.sum(radii[near] ** 0.5 * overlaps**1.5))
+            squares.append(np.sum(radii[near] * overlaps**3))
+    variance = float(np.var(sums))
+    return min(1.0, float(np.mean(squares)) / variance) if variance > 0.0 else 1.0
 
 
 def mean_is_enough(loaded: float, kept: float, lost: float) -> bool:
