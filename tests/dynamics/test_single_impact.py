@@ -188,3 +188,17 @@ def test_twice_as_many_separations_find_the_same(monkeypatch):
     np.testing.assert_array_equal(found.captured, again.captured)
     np.testing.assert_allclose(found.restitution, again.restitution, rtol=1e-12)
     np.testing.assert_allclose(found.pull_off, again.pull_off, rtol=1e-4)
+
+
+@pytest.mark.long
+def test_bonds_of_low_summits_need_not_each_be_looked_at():
+    """With as many far away, of half of those that touch only some are."""
+    offsets = GaussianField(RADIUS, 2e16, 1.2e-9).summits(5, 0, 2048)[0][:8]
+    launches, law = launched(np.geomspace(0.035, 0.3, 8)), LAWS["jkr, wet"]
+    each = all_impacts(law, launches, offsets)
+    some = all_impacts(law, launches, np.pad(offsets, ((0, 0), (0, 2048)), constant_values=-1.0))
+    assert np.sum(each.contacting > 1100.0) > 3
+    assert 0 < np.sum(each.captured) < 4
+    np.testing.assert_array_equal(some.captured, each.captured)
+    np.testing.assert_allclose(some.restitution, each.restitution, rtol=1e-9)
+    np.testing.assert_allclose(some.pull_off, each.pull_off, rtol=1e-6)
