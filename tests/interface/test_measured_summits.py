@@ -280,8 +280,9 @@ def test_the_pressure_of_tabulated_branches_is_a_fall_of_the_paraboloids_force(t
 
 
 @pytest.mark.parametrize("unloading", [True, False])
-def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, unloading):
-    """Both ends and all pieces of the way, against a quadrature at each of its places."""
+def test_on_scanning_curves_the_bonds_of_each_class_add_to_tabulated_branches(two_ways, unloading):
+    """Both ends and all pieces of the way, against quadratures of all bonds, which are the
+    less exact of the two."""
     surface, start = two_ways[0], 0.5 * SIGMA
     gaps = [part.law.forming_gap if unloading else part.law.breaking_gap for part in surface.parts]
     memory = tuple(jnp.asarray(start - gap) for gap in gaps)
@@ -289,38 +290,27 @@ def test_each_class_is_read_along_a_way_from_a_few_places_of_its_own(two_ways, u
     marks = np.array([start, *(ends if unloading else ends[::-1])])
     steps = np.array([1e-6, 0.1, 0.4, 0.7, 0.9, 1.0 - 1e-6])
     places = jnp.asarray(marks[:-1, None] + np.diff(marks)[:, None] * steps)
-    exact = _all_means(surface, places, memory, 1)
-
-    def off(nodes):
-        ours = measured_at(surface, places, memory, 1, Near(level=False, nodes=nodes))
-        pairs = ((ours.parts, exact.parts), (ours.energy, exact.energy))
-        return [float(jnp.max(jnp.abs(a - b)) / jnp.max(jnp.abs(b))) for a, b in pairs]
-
-    few, many = off(8), off(24)
-    assert max(few) < 1e-4
-    assert max(many) < 5e-6
-    counted = measured_at(surface, places, memory, 1, Near(level=False, nodes=8))
-    np.testing.assert_allclose(counted.bonds, exact.bonds, rtol=1e-12)
+    ours = measured_at(surface, places, memory, 1, Near(level=False))
+    exact = _all_means(two_ways[1], places, memory, 1)
+    for one, other in ((ours.parts, exact.parts), (ours.energy, exact.energy)):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=2e-8 * np.max(np.abs(other)))
+    np.testing.assert_allclose(ours.bonds, exact.bonds, rtol=1e-12)
 
 
-def test_bonds_that_stretch_over_many_rms_heights_are_read_in_pieces():
-    """Bridges of 4 to 5 rms, by as many places as a motion takes, against quadratures."""
+def test_bonds_that_stretch_over_many_rms_heights_are_integrated_in_pieces():
+    """Bridges of 4 to 5 rms, along a scanning curve, against quadratures of all bonds."""
     make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 1.3e-9)  # noqa: E731
     parts = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=2).parts
     surface, plain = RadiusClasses(parts), RadiusClasses(parts, tabulated=False)
     assert surface.pieces > 2
-    resolved = RigidContact(surface, Sphere(BALL)).resolved
     start = -1.0 * SIGMA
     memory = (jnp.asarray(start),) * 2
     end = float(max(surface.rejoining(memory, jnp.asarray(True))))
     places = jnp.linspace(start, end, 101)[None]
-    near = Near(level=False, nodes=resolved.nodes * resolved.pieces)
-    ours = measured_at(surface, places, memory, 1, near)
+    ours = measured_at(surface, places, memory, 1, Near(level=False))
     exact = measured_at(plain, places, memory, 1)
-    for one, other in ((ours.parts, exact.parts), (ours.energy, exact.energy)):
-        np.testing.assert_allclose(one, other, rtol=0.0, atol=5e-6 * np.max(np.abs(other)))
-    alone, largest = measured_at(surface, places, memory, 1), np.max(np.abs(exact.parts))
-    np.testing.assert_allclose(alone.parts, exact.parts, rtol=0.0, atol=1e-6 * largest)
+    for one, other, off in ((ours.parts, exact.parts, 1e-6), (ours.energy, exact.energy, 5e-6)):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=off * np.max(np.abs(other)))
 
 
 def test_laws_that_act_before_touch_have_no_table():

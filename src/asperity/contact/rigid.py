@@ -122,8 +122,7 @@ class RigidContact(RoughContact):
         marks = [self._marks(start, end) for end in ends]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * points_between(self.resolved.nodes)
-        near = Near(level=False, nodes=self.resolved.nodes * self.resolved.pieces)
-        return ScanningCurve(enter, leave, self._states(near, places, memory))
+        return ScanningCurve(enter, leave, self._states(Near(level=False), places, memory))
 
     def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
         """Ends of pieces on the way from a reversal."""

@@ -5,7 +5,7 @@
 `interface`: one law over one distribution of heights; its memory is a play operator.
 `height_quadrature`: means over heights of laws without a closed form.
 `panel_table`, `branch_pressure`: means over the separation, read from polynomials on panels.
-`radius_classes`, `class_bonds`, `major_branches`, `measured_summits`: summits of several radii.
+`radius_classes`, `major_branches`, `measured_summits`: summits of several radii.
 `plastic_interface`, `virgin_loading`, `residual_profile`: asperities that yield.
 `layers`: interfaces side by side, such as asperities and liquid on the surface.
 

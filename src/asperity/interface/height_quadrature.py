@@ -29,13 +29,10 @@ class Near(NamedTuple):
         Whether bonds reach up to the same gap at all of them.
     pieces
         Even pieces that they share.
-    nodes
-        Places on the way from a reversal to the branch of one law that tell all of it.
     """
 
     level: bool
     pieces: int = EVEN
-    nodes: int = 16
 
 
 def means(

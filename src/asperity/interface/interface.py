@@ -136,10 +136,21 @@ class Interface(RoughPlanes):
         found = dict(zip(names, table(separation), strict=True))
         if not law.hysteretic:
             return found
-        begin, shape = jnp.asarray(law.forming_gap, float), separation.shape
+        more = self.beside(number, edge, separation, 0, self.pieces * self.heights.cuts)
+        return {name: row + more[name] for name, row in found.items()}
+
+    def beside(
+        self, number: int, edge: jax.Array, separation: jax.Array, integrated: int, pieces: int
+    ) -> dict[str, jax.Array]:
+        """What bonds that differ from the branch of approach add to the means of one law.
+
+        Per asperity, of bonds up to the gap ``edge`` [m]: a quadrature on even ``pieces`` (static).
+        """
+        law, shape = self.laws[number], separation.shape
+        begin = jnp.asarray(law.forming_gap, float)
         flat = jnp.broadcast_to(edge, shape).ravel(), separation.ravel()
-        more = between(law, self.heights, begin, *flat, 0, self.pieces * self.heights.cuts)
-        return {name: row + more[name].reshape(shape) for name, row in found.items()}
+        found = between(law, self.heights, begin, *flat, integrated, pieces)
+        return {name: row.reshape(shape) for name, row in found.items()}
 
     def _quadrature(
         self,

@@ -11,12 +11,12 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..inputs import CLASSES
-from ..laws.law import Law, terms
+from ..laws.law import Law
 from ..surfaces.heights.panel_length import PanelLengths
-from .class_bonds import ClassBonds
 from .height_quadrature import Near
 from .interface import Interface
 from .major_branches import BranchTable, branch_tables
+from .named_means import bond_gaps
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
 
@@ -37,8 +37,7 @@ class RadiusClasses(RoughPlanes):
     Notes
     -----
     A mean is that of the branch of approach, read from the table, and a quadrature over the bonds
-    that differ from it; see :mod:`asperity.interface.major_branches`. On a scanning curve that
-    quadrature is read at a few places of each class.
+    that differ from it; see :mod:`asperity.interface.major_branches`.
     """
 
     stacked: Interface
@@ -149,13 +148,10 @@ class RadiusClasses(RoughPlanes):
 
         def beside(part: Interface, own: Memory) -> list[jax.Array]:
             out = []
-            for law, threshold, table in zip(terms(part.law), own, self.tables, strict=True):
-                names = (*table.names, "energy")
-                bonds = ClassBonds(law, part.heights, names, integrated, self.pieces)
-                if near is None:
-                    out.append(part.density * bonds.at(threshold, separation))
-                else:
-                    out.append(part.density * bonds.along(threshold, separation, near.nodes))
+            for k, edge in enumerate(bond_gaps(part.laws, separation, own)):
+                found = part.beside(k, edge, separation, integrated, self.pieces)
+                rows = [found[name] for name in (*self.tables[k].names, "energy")]
+                out.append(part.density * jnp.stack(rows))
             return out
 
         more = self._each(beside, memory)
