@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from asperity.results.contact_window import contact_window
 from asperity.results.result import Result
 
-_SEEN = 2e-3
-_MARGIN = 0.15
 _LEGIBLE = 25
 _MOST = 0.6
 
@@ -22,33 +21,12 @@ def times(result: Result, turn: str) -> np.ndarray:
 
 
 def first_contact(result: Result) -> slice | None:
-    """The points of the first contact with some free flight at both ends; None without one.
-
-    The contact lasts while a force exceeds a small share of its largest value: the contact force
-    of the peak, a pull of the largest pull, so that a weak but long pull is seen too.
-    """
-    deepest = times(result, "closest_approach")
-    if deepest.size == 0 or "contact" not in result.forces:
+    """The points of the first contact with some free flight at both ends; None without one."""
+    window = contact_window(result)
+    if window is None:
         return None
-    tops = times(result, "apex")
-    last = tops[0] if tops.size else result.time[-1]
-    flight = slice(0, int(np.searchsorted(result.time, last, side="right")))
-    seen = np.zeros(result.time[flight].size, dtype=bool)
-    for name in ("contact", "adhesion", "capillary"):
-        force = np.abs(result.forces.get(name, np.zeros_like(result.time))[flight])
-        largest = force.max(initial=0.0)
-        if largest > 0.0:
-            seen |= force > (_SEEN if name == "contact" else 20 * _SEEN) * largest
-    if not seen.any():
-        return None
-    at = int(np.argmin(np.abs(result.time[flight] - deepest[0])))
-    before, after = np.flatnonzero(~seen[: at + 1]), np.flatnonzero(~seen[at:])
-    start = result.time[before[-1] if before.size else 0]
-    end = result.time[at + after[0] if after.size else seen.size - 1]
-    margin = _MARGIN * (end - start)
-    first = int(np.searchsorted(result.time, start - margin))
-    final = int(np.searchsorted(result.time, end + margin, side="right"))
-    return slice(max(first - 1, 0), min(final + 1, flight.stop))
+    first, final = (int(index) for index in np.searchsorted(result.time, window))
+    return slice(max(first - 1, 0), final + 1)
 
 
 def beginning(result: Result) -> tuple[slice, str]:

@@ -4,6 +4,7 @@
 motion to a `Result`. `assessment`: which models hold. `result`, `result_data`: the results.
 `record_layout`, `netcdf_record`, `read_record`, `results_folder`: files. `summary`, `impact_table`,
 `verdict`, `shares`: words and tables. `surface_report`: a described surface in words.
+`contact_window`: the stretch of time in which the first contact is shown.
 `case_source`: what stands for a case: a name, a file, a record. `colours`: one colour for each
 quantity.
 

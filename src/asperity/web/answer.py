@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from asperity.regimes import Frame, Place, region
 from asperity.results.colours import colour
+from asperity.results.contact_window import contact_window
 from asperity.results.record_layout import json_object, plain
 from asperity.results.result import Curve, Result
 from asperity.results.verdict import sentence
@@ -21,9 +23,6 @@ DRAWN = 12
 
 _SWING = 30
 """Points drawn while something goes once through its whole range; all of the first contact's."""
-
-_CONTACT = 1e-3
-"""Share of the largest force from which the first impact is shown."""
 
 
 def answer(
@@ -42,7 +41,8 @@ def answer(
     -------
     Plain values; arrays are packed by :func:`packed`, all of one length within a part.
     """
-    contact, parts = _first_contact(result), {"forces": result.forces, "energies": result.energies}
+    contact = contact_window(result) or (0.0, float(result.events["apex_time"][0]))
+    parts = {"forces": result.forces, "energies": result.energies}
     seen = _seen(result, contact)
     return {
         **json_object(result),
@@ -60,7 +60,7 @@ def answer(
             },
             "impacts": int(np.size(result.events["apex_time"])),
             "drawn": _drawn(result),
-            "first_contact": contact,
+            "first_contact": list(contact),
         },
         "curve": {
             "separation": packed(curve.rigid_separation),
@@ -110,21 +110,7 @@ def _drawn(result: Result) -> int:
     return int(np.sum(np.asarray(result.events["apex_time"]) <= last))
 
 
-def _first_contact(result: Result) -> list[float]:
-    """From when to when [s] the first impact is in contact, with a margin."""
-    deepest, apex = (
-        float(result.events[name][0]) for name in ("closest_approach_time", "apex_time")
-    )
-    force = np.abs(result.forces["contact"])
-    during = (result.time <= apex) & (force > _CONTACT * force.max(initial=0.0))
-    if not during.any():
-        return [0.0, apex]
-    begin, end = result.time[during][0], result.time[during][-1]
-    margin = 0.1 * (end - begin) or 0.1 * (apex - deepest)
-    return [max(float(begin - margin), 0.0), float(end + margin)]
-
-
-def _seen(result: Result, contact: list[float]) -> np.ndarray:
+def _seen(result: Result, contact: Sequence[float]) -> np.ndarray:
     """Indices of the samples that a picture of the whole needs, and of all in the first contact.
 
     Ends, what turns, both sides of jumps, and in between a sample for each share of a range that
