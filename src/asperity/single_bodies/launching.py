@@ -32,6 +32,9 @@ from .placement import Placed, place_summits, refuse_inside
 MOST_SUMMITS = 1 << 15
 """Summits under one body that are followed one by one, on a rigid bulk."""
 
+MOST_UNASKED = 2048
+"""Beside a mean, where no single bodies were asked for: more take minutes."""
+
 MOST_COUPLED = 128
 """On a half-space, where each feels all others."""
 
@@ -77,7 +80,8 @@ class SingleBodies:
         self.note = ""
         self.field, self._tips, self._laws, self._contacts = self._place(inputs.placement)
         self._modulus = contact.modulus if isinstance(contact, ElasticContact) else None
-        self._most = MOST_SUMMITS if self._modulus is None else MOST_COUPLED
+        rigid = MOST_SUMMITS if inputs.placement.required else min(MOST_SUMMITS, MOST_UNASKED)
+        self._most = rigid if self._modulus is None else MOST_COUPLED
         self._turning_point, self._count = turning_point, 0
         laws = terms(self._laws[0])
         names = [one.mechanism for one in laws if one.hysteretic]
