@@ -313,6 +313,21 @@ def test_bonds_that_stretch_over_many_rms_heights_are_integrated_in_pieces():
         np.testing.assert_allclose(one, other, rtol=0.0, atol=off * np.max(np.abs(other)))
 
 
+def test_branches_of_bonds_far_longer_than_the_heights_are_wide_are_the_quadratures():
+    """Bridges that break 11 to 14 rms above touch: on approach none is there before touch."""
+    make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 6e-9)  # noqa: E731
+    parts = measured_surface(make, HEIGHTS, RADII, N, radius=RADIUS, classes=2).parts
+    surface, plain = RadiusClasses(parts), RadiusClasses(parts, tabulated=False)
+    assert surface.tables
+    places = jnp.asarray(
+        SIGMA * np.concatenate([-np.geomspace(400, 8, 9), np.linspace(-7, 23, 61)])
+    )
+    for memory in (surface.initial_memory(), surface.saturated_memory()):
+        ours, exact = (_all_means(each, places, memory, 1) for each in (surface, plain))
+        for one, other in zip(ours, exact, strict=True):
+            np.testing.assert_allclose(one, other, rtol=0.0, atol=4e-6 * np.max(np.abs(other)))
+
+
 def test_laws_that_act_before_touch_have_no_table():
     """Bridges formed at the Kelvin gap: every mean is a quadrature."""
     make = lambda radius: ConstantVolume(radius, 0.0728, ANGLE, 1.3e-9, ByKelvinGap())  # noqa: E731

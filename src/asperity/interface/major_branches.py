@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from math import ceil, log2
+
 import equinox as eqx
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
@@ -17,6 +20,7 @@ from .interface import Interface
 _OCTAVE = 8  # cells an octave of the depth, below the even ones
 _DEEP = 48 * _OCTAVE
 _STAND = 16  # heights that stand for all below, where the law falls by at least 1/5.8 each
+_MOST = 8192  # even cells below the end of the longest bond
 _STEPS = 10  # of the ladders below a law's kinks, up to two even cells
 _NODES, _WEIGHTS = legendre.leggauss(6)
 _AT = 0.5 * (_NODES + 1.0)  # places in a deep cell
@@ -40,6 +44,9 @@ class BranchTable(eqx.Module):
         Separation [m] at which the even cells begin.
     step
         Their width [m].
+    depth
+        Depth of the first of them, in its widths, below where the middle of the heights meets the
+        lowest gap at which a law is not smooth.
     names
         Mechanisms of the force (static).
     """
@@ -47,6 +54,7 @@ class BranchTable(eqx.Module):
     cells: jax.Array
     origin: jax.Array
     step: jax.Array
+    depth: jax.Array
     names: tuple[str, ...] = eqx.field(static=True)
 
     def __call__(
@@ -57,7 +65,7 @@ class BranchTable(eqx.Module):
         even = count - _DEEP
         x = (separation - self.origin) / self.step
         deep = x < 0.0
-        place = jnp.where(deep, _OCTAVE * jnp.log2(1.0 - jnp.where(deep, x, 0.0) / _depth(even)), x)
+        place = jnp.where(deep, _OCTAVE * jnp.log2(1.0 - jnp.where(deep, x, 0.0) / self.depth), x)
         cell = jnp.clip(jnp.floor(place), 0, jnp.where(deep, _DEEP, even) - 1)
         t = (place - cell)[..., None]
         index = jnp.asarray(unloading) * count + jnp.where(deep, even, 0) + cell
@@ -73,45 +81,69 @@ def branch_tables(parts: Interface) -> tuple[BranchTable, ...]:
     """A table for each law of interfaces along a first axis, summed over them; or none.
 
     Their heights must be :class:`~asperity.surfaces.heights.Sampled` on the same nodes, and the
-    free branches of their laws nothing.
+    free branches of their laws nothing. Bonds that stretch over more cells than ``_MOST`` have
+    none, nor have laws whose values are traced.
     """
     laws = terms(parts.law)
     has = isinstance(parts.heights, Sampled)
     if not has or not all(law.hysteretic and law.only_bonded for law in laws):
         return ()
-    return _tabulated(parts)
+    if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(parts)):
+        return ()
+    nodes = parts.heights.share.shape[-1]
+    cells = nodes + float(max(_stretch(parts, k) for k in range(len(laws))))
+    below = nodes << ceil(log2(cells / nodes))
+    return _tabulated(parts, below) if below <= _MOST else ()
 
 
-def _depth(even: int) -> float:
-    """Depth of the first even cell below the middle of the heights, in even cells."""
-    return 0.75 * (even - 2)
+def _ends(laws: Law) -> tuple[jax.Array, jax.Array]:
+    """The lowest gap [m] at which one of some laws is not smooth, and where the last bond ends."""
+    kinks = jax.vmap(lambda law: jnp.stack(_kinks_of(law)))(laws)
+    return jnp.min(kinks), jnp.max(kinks)
 
 
-@jax.jit
-def _tabulated(parts: Interface) -> tuple[BranchTable, ...]:
-    return tuple(_table(parts, k) for k in range(len(terms(parts.law))))
+def _kinks_of(law: Law) -> list[jax.Array]:
+    gaps = (*law.kinks, law.forming_gap, law.breaking_gap)
+    return [jnp.asarray(gap, float) for gap in gaps]
 
 
-def _table(parts: Interface, number: int) -> BranchTable:
-    """The table of one law of interfaces along a first axis."""
+def _stretch(parts: Interface, number: int) -> jax.Array:
+    """Cells between the two :func:`_ends` of one law."""
+    lowest, end = _ends(terms(parts.law)[number])
+    return (end - lowest) / parts.heights.step[0]
+
+
+@partial(jax.jit, static_argnums=1)
+def _tabulated(parts: Interface, below: int) -> tuple[BranchTable, ...]:
+    return tuple(_table(parts, k, below) for k in range(len(terms(parts.law))))
+
+
+def _table(parts: Interface, number: int, below: int) -> BranchTable:
+    """The table of one law of interfaces along a first axis.
+
+    Its even cells begin ``below`` steps under where the lowest height meets the end of the last
+    bond, and at least its heights' width under where it meets the lowest gap at which the law is
+    not smooth: further down all are bonded, and few heights stand for all.
+    """
     heights = parts.heights
     assert isinstance(heights, Sampled)
     laws = terms(parts.law)[number]
     first, step = heights.first[0], heights.step[0]
-    end = jnp.max(jax.vmap(lambda law: jnp.asarray(law.breaking_gap, float))(laws))
+    lowest, end = _ends(laws)
     share = parts.density[:, None] * heights.share[:, 0]
     shortest = jax.vmap(lambda law, rms: jnp.minimum(law.length, rms))(laws, heights.rms)
     nodes = share.shape[1]
 
     def kernels(each: tuple[Law, jax.Array]) -> jax.Array:
-        return _kernels(each[0], end, step, each[1], nodes)
+        return _kernels(each[0], end, step, each[1], (nodes, below))
 
     # In turn: one body of code to compile, and a law's values at all gaps are many.
     flat = jax.lax.map(kernels, (laws, shortest))
     even = _even_cells(_convolved(flat, share), step)
-    deep = _deep_cells(laws, share, end, step, even[..., 0, :, 0])
-    origin = first - nodes * step + end
-    return BranchTable(jnp.concatenate([even, deep], axis=2), origin, step, _names(laws))
+    depth = below + 0.5 * nodes - (end - lowest) / step
+    deep = _deep_cells(laws, share, (end - below * step, step, depth), even[..., 0, :, 0])
+    cells = jnp.concatenate([even, deep], axis=2)
+    return BranchTable(cells, first - below * step + end, step, depth, _names(laws))
 
 
 def _names(law: Law) -> tuple[str, ...]:
@@ -125,16 +157,17 @@ def _rows(law: Law, gap: jax.Array) -> jax.Array:
 
 
 def _kernels(
-    law: Law, end: jax.Array, step: jax.Array, shortest: jax.Array, nodes: int
+    law: Law, end: jax.Array, step: jax.Array, shortest: jax.Array, counts: tuple[int, int]
 ) -> jax.Array:
     """Integrals of a law over one cubic B-spline at its whole distances from the gap ``end``.
 
     Shape (4, branches, rows, distances): what is above a distance, the value, slope and
-    curvature there; distances from -2 nodes + 1 to nodes + 2 steps.
+    curvature there; with the ``counts`` of nodes and of cells below the end, distances from
+    -nodes - below + 1 to nodes + 2 steps.
     """
-    lowest = -2 * nodes - 4
-    kinks = [jnp.asarray(gap, float) for gap in (*law.kinks, law.forming_gap, law.breaking_gap)]
-    kink = (jnp.stack(kinks) - end) / step
+    nodes, below_end = counts
+    lowest = -nodes - below_end - 4
+    kink = (jnp.stack(_kinks_of(law)) - end) / step
     first = jnp.minimum(0.25 * shortest / step, 1.0)
     ladder = first * (2.0 / first) ** (np.arange(_STEPS) / _STEPS)
     below = jnp.stack([jnp.min(kink), jnp.max(kink)])[:, None] - ladder
@@ -179,7 +212,7 @@ def _half(y: jax.Array) -> jax.Array:
 
 
 def _convolved(flat: jax.Array, share: jax.Array) -> jax.Array:
-    """The same over all heights, at places from -nodes to nodes + 2 steps from the first.
+    """The same over all heights, at places from -below to nodes + 2 steps from the first.
 
     ``flat`` and ``share`` are one of each interface; ``share`` is asperities per area on a node.
     """
@@ -201,15 +234,16 @@ def _even_cells(found: jax.Array, step: jax.Array) -> jax.Array:
 
 
 def _deep_cells(
-    laws: Law, share: jax.Array, end: jax.Array, step: jax.Array, start: jax.Array
+    laws: Law, share: jax.Array, scale: tuple[jax.Array, jax.Array, jax.Array], start: jax.Array
 ) -> jax.Array:
-    """Coefficients below the even cells, where all are bonded; ``start`` at the first of them."""
-    nodes = share.shape[1]
-    stand, weight = _standing(nodes)
-    depth = _depth(2 * nodes + 2)
+    """Coefficients below the even cells, where all are bonded; ``start`` at the first of them.
+
+    ``scale`` is the gap [m] of the lowest node there, the step [m] and the depth.
+    """
+    stand, weight = _standing(share.shape[1])
+    first, step, depth = scale
     octaves = (np.arange(_DEEP)[:, None] + _AT) / _OCTAVE
-    place = depth * (1.0 - 2.0**octaves) - nodes
-    gap = end + step * (place[..., None] - stand)
+    gap = first + step * (depth * (1.0 - 2.0**octaves)[..., None] - stand)
 
     def mean(each: tuple[Law, jax.Array]) -> jax.Array:
         law, share = each
