@@ -24,7 +24,7 @@ from .equilibrium import (
 )
 from .resolution import LATER, LINEAR, fills_by_contact
 from .rough import DeformingContact
-from .scanning_curve import pieces_to
+from .scanning_curve import alike, pieces_for, pieces_to
 
 _BELOW = 5.0  # rms below the deepest separation, where the tables of means begin
 _TO = 8.0  # times the outermost separation, where they end: rings lie as far apart
@@ -113,32 +113,38 @@ def _marks(
 
     Even ones until the fastest ring has passed from one branch to the other, and later ones until
     the slowest has: even too, or, of a contact that names their number, even in asinh(separation)
-    as forces change.
+    as forces change. Classes of radius share them, cut where the first and the last ring of each
+    has passed.
     """
     slowest = jnp.clip(jnp.min(rates), 1e-3, 1.0)
     fastest = jnp.maximum(jnp.max(rates), slowest)
     pieces, graded = contact.resolved.pieces, contact.resolved.later > 0
     later = contact.resolved.later or min(max(pieces // 2, 1), LATER)
-    even = np.arange(1.0, pieces - later + 1.0) / max(pieces - later, 1)
     more = _MUCH_MORE if fills_by_contact(contact.interface.hysteretic) else _MORE
-    further = np.arange(1.0, later + 1.0) / later
-    shares = jnp.append(
-        even / fastest, (1.0 + further * (more * fastest / slowest - 1.0)) / fastest
-    )
+    ends = jnp.stack([1.0 / fastest, more / slowest])
     ahead = jnp.where(unloading, 1.0, -1.0) * (memory.size > 0.0)
     scale = _BENDS * contact.interface.scale.rms
-    rows = []
-    for law in contact.interface.hysteretic:
-        width = ahead * (law.breaking_gap - law.forming_gap)
-        marks = start + width * shares
+
+    def of_one(stretch: jax.Array, soon: int, later: int) -> jax.Array:
+        width = ahead * stretch
+        even, further = (np.arange(1.0, n + 1.0) / max(n, 1) for n in (soon, later))
+        marks = start + width * jnp.append(even * ends[0], ends[0] + further * (ends[1] - ends[0]))
         if graded:
-            begin, end = jnp.clip(jnp.stack([start + width / fastest, marks[-1]]), *within)
+            begin, end = jnp.clip(start + width * ends, *within)
             to_end = jnp.linspace(jnp.arcsinh(begin / scale), jnp.arcsinh(end / scale), later + 1)
             steps = scale * jnp.sinh(to_end)[1:-1]
             # No piece is a rounding wide: where nothing is left, all end at one separation.
             steps = jnp.clip(steps, jnp.minimum(begin, end), jnp.maximum(begin, end))
-            marks = jnp.concatenate([marks[: pieces - later], steps, marks[-1:]])
-        rows.append(marks)
+            marks = jnp.concatenate([marks[:soon], steps, marks[-1:]])
+        return marks
+
+    bonds = contact.interface.hysteretic
+    rows = []
+    for widths in alike(bonds, [jnp.asarray(law.breaking_gap - law.forming_gap) for law in bonds]):
+        soon, further = (pieces_for(widths, number) for number in (pieces - later, later))
+        rows.append(of_one(jnp.max(widths), soon, later if graded else further))
+        if widths.size > 1:
+            rows.append((start + ahead * widths[:, None] * ends).ravel())
     return jnp.concatenate(rows)
 
 

@@ -188,7 +188,9 @@ class ElasticContact(DeformingContact):
         def back() -> ScanningCurve:
             frozen = jax.lax.stop_gradient((self, memory, start))
             enter, leave, places, rests = continue_scanning_curve(*frozen, size, unloading, within)
-            return ScanningCurve(enter, leave, jax.vmap(jax.vmap(one))(places, rests))
+            # Piece after piece: all at once take gigabytes where bonds stretch far.
+            states = jax.lax.map(lambda piece: jax.vmap(one)(*piece), (places, rests))
+            return ScanningCurve(enter, leave, states)
 
         shapes = jax.eval_shape(back)
 

@@ -22,7 +22,7 @@ from .contact import (
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .rough import RoughContact
-from .scanning_curve import lowest_place, pieces_to
+from .scanning_curve import alike, lowest_place, pieces_for, pieces_to
 
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
@@ -115,22 +115,28 @@ class RigidContact(RoughContact):
     def scanning_curve(
         self, memory: Thresholds, start: jax.Array, unloading: jax.Array, within: tuple[Any, Any]
     ) -> ScanningCurve | None:
-        """Every bond of a law that is held reaches the branch at the same separation."""
+        """Every bond of a law that is held reaches the branch at the same separation.
+
+        Classes of radius share their pieces, which are cut where each of them reaches it.
+        """
         if not self.interface.hysteretic:
             return None
         ends = self.interface.rejoining(memory, unloading)
-        marks = [self._marks(start, end) for end in ends]
+        spans = alike(self.interface.hysteretic, [end - start for end in ends])
+        marks = [self._marks(start, span) for span in spans]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * points_between(self.resolved.nodes)
         return ScanningCurve(enter, leave, self._states(Near(level=False), places, memory))
 
-    def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
-        """Ends of pieces on the way from a reversal."""
-        narrowing = self.resolved.later
-        even = np.linspace(0.0, 1.0, self.resolved.pieces - narrowing + 1)[1:]
+    def _marks(self, start: jax.Array, spans: jax.Array) -> jax.Array:
+        """Ends of pieces from a reversal to the last of the ends of some bonds, and those ends."""
+        span = spans[jnp.argmax(jnp.abs(spans))]
+        pieces, narrowing = pieces_for(spans, self.resolved.pieces), self.resolved.later
+        even = np.linspace(0.0, 1.0, pieces - narrowing + 1)[1:]
         outward = np.append(even[0] * 2.0 ** -np.arange(narrowing, 0.0, -1.0), even)
         inward = np.append(1.0 - outward[-2::-1], 1.0)
-        return start + (end - start) * jnp.where(end > start, outward, inward)
+        marks = start + span * jnp.where(span > 0.0, outward, inward)
+        return marks if spans.size == 1 else jnp.concatenate([marks, start + spans])
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from .._jax import jax, jnp
+from ..laws.law import Law
 from .contact import Potential
 
 STEPS = 36
@@ -26,6 +27,21 @@ def pieces_to(
     marks = jnp.clip(marks, *within)
     marks = start + ahead * jnp.sort(jnp.maximum(ahead * (marks - start), 0.0))
     return jnp.concatenate([start[None], marks])[:-1], marks
+
+
+def alike(laws: Sequence[Law], widths: Sequence[jax.Array]) -> list[jax.Array]:
+    """How far the bonds of each mechanism stretch [m], of one law or of a class each."""
+    names = [law.mechanism for law in laws]
+    pairs = list(zip(names, widths, strict=True))
+    return [jnp.stack([w for n, w in pairs if n == name]) for name in dict.fromkeys(names)]
+
+
+def pieces_for(spans: jax.Array, pieces: int) -> int:
+    """Even pieces of bonds of one mechanism, where one law has ``pieces``.
+
+    Classes share twice as many, besides those between their ends: each changes elsewhere.
+    """
+    return 2 * pieces if spans.size > 1 and pieces > 1 else pieces
 
 
 def panels_around(

@@ -84,16 +84,19 @@ def branch_tables(parts: Interface) -> tuple[BranchTable, ...]:
     free branches of their laws nothing. Bonds that stretch over more cells than ``_MOST`` have
     none, nor have laws whose values are traced.
     """
-    laws = terms(parts.law)
-    has = isinstance(parts.heights, Sampled)
-    if not has or not all(law.hysteretic and law.only_bonded for law in laws):
+    laws, heights = terms(parts.law), parts.heights
+    if not isinstance(heights, Sampled):
+        return ()
+    if not all(law.hysteretic and law.only_bonded for law in laws):
         return ()
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(parts)):
         return ()
-    nodes = parts.heights.share.shape[-1]
-    cells = nodes + float(max(_stretch(parts, k) for k in range(len(laws))))
-    below = nodes << ceil(log2(cells / nodes))
-    return _tabulated(parts, below) if below <= _MOST else ()
+    nodes = heights.nodes
+    ends = [_ends(law) for law in laws]
+    cells = nodes + max(float((end - lowest) / heights.step[0]) for lowest, end in ends)
+    if not cells <= _MOST:
+        return ()
+    return _tabulated(parts, nodes << ceil(log2(cells / nodes)))
 
 
 def _ends(laws: Law) -> tuple[jax.Array, jax.Array]:
@@ -105,12 +108,6 @@ def _ends(laws: Law) -> tuple[jax.Array, jax.Array]:
 def _kinks_of(law: Law) -> list[jax.Array]:
     gaps = (*law.kinks, law.forming_gap, law.breaking_gap)
     return [jnp.asarray(gap, float) for gap in gaps]
-
-
-def _stretch(parts: Interface, number: int) -> jax.Array:
-    """Cells between the two :func:`_ends` of one law."""
-    lowest, end = _ends(terms(parts.law)[number])
-    return (end - lowest) / parts.heights.step[0]
 
 
 @partial(jax.jit, static_argnums=1)

@@ -19,6 +19,8 @@ from .major_branches import BranchTable, branch_tables
 from .named_means import bond_gaps
 from .rough_planes import Means, Memory, RoughPlanes, Scale
 
+_FEW = 4  # pieces of bonds that are not of the branch
+
 
 class RadiusClasses(RoughPlanes):
     """Asperities of several tip radii: an interface for each class of radius, side by side.
@@ -146,17 +148,23 @@ class RadiusClasses(RoughPlanes):
                 for table, b in zip(self.tables, memory[:laws], strict=True)
             ]
 
-        def beside(part: Interface, own: Memory) -> list[jax.Array]:
-            out = []
-            for k, edge in enumerate(bond_gaps(part.laws, separation, own)):
-                found = part.beside(k, edge, separation, integrated, self.pieces)
-                rows = [found[name] for name in (*self.tables[k].names, "energy")]
-                out.append(part.density * jnp.stack(rows))
-            return out
+        def beside(places: jax.Array) -> list[jax.Array]:
+            def one(part: Interface, own: Memory) -> list[jax.Array]:
+                out = []
+                for k, edge in enumerate(bond_gaps(part.laws, places, own)):
+                    found = part.beside(k, edge, places, integrated, self.pieces)
+                    rows = [found[name] for name in (*self.tables[k].names, "energy")]
+                    out.append(part.density * jnp.stack(rows))
+                return out
 
-        more = self._each(beside, memory)
+            return [jnp.sum(rest, axis=0) for rest in self._each(one, memory)]
+
+        if near is None or self.pieces <= _FEW:
+            more = beside(separation)
+        else:  # one row of places after the other: that many nodes of all take gigabytes
+            more = [jnp.moveaxis(rest, 0, 1) for rest in jax.lax.map(beside, separation)]
         return [
-            table(separation, integrated) + jnp.sum(rest, axis=0)
+            table(separation, integrated) + rest
             for table, rest in zip(self.tables, more, strict=True)
         ]
 
