@@ -122,21 +122,20 @@ class RigidContact(RoughContact):
         if not self.interface.hysteretic:
             return None
         ends = self.interface.rejoining(memory, unloading)
-        spans = alike(self.interface.hysteretic, [end - start for end in ends])
-        marks = [self._marks(start, span) for span in spans]
+        marks = [self._marks(start, some) for some in alike(self.interface.hysteretic, ends)]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * points_between(self.resolved.nodes)
         return ScanningCurve(enter, leave, self._states(Near(level=False), places, memory))
 
-    def _marks(self, start: jax.Array, spans: jax.Array) -> jax.Array:
+    def _marks(self, start: jax.Array, ends: jax.Array) -> jax.Array:
         """Ends of pieces from a reversal to the last of the ends of some bonds, and those ends."""
-        span = spans[jnp.argmax(jnp.abs(spans))]
-        pieces, narrowing = pieces_for(spans, self.resolved.pieces), self.resolved.later
+        end = ends[jnp.argmax(jnp.abs(ends - start))]
+        pieces, narrowing = pieces_for(ends, self.resolved.pieces), self.resolved.later
         even = np.linspace(0.0, 1.0, pieces - narrowing + 1)[1:]
         outward = np.append(even[0] * 2.0 ** -np.arange(narrowing, 0.0, -1.0), even)
         inward = np.append(1.0 - outward[-2::-1], 1.0)
-        marks = start + span * jnp.where(span > 0.0, outward, inward)
-        return marks if spans.size == 1 else jnp.concatenate([marks, start + spans])
+        marks = start + (end - start) * jnp.where(end > start, outward, inward)
+        return marks if ends.size == 1 else jnp.concatenate([marks, ends])
 
     def lower_bound(
         self, release: jax.Array, kinetic: jax.Array, potential: Potential

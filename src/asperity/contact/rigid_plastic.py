@@ -71,12 +71,12 @@ class RigidPlasticContact(RigidContact, YieldingContact):
             return None
         return super().scanning_curve(memory, start, unloading, within)
 
-    def _marks(self, start: jax.Array, end: jax.Array) -> jax.Array:
+    def _marks(self, start: jax.Array, ends: jax.Array) -> jax.Array:
         """Ends of pieces that narrow towards where asperities were pressed flat."""
         assert self.left is not None
-        low, high = jnp.minimum(start, end), jnp.maximum(start, end)
+        low, high = jnp.minimum(start, jnp.min(ends)), jnp.maximum(start, jnp.max(ends))
         panels = self.left[1] + self.interface.unloading_panels
-        return jnp.append(jnp.clip(panels, low, high), end)
+        return jnp.append(jnp.clip(panels, low, high), ends)
 
     def panels(self, low: jax.Array, high: jax.Array) -> jax.Array:
         """More above the deepest point, where asperities spring back.

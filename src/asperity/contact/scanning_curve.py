@@ -29,19 +29,19 @@ def pieces_to(
     return jnp.concatenate([start[None], marks])[:-1], marks
 
 
-def alike(laws: Sequence[Law], widths: Sequence[jax.Array]) -> list[jax.Array]:
-    """How far the bonds of each mechanism stretch [m], of one law or of a class each."""
+def alike(laws: Sequence[Law], lengths: Sequence[jax.Array]) -> list[jax.Array]:
+    """One length [m] of each law, in an array for each mechanism: of one law, or of its classes."""
     names = [law.mechanism for law in laws]
-    pairs = list(zip(names, widths, strict=True))
-    return [jnp.stack([w for n, w in pairs if n == name]) for name in dict.fromkeys(names)]
+    pairs = list(zip(names, lengths, strict=True))
+    return [jnp.stack([x for n, x in pairs if n == name]) for name in dict.fromkeys(names)]
 
 
-def pieces_for(spans: jax.Array, pieces: int) -> int:
+def pieces_for(lengths: jax.Array, pieces: int) -> int:
     """Even pieces of bonds of one mechanism, where one law has ``pieces``.
 
     Classes share twice as many, besides those between their ends: each changes elsewhere.
     """
-    return 2 * pieces if spans.size > 1 and pieces > 1 else pieces
+    return 2 * pieces if lengths.size > 1 and pieces > 1 else pieces
 
 
 def panels_around(

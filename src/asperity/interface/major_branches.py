@@ -99,6 +99,7 @@ def branch_tables(parts: Interface) -> tuple[BranchTable, ...]:
     return _tabulated(parts, nodes << ceil(log2(cells / nodes)))
 
 
+@jax.jit
 def _ends(laws: Law) -> tuple[jax.Array, jax.Array]:
     """The lowest gap [m] at which one of some laws is not smooth, and where the last bond ends."""
     kinks = jax.vmap(lambda law: jnp.stack(_kinks_of(law)))(laws)
