@@ -24,7 +24,7 @@ from .equilibrium import (
 )
 from .resolution import LATER, LINEAR, fills_by_contact
 from .rough import DeformingContact
-from .scanning_curve import alike, pieces_for, pieces_to
+from .scanning_curve import by_mechanism, pieces_for, pieces_to
 
 _BELOW = 5.0  # rms below the deepest separation, where the tables of means begin
 _TO = 8.0  # times the outermost separation, where they end: rings lie as far apart
@@ -140,7 +140,9 @@ def _marks(
 
     bonds = contact.interface.hysteretic
     rows = []
-    for widths in alike(bonds, [jnp.asarray(law.breaking_gap - law.forming_gap) for law in bonds]):
+    for widths in by_mechanism(
+        bonds, [jnp.asarray(law.breaking_gap - law.forming_gap) for law in bonds]
+    ):
         soon, further = (pieces_for(widths, number) for number in (pieces - later, later))
         rows.append(of_one(jnp.max(widths), soon, later if graded else further))
         if widths.size > 1:

@@ -22,7 +22,7 @@ from .contact import (
 from .profile import Sphere
 from .resolution import LINEAR, Resolution, resolution
 from .rough import RoughContact
-from .scanning_curve import alike, lowest_place, pieces_for, pieces_to
+from .scanning_curve import by_mechanism, lowest_place, pieces_for, pieces_to
 
 _FAR = 2  # panels beyond the interaction range, in geometric progression
 _FAR_TAIL = 20  # where a force may go on there: each at most 2.5 times as far, up to 2e7 reaches
@@ -122,7 +122,7 @@ class RigidContact(RoughContact):
         if not self.interface.hysteretic:
             return None
         ends = self.interface.rejoining(memory, unloading)
-        marks = [self._marks(start, some) for some in alike(self.interface.hysteretic, ends)]
+        marks = [self._marks(start, some) for some in by_mechanism(self.interface.hysteretic, ends)]
         enter, leave = pieces_to(jnp.concatenate(marks), start, unloading, within)
         places = enter[:, None] + (leave - enter)[:, None] * points_between(self.resolved.nodes)
         return ScanningCurve(enter, leave, self._states(Near(level=False), places, memory))

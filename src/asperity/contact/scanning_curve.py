@@ -29,7 +29,7 @@ def pieces_to(
     return jnp.concatenate([start[None], marks])[:-1], marks
 
 
-def alike(laws: Sequence[Law], lengths: Sequence[jax.Array]) -> list[jax.Array]:
+def by_mechanism(laws: Sequence[Law], lengths: Sequence[jax.Array]) -> list[jax.Array]:
     """One length [m] of each law, in an array for each mechanism: of one law, or of its classes."""
     names = [law.mechanism for law in laws]
     pairs = list(zip(names, lengths, strict=True))
