@@ -1,4 +1,4 @@
-"""Single bodies: first impacts on a rigid bulk and on a half-space, also in air, in turn.
+"""Single bodies: first impacts on a rigid bulk and a half-space, in air, with slow menisci.
 
 ``python -m benchmarks.single_bodies`` prints these rows alone.
 """
@@ -19,7 +19,10 @@ from asperity.single_bodies import SingleBodies
 EXAMPLE = Path(__file__).parents[1] / "examples" / "single-bodies.toml"
 SPEED = "3 mm/s"
 SPEEDS = (3e-3, 12e-3)  # m/s
-BODIES = {"rigid": 100_000, "in air": 1000, "half-space": 1000, "half-space in air": 1000}
+BODIES = {
+    "rigid": 100_000, "in air": 1000, "menisci take 100 ns": 1000, "half-space": 1000,
+    "half-space in air": 1000,
+}  # fmt: skip
 AIR = '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"\n'
 TURNS = 3
 _IMPACT = f'[impact]\nspeed = "{SPEED}"'
@@ -32,6 +35,8 @@ def _case(kind: str) -> str:
     text = "\n".join(kept).replace('"maugis"', '"dmt"').replace("[impact]", _IMPACT)
     if "in air" in kind:
         text = text.replace("[impact]", f'{AIR}[impact]\nrelease_separation = "60 nm"')
+    if "menisci" in kind:
+        text = text.replace("[capillary]", '[capillary]\nformation_time = "100 ns"')
     return text.replace('"rigid"', '"half-space"') if "half-space" in kind else text
 
 

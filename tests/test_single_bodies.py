@@ -206,6 +206,39 @@ def test_what_single_bodies_do_not_have_is_refused(old, new, words):
     assert words in str(told.value)
 
 
+LATE = CASE.replace("[capillary]", '[capillary]\nformation_time = "1 us"')
+
+
+def test_menisci_that_take_longer_than_bodies_touch_capture_none():
+    """The mean, whose few summits carry it longer, still loses a sixth; so are its rebounds."""
+    slow = asperity.solve(load(LATE), critical=False)
+    bodies = slow.realisations
+    assert slow.measures["restitution"][0] < 0.95
+    assert bodies.capture_probability == 0.0
+    assert np.max(bodies.lost["capillary"]) == 0.0
+    assert np.all(np.isinf(bodies.values["rebounds"]))
+    faster = asperity.solve(load(LATE.replace("1 us", "100 ns")), critical=False).realisations
+    assert faster.capture_probability > 0.6
+
+
+def test_single_bodies_stand_beside_a_mean_whose_menisci_take_time():
+    result = beside(LATE.replace(PLACED, ""))
+    assert result.realisations.size == 256
+    assert result.realisations.capture_probability == 0.0
+
+
+def test_menisci_that_take_time_are_refused_on_a_half_space():
+    with pytest.raises(InputError, match="`formation_time` must be absent with single") as told:
+        load(LATE.replace('"rigid"', '"half-space"'))
+    assert told.value.key == "capillary.formation_time"
+
+
+def test_summits_under_menisci_that_take_time_are_counted(monkeypatch):
+    monkeypatch.setattr(launching, "MOST_DELAYED", 3)
+    with pytest.raises(InputError, match=r"up to 3 summits each that feel a force; here \d"):
+        asperity.solve(load(LATE), critical=False)
+
+
 def test_too_many_summits_are_refused_with_their_number(monkeypatch):
     monkeypatch.setattr(launching, "MOST_SUMMITS", 3)
     with pytest.raises(InputError, match=r"up to 3 summits each that feel a force; here \d"):

@@ -78,7 +78,7 @@ _flown = jax.jit(flights)
 def flown(moving, starts, kinetic):
     """Energies and times with which bodies come back, each found alone."""
     each = (map(jnp.atleast_1d, one) for one in zip(starts, kinetic, strict=True))
-    return np.squeeze([_flown(moving, *one) for one in each], axis=2).T
+    return np.squeeze([_flown(moving, *one)[:2] for one in each], axis=2).T
 
 
 SLOWED = {

@@ -102,6 +102,28 @@ def test_on_a_half_space_summits_feel_one_another(on_half_space):
     assert not np.any(alone.interaction)
 
 
+LATE = FAST.replace("[impact]", '[impact]\nrelease_separation = "30 nm"').replace(
+    "[capillary]", '[capillary]\nformation_time = "20 ns"'
+)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("density", "count"), [(1, 2048), (3, 2048), (10, 4096)])
+def test_a_mean_whose_menisci_take_time_is_that_of_many_summits(density, count):
+    """So many times the summits and the mass: as fast, and as much on each summit."""
+    problem = build(resolve(load(LATE)))
+    bodies = SingleBodies(problem, 0.0)
+    bodies.field = dataclasses.replace(bodies.field, density=density * bodies.field.density)
+    mass = density * float(problem.body.mass)
+    bodies._body = dataclasses.replace(bodies._body, mass=mass)
+    launches = Launch(np.full(count, 0.5 * mass * SPEED**2), np.full(count, 30e-9))
+    found = bodies.impacts(launches, with_pull_off=False)
+    squares, touching = np.asarray(found.restitution) ** 2, np.mean(found.contacting)
+    scatter = touching * np.std(squares) / np.sqrt(count)
+    apart = touching * (np.mean(squares) - mean_field(LATE) ** 2)
+    assert apart == pytest.approx(-0.45, abs=0.04 + 3.0 * scatter)
+
+
 GAS = FAST.replace("[impact]", '[impact]\nrelease_separation = "30 nm"') + (
     '[gas]\nname = "air"\npressure = "1 bar"\ntemperature = "20 degC"\n'
 )

@@ -103,7 +103,7 @@ class Roughness(Table):
     )
 
     excludes: ClassVar[dict[str, str]] = dict.fromkeys(
-        ("capillary.formation_time", "viscoelasticity", "publication"), _NO_OTHER
+        ("viscoelasticity", "publication"), _NO_OTHER
     )
     of_files: ClassVar[tuple[str, ...]] = (
         "source", "size", "unit", "channel", "missing", "form_removal", "line_levelling",
@@ -190,4 +190,13 @@ class Roughness(Table):
         if case.capillary.model == "kelvin-filling":
             rule = "must not be 'kelvin-filling' with single bodies (`placement`)"
             found.append(InputError(f"`model` {rule}: {_NO_OTHER}", key="capillary.model"))
+        time, rule = case.capillary.formation_time, "with single bodies (`placement`) on a"
+        if time and case.counterface.deformation == "half-space":
+            found.append(
+                InputError(
+                    f"`formation_time` must be absent {rule} half-space: {_NO_OTHER}; take "
+                    f"deformation = 'rigid', or no `formation_time`; got {time:.6g} s",
+                    key="capillary.formation_time",
+                )
+            )
         refuse_all(found)

@@ -205,16 +205,20 @@ def _branches(law: Law, contact: PlasticContact | None) -> list[Along]:
     """Work [J] from far away to a gap [m] on each branch of :class:`Asperities`, in its order."""
     every = terms(law)
     hysteretic = [one for one in every if one.hysteretic]
+    others = [one for one in every if not one.hysteretic]
 
     def work(gap: jax.Array, formed: tuple[bool, ...] | None) -> jax.Array:
         """By the laws whose bond was formed; without them on approach."""
-        total = sum((one.energy(gap) for one in every), jnp.zeros_like(gap))
+        total = sum((one.energy(gap) for one in others), jnp.zeros_like(gap))
         for k, one in enumerate(hysteretic):
             formed_loss, broken_loss = one.losses
-            held = formed_loss + one.bonded_energy(gap) - one.energy(gap)
-            bonded = jnp.where(gap < one.breaking_gap, held, formed_loss + broken_loss)
+            # Below its gap a bond that takes time to form exerts no force until then.
+            free = one.energy(jnp.maximum(gap, one.forming_gap))
+            gone = one.energy(gap) + formed_loss + broken_loss
+            bonded = formed_loss + one.bonded_energy(gap)
+            bonded = jnp.where(gap < one.breaking_gap, bonded, gone)
             on = gap <= one.forming_gap if formed is None else formed[k]
-            total = total + jnp.where(on, bonded, 0.0)
+            total = total + jnp.where(on, bonded, free)
         return total
 
     sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]

@@ -7,7 +7,7 @@ or energies of the highest summits step.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -35,10 +35,20 @@ _FLIGHT = np.concatenate([[0.0], 16.0 ** -np.arange(3.0, 0.0, -1.0), 1.0 - 0.25 
 """Cuts of a way apart from the summits, closest together at both ends, but for its end."""
 
 
+class Forces(Protocol):
+    """What summits do to a body."""
+
+    def work(self, separation: jax.Array) -> jax.Array:
+        """Work [J] from far away to a separation [m]."""
+
+    def force(self, separation: jax.Array) -> jax.Array:
+        """Force [N] at a separation [m], positive apart."""
+
+
 class SummitPiece(NamedTuple):
     """A piece of a way between two separations [m], by the summits of a path; None apart."""
 
-    path: SummitPath | None
+    path: Forces | None
     enter: jax.Array
     leave: jax.Array
 
@@ -50,8 +60,8 @@ class SummitPiece(NamedTuple):
         gained = -load.potential_gain(self.enter, places - self.enter)
         if self.path is None:
             return gained
-        work = jnp.vectorize(self.path.work)
-        return gained + work(self.enter) - work(places)
+        work = jax.vmap(self.path.work)(jnp.append(places, self.enter))
+        return gained + work[-1] - work[:-1].reshape(jnp.shape(places))
 
     def push(self, place: jax.Array, load: Load) -> jax.Array:
         force = 0.0 if self.path is None else self.path.force(place)
@@ -126,29 +136,66 @@ def fly(body: Body, launch: Launch, top: jax.Array) -> tuple[PhaseProgress, jax.
 
 def arrive_damped(body: Body, path: SummitPath, launch: Launch, top: jax.Array) -> Arrival:
     """The way in of a body that drags slow, by the summits of ``path``."""
-    free, summits = arrive(body, path, launch, top), path.pressed.summits
-    standing, begin = path.offsets - path.pressed.residual, begin_of(launch, top)
     # No drag brings it deeper than it comes without one.
-    even = evenly(summits, free.turning_point, top, standing, _SHARES)
-    even = _between(free.turning_point, even, top)
-    steps = jnp.concatenate([summits.forming, jnp.zeros((1, standing.size))])
-    flight = _apart(body, begin, top)
-    ends = _with_cuts(even[::-1], _steps_at(standing, steps, even), body)
-    ends = jnp.concatenate([flight[:-1], ends])
+    deepest = arrive(body, path, launch, top).turning_point
+    ends, first = ends_inwards(body, path, launch, (deepest, top))
     now, entered = _over(body, path, ends, launch.kinetic)
-    place, moved = _turned(body, path, ends, now)
-    unknown = jnp.isnan(free.turning_point)
-    met = now.going | (now.piece >= flight.size - 1) | unknown
-    back = SummitPiece(path, top, place).push(place, body.load) > 0.0
+    turned = _turned(body, path, ends, now)
+    return arrived(body, path, now, turned, Within(entered[first], first, deepest, top))
+
+
+class Within(NamedTuple):
+    """What a way in lies within.
+
+    Attributes
+    ----------
+    before, first
+        Kinetic energy [J] with which the first piece on the summits is entered, and its number.
+    deepest, top
+        The deepest turning point and the top of the summits [m].
+    """
+
+    before: jax.Array
+    first: int
+    deepest: jax.Array
+    top: jax.Array
+
+
+def arrived(
+    body: Body,
+    path: Forces,
+    now: PhaseProgress,
+    turned: tuple[jax.Array, PieceMotion],
+    within: Within,
+) -> Arrival:
+    """The way in, by its progress, and where it stops on its last piece [m] and how."""
+    (place, moved), unknown = turned, jnp.isnan(within.deepest)
+    met = now.going | (now.piece >= within.first) | unknown
+    back = SummitPiece(path, within.top, place).push(place, body.load) > 0.0
     back = jnp.where(met, back, body.load.force(place) < 0.0)
     return Arrival(
-        before=jnp.where(met, entered[flight.size - 1], 0.0),
-        turning_point=jnp.where(now.going | unknown, free.turning_point, place),
+        before=jnp.where(met, within.before, 0.0),
+        turning_point=jnp.where(now.going | unknown, within.deepest, place),
         kinetic=jnp.zeros(()),
         taken=now.dissipated + jnp.where(now.going, 0.0, moved.lost),
         met=met,
         stays=~back & ~unknown,
     )
+
+
+def ends_inwards(
+    body: Body, path: SummitPath, launch: Launch, within: tuple[jax.Array, jax.Array]
+) -> tuple[jax.Array, int]:
+    """Ends of the pieces of a way in [m], and the number of the first that is on summits.
+
+    ``within`` are the deepest turning point and the top of the summits [m].
+    """
+    summits, standing = path.pressed.summits, path.offsets - path.pressed.residual
+    even = _between(within[0], evenly(summits, *within, standing, _SHARES), within[1])
+    steps = jnp.concatenate([summits.forming, jnp.zeros((1, standing.size))])
+    flight = _apart(body, begin_of(launch, within[1]), within[1])
+    ends = _with_cuts(even[::-1], _steps_at(standing, steps, even), body)
+    return jnp.concatenate([flight[:-1], ends]), flight.size - 1
 
 
 def _between(start: jax.Array, inner: jax.Array, end: jax.Array) -> jax.Array:
@@ -167,13 +214,18 @@ def _steps_at(offsets: jax.Array, gaps: jax.Array, even: jax.Array) -> list[jax.
 
 def leave_damped(body: Body, outward: Outward, kinetic: jax.Array) -> Departure:
     """The way out of a body that drags slow, with a kinetic energy [J] where it turns."""
-    even = _between(outward.start, outward.even(_SHARES), outward.end)
-    touching = jnp.zeros((1, outward.recovered.size))
-    broken = jnp.concatenate([outward.ends - outward.recovered, touching])
-    ends = _with_cuts(even, _steps_at(outward.recovered, broken, even), body)
+    ends = ends_outwards(body, outward)
     now, _ = _over(body, outward.path, ends, kinetic)
     last = SummitPiece(outward.path, ends[now.piece], ends[now.piece + 1])
     return departed(body, now, last)
+
+
+def ends_outwards(body: Body, outward: Outward) -> jax.Array:
+    """Ends of the pieces of a way out [m]."""
+    even = _between(outward.start, outward.even(_SHARES), outward.end)
+    touching = jnp.zeros((1, outward.recovered.size))
+    broken = jnp.concatenate([outward.ends - outward.recovered, touching])
+    return _with_cuts(even, _steps_at(outward.recovered, broken, even), body)
 
 
 def departed(body: Body, now: PhaseProgress, last: Piece) -> Departure:
@@ -203,7 +255,9 @@ rebound = Program(_rebound)
 there with all of it."""
 
 
-def _flight(body: Body, start: jax.Array, kinetic: jax.Array) -> tuple[jax.Array, jax.Array]:
+def _flight(
+    body: Body, start: jax.Array, kinetic: jax.Array
+) -> tuple[jax.Array, jax.Array, jax.Array]:
     load = body.load
     apex, rising = _rise(body, start, kinetic)
     down, _ = _over(body, None, _apart(body, apex, start), jnp.zeros(()))
@@ -212,11 +266,12 @@ def _flight(body: Body, start: jax.Array, kinetic: jax.Array) -> tuple[jax.Array
     back = jnp.where(down.going, down.kinetic, still)
     returns = jnp.isfinite(load.apex_height(start, kinetic)) & (kinetic > 0.0)
     time = rising + down.time
-    return jnp.where(returns, back, jnp.nan), jnp.where(returns, time, jnp.inf)
+    return jnp.where(returns, back, jnp.nan), jnp.where(returns, time, jnp.inf), apex
 
 
 flights = Program(jax.vmap(_flight, (None, 0, 0)))
-"""Kinetic energies [J] with which bodies come back, and times [s]: by body, starts [m], energies.
+"""Kinetic energies [J] with which bodies come back, times [s] and apices [m]: by body, starts [m],
+energies.
 
 NaN and infinite for one that does not come back, 0 where drag stops one on its way back, with the
 time until there. Arrays of shape (bodies,)."""

@@ -29,10 +29,10 @@ _DIRECT = 20  # steps of direct iteration, before Newton's
 _STEPS = 40
 _TURNED = 1e-8  # of the energy of a piece: more than a turning place is off by
 
-_GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
-SHARES = np.sin(0.5 * np.pi * _GAUSS) ** 2
+GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
+SHARES = np.sin(0.5 * np.pi * GAUSS) ** 2
 """Places on a piece, as fractions of what is passed of it."""
-_PACE = 0.5 * np.pi * np.sin(np.pi * _GAUSS)
+PACE = 0.5 * np.pi * np.sin(np.pi * GAUSS)
 
 
 _DERIVATIVE = np.pad(DERIVATIVE, ((0, 1), (0, 0)))
@@ -40,23 +40,23 @@ _DERIVATIVE = np.pad(DERIVATIVE, ((0, 1), (0, 0)))
 
 def _integrals(ends: np.ndarray) -> np.ndarray:
     """Integrals from 0 to each end of the polynomials that are 1 at one Gauss point each."""
-    series = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * _GAUSS - 1.0, POINTS - 1))
+    series = np.linalg.inv(np.polynomial.legendre.legvander(2.0 * GAUSS - 1.0, POINTS - 1))
     whole = np.polynomial.legendre.legint(series, lbnd=-1, axis=0)
     sums: np.ndarray = np.polynomial.legendre.legvander(2.0 * ends - 1.0, POINTS) @ whole
     return 0.5 * sums
 
 
-_UNTIL = _integrals(_GAUSS)
-_WHOLE = _integrals(np.ones(1))[0]
+UNTIL = _integrals(GAUSS)
+WHOLE = _integrals(np.ones(1))[0]
 _FINE_PLACES = np.linspace(0.0, 1.0, 129)
 _FINE = np.polynomial.legendre.legvander(2.0 * _FINE_PLACES - 1.0, POINTS - 1) @ np.linalg.inv(
-    np.polynomial.legendre.legvander(2.0 * _GAUSS - 1.0, POINTS - 1)
+    np.polynomial.legendre.legvander(2.0 * GAUSS - 1.0, POINTS - 1)
 )
 
 
 def whole_of(values: jax.Array) -> jax.Array:
     """Mean over a piece of what has these values at SHARES of it."""
-    return jnp.dot(_WHOLE, _PACE * values)
+    return jnp.dot(WHOLE, PACE * values)
 
 
 class PieceMotion(NamedTuple):
@@ -175,7 +175,7 @@ def move_on(body: Body, piece: Piece, kinetic: jax.Array, stop: jax.Array) -> Pi
     most = jax.lax.stop_gradient(jnp.maximum(jnp.max(jnp.abs(energy)), jnp.abs(last)))
     most = jnp.where(most > 0.0, most, 1.0)
     unit = jnp.sqrt(2.0 * most / body.mass)
-    length = jnp.abs(span) * _PACE
+    length = jnp.abs(span) * PACE
     share = energy / most
     # The speed that it would have without drag on this piece: no more than a cut-off needs.
     free = unit * jnp.sqrt(jnp.where(share > 0.0, share, 1.0)) * (share > 0.0)
@@ -184,18 +184,21 @@ def move_on(body: Body, piece: Piece, kinetic: jax.Array, stop: jax.Array) -> Pi
     # drag already nothing is solved.
     spent = jnp.any(share <= 0.0)
     drags = jnp.where(spent, 0.0, drags)
-    u, solved = _reduced_speeds(jnp.where(spent, 1.0, share), jnp.sum(drags, axis=0))
+    share = jnp.where(spent, 1.0, share)
+    u, solved = jnp.sqrt(share), jnp.asarray(True)
+    if body.drags:
+        u, solved = _reduced_speeds(share, jnp.sum(drags, axis=0))
     solved = solved & ~spent
-    dissipated = most * ((drags * u) @ _UNTIL.T)
-    lost = most * ((drags * u) @ _WHOLE)
+    dissipated = most * ((drags * u) @ UNTIL.T)
+    lost = most * ((drags * u) @ WHOLE)
     left = last - jnp.sum(lost)
     pace = jnp.where(u > 0.0, length / (unit * jnp.where(u > 0.0, u, 1.0)), 0.0)
     empty = span == 0.0
     return PieceMotion(
         speed=unit * u,
-        time=jnp.asarray(_UNTIL) @ pace,
+        time=jnp.asarray(UNTIL) @ pace,
         dissipated=dissipated,
-        duration=_WHOLE @ pace + _missed_time(body, piece, (kinetic, left), most * u**2, stop),
+        duration=WHOLE @ pace + _missed_time(body, piece, (kinetic, left), most * u**2, stop),
         lost=jnp.where(empty, 0.0, lost),
         kinetic=jnp.where(empty, kinetic, left),
         passed=empty | (solved & (left > 0.0)),
@@ -224,7 +227,7 @@ def _missed_time(
         gain = towards * piece.push(place, body.load) * span
         grown = energy + gain * SHARES[NEAR]
         counts = (jnp.abs(beside - grown) < 0.1 * grown) & (energy > least * gain)
-        missed = missed_time(energy, gain, SHARES, _WHOLE * _PACE)
+        missed = missed_time(energy, gain, SHARES, WHOLE * PACE)
         total = total + jnp.where(counts, missed, 0.0)
     return total * jnp.abs(span) * jnp.sqrt(0.5 * body.mass)
 
@@ -239,15 +242,15 @@ def _reduced_speeds(share: jax.Array, drag: jax.Array) -> tuple[jax.Array, jax.A
     """
 
     def direct(u: jax.Array) -> tuple[jax.Array, jax.Array]:
-        return _compared(jnp.sqrt(jnp.maximum(share - _UNTIL @ (drag * u), 0.0)), u)
+        return _compared(jnp.sqrt(jnp.maximum(share - UNTIL @ (drag * u), 0.0)), u)
 
     free = jnp.sqrt(jnp.maximum(share, 0.0))
-    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (_UNTIL @ drag)
+    coasting = jnp.sqrt(jnp.maximum(share[0], 0.0)) - 0.5 * (UNTIL @ drag)
     coasts = jnp.all(coasting > 0.0) & (_off(coasting, share, drag) < _off(free, share, drag))
     start = jnp.where(coasts, coasting, free)
     turns = jnp.where(_off(start, share, drag) <= _CLOSE * POINTS, 0, _DIRECT)
     u, _ = fixed_point(direct, start, _CLOSE, turns)
-    return _by_newton(u, start, share, drag, jnp.asarray(_UNTIL))
+    return _by_newton(u, start, share, drag, jnp.asarray(UNTIL))
 
 
 @jax.custom_batching.sequential_vmap
@@ -280,7 +283,7 @@ def _compared(after: jax.Array, u: jax.Array) -> tuple[jax.Array, jax.Array]:
     return after, jnp.max(jnp.abs(after - u)) / jnp.where(most > 0.0, most, 1.0)
 
 
-def _off(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = _UNTIL) -> jax.Array:
+def _off(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = UNTIL) -> jax.Array:
     return jnp.max(jnp.abs(_missed(u, share, drag, until)))
 
 
@@ -289,10 +292,10 @@ def _reduced_speeds_jvp(primals, tangents):  # type: ignore[no-untyped-def]
     (share, drag), (dshare, ddrag) = primals, tangents
     u, close = _reduced_speeds(share, drag)
     sound = close & jnp.all(u > 0.0)  # else nothing moves, or nothing is solved
-    matrix = jnp.where(sound, jnp.diag(2.0 * u) + _UNTIL * drag, jnp.eye(POINTS))
-    push = jnp.where(sound, dshare - _UNTIL @ (ddrag * u), 0.0)
+    matrix = jnp.where(sound, jnp.diag(2.0 * u) + UNTIL * drag, jnp.eye(POINTS))
+    push = jnp.where(sound, dshare - UNTIL @ (ddrag * u), 0.0)
     return (u, close), (implicit_solve(matrix, push), np.zeros(close.shape, jax.dtypes.float0))
 
 
-def _missed(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = _UNTIL) -> jax.Array:
+def _missed(u: jax.Array, share: jax.Array, drag: jax.Array, until: Real = UNTIL) -> jax.Array:
     return u**2 + until @ (drag * u) - share

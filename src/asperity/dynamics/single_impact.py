@@ -12,6 +12,8 @@ from ..laws.law import Real
 from ..laws.plastic import PlasticContact
 from ..numerics.compilation import Program, kept
 from .damped_summits import arrive_damped, damped_kinetic_apart, leave_damped
+from .delayed_path import Delay, DelayedPath, Formation, prompt_path
+from .delayed_summits import arrive_delayed, leave_delayed
 from .record import Body
 from .summit_path import (
     Arrival,
@@ -110,6 +112,7 @@ def _impact(
     table: Asperities,
     wanted: bool,
     contact: PlasticContact | None,
+    delay: Delay | None,
     body: Body,
     launch: Launch,
     offsets: jax.Array,
@@ -126,7 +129,7 @@ def _impact(
     found = PressedSummits.of(summits, contact, jnp.maximum(offsets - pressed_to, 0.0))
     inward = SummitPath(found, offsets)
     top = top_of(summits, launch, offsets - found.residual)
-    arrival = (arrive_damped if body.damped else arrive)(body, inward, launch, top)
+    arrival, menisci = _arrive(body, delay, inward, launch, top)
     turning_point = jnp.where(arrival.met, arrival.turning_point, top)
     gaps = turning_point - offsets
     pressed = found.turned(gaps)
@@ -138,27 +141,52 @@ def _impact(
     met = arrival.met & (turning_point < begin)
     ends = jnp.where(held, recovered + summits.breaking, end)
     out = Outward(outward, turning_point, end, recovered, ends)
-    departure = (leave_damped if body.damped else leave)(body, out, arrival.kinetic)
+    departure, taken = _leave(body, delay, out, arrival.kinetic, menisci)
     before, captured, restitution = balance(body, arrival, departure, met, (top, end))
-    lost = jnp.sum(held * pressed.flatness * summits.lost, axis=1)
+    lost, maximum_force = held * pressed.flatness * summits.lost, inward.force(turning_point)
+    if delay is not None and menisci is not None and taken is not None:
+        at_turn = DelayedPath(prompt_path(inward, delay), menisci.formed, delay.law)
+        maximum_force = at_turn.force(turning_point)
+        held = held.at[delay.law].set(menisci.formed)
+        lost = lost.at[delay.law].set(taken.lost)
     kept_by_tips = inward.work(turning_point) - outward.work(turning_point)
     yielding = jnp.zeros(0) if contact is None else kept_by_tips[None]
     return SingleImpact(
-        closest_approach=turning_point,
+        closest_approach=jnp.where(jnp.isnan(departure.after), jnp.nan, turning_point),
         captured=captured,
         impact_energy=before,
         restitution=restitution,
         contacting=jnp.sum(gaps < 0.0).astype(float),
-        maximum_force=inward.force(turning_point),
+        maximum_force=maximum_force,
         loaded=effectively_loaded(gaps),
         bonds=jnp.sum(held, axis=1).astype(float),
-        lost=jnp.concatenate([lost, yielding, arrival.taken + met * departure.taken]),
+        lost=jnp.concatenate(
+            [jnp.sum(lost, axis=1), yielding, arrival.taken + met * departure.taken]
+        ),
         interaction=jnp.zeros(()),
         pull_off=out.pull_off() if wanted else jnp.asarray(jnp.nan),
         end=end,
         unsolved=jnp.zeros(()),
         within_range=jnp.sum(gaps <= summits.approach_range),
     )
+
+
+def _arrive(
+    body: Body, delay: Delay | None, path: SummitPath, launch: Launch, top: jax.Array
+) -> tuple[Arrival, Formation | None]:
+    """The way in, and the menisci at its end where these take time."""
+    if delay is not None:
+        return arrive_delayed(body, path, launch, top, delay)
+    return (arrive_damped if body.damped else arrive)(body, path, launch, top), None
+
+
+def _leave(
+    body: Body, delay: Delay | None, outward: Outward, kinetic: jax.Array, menisci: Formation | None
+) -> tuple[Departure, Formation | None]:
+    """The way out, and the menisci at its end."""
+    if delay is not None and menisci is not None:
+        return leave_delayed(body, outward, kinetic, menisci, delay)
+    return (leave_damped if body.damped else leave)(body, outward, kinetic), None
 
 
 def effectively_loaded(gaps: jax.Array) -> jax.Array:
@@ -207,6 +235,7 @@ def _impacts(
     classes: jax.Array,
     wanted: bool = True,
     yielding: Yielding | None = None,
+    delay: Delay | None = None,
 ) -> SingleImpact:
     bodies, summits = offsets.shape
     contact, before = yielding or (None, jnp.full(bodies, jnp.inf))
@@ -217,7 +246,7 @@ def _impacts(
         lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]),
         (launches, offsets, classes, before),
     )
-    one = partial(_impact, table, wanted, contact, body)
+    one = partial(_impact, table, wanted, contact, delay, body)
     found = jax.lax.map(lambda job: jax.vmap(one)(*job), jobs)
     return jax.tree_util.tree_map(lambda leaf: leaf.reshape(bodies, *leaf.shape[2:]), found)
 

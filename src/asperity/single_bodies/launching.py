@@ -11,10 +11,12 @@ import numpy as np
 
 from .._jax import jax, jnp
 from ..contact.asperity_table import Asperities, asperity_table
+from ..contact.delayed_formation import LATE
 from ..contact.elastic import ElasticContact
 from ..contact.rough import RoughContact
 from ..dynamics.coupled_impact import Bulk, coupled_impacts
 from ..dynamics.damped_summits import flights
+from ..dynamics.delayed_path import Delay
 from ..dynamics.problem import Problem
 from ..dynamics.record import Body
 from ..dynamics.single_impact import SingleImpact, Yielding, single_impacts
@@ -37,6 +39,9 @@ MOST_UNASKED = 2048
 
 MOST_COUPLED = 128
 """On a half-space, where each feels all others."""
+
+MOST_DELAYED = 512
+"""With menisci that take time: each that forms is a step of its own."""
 
 _BELOW = 5.0  # rms heights that the turning point of a body may lie below that of the mean
 _FIRST = 16  # summits of each body, at least
@@ -92,6 +97,10 @@ class SingleBodies:
         # Without what a motion of the mean starts from, and where: one program serves all.
         self._body = Body(body.mass, body.gravity, 0.0, drags=body.drags, forces=body.forces)
         self.mechanisms = (*names, *self._body.mechanisms)
+        self._delay: Delay | None = None
+        if inputs.formation_time and LATE in names:
+            self._delay = Delay(as_float64(inputs.formation_time), names.index(LATE))
+            self._most = min(self._most, MOST_DELAYED)
         self._seed = inputs.placement.seed
         self._table: tuple[float, Asperities] | None = None
         self._felt = self._range
@@ -135,8 +144,8 @@ class SingleBodies:
         Raises
         ------
         InputError
-            If one feels more than `MOST_SUMMITS`, or on a half-space `MOST_COUPLED`, or it is
-            released on a summit.
+            If one feels more than `MOST_SUMMITS`, on a half-space `MOST_COUPLED` or with menisci
+            that take time `MOST_DELAYED`, or it is released on a summit.
         SimulationError
             If they were stopped.
         """
@@ -188,7 +197,7 @@ class SingleBodies:
         )
         return joined
 
-    def flights(self, starts: np.ndarray, kinetic: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def flights(self, starts: np.ndarray, kinetic: np.ndarray) -> tuple[Launch, np.ndarray]:
         """Bodies that leave their summits, until they come back.
 
         Parameters
@@ -200,16 +209,23 @@ class SingleBodies:
 
         Returns
         -------
-        Kinetic energies [J] with which they are there again, and times [s]: NaN and infinite for
-        those that do not come back.
+        How they come again, and times [s] until they are there: kinetic energies are NaN and
+        times infinite for those that do not come back. Menisci that take time are followed from
+        the apex on, others from where forces end.
         """
         body = self._body.plain
         if self._body.damped or self._body.forces:
-            back, time = flights(self._body, as_float64(starts), as_float64(kinetic))
-            return np.asarray(back), np.asarray(time)
-        if not body.weight > 0.0:
-            return np.full(kinetic.shape, np.nan), np.full(kinetic.shape, np.inf)
-        return kinetic, 2.0 * np.sqrt(2.0 * kinetic * body.mass) / body.weight
+            found = flights(self._body, as_float64(starts), as_float64(kinetic))
+            back, time, apex = map(np.asarray, found)
+        elif not body.weight > 0.0:
+            back, time = np.full(kinetic.shape, np.nan), np.full(kinetic.shape, np.inf)
+            apex = starts
+        else:
+            back, time = kinetic, 2.0 * np.sqrt(2.0 * kinetic * body.mass) / body.weight
+            apex = starts + kinetic / body.weight
+        if self._delay is not None:
+            return Launch(0.0 * back, apex), time
+        return Launch(back, starts), time
 
     def first(self, found: SingleImpact) -> dict[str, np.ndarray]:
         """The first body on its summits, as in :class:`Realisations`; ``found`` for all."""
@@ -253,8 +269,10 @@ class SingleBodies:
             if np.all(np.isinf(before)):
                 refuse_inside(launches.release, offsets[:, 0])
             summits = launches, as_float64(offsets), jnp.asarray(classes)
+            # With menisci that take time one program serves all, which takes long to compile.
+            wanted = with_pull_off or self._delay is not None
             if self._modulus is None:
-                found = single_impacts(table, self._body, *summits, with_pull_off, yielding)
+                found = single_impacts(table, self._body, *summits, wanted, yielding, self._delay)
             else:
                 found = coupled_impacts(table, self._body, *summits, self._bulk(number, count))
             found = jax.tree_util.tree_map(np.asarray, found)

@@ -107,13 +107,12 @@ def _until_captured(
     for made in range(1, most + 1):
         kinetic = np.asarray(found.impact_energy) * np.asarray(found.restitution) ** 2
         end = np.asarray(found.end)
-        kinetic, time = bodies.flights(end, kinetic)
-        kinetic = np.where(np.isinf(rebounds), kinetic, np.nan)
-        flying = np.isfinite(kinetic)
+        launches, time = bodies.flights(end, kinetic)
+        launches = launches._replace(kinetic=np.where(np.isinf(rebounds), launches.kinetic, np.nan))
+        flying = np.isfinite(launches.kinetic)
         if not np.any(flying):
             break
         flight += np.where(flying, time, 0.0)
-        launches = Launch(kinetic, end)
         found = bodies.impacts(launches, stop, with_pull_off=False, before=deepest)
         rebounds[flying & np.asarray(found.captured)] = made
     return rebounds, np.where(np.isinf(rebounds), np.inf, flight)
