@@ -443,7 +443,7 @@ def texts(figure: Figure) -> list[tuple[str, tuple[float, float, float, float]]]
     renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
     found = [*figure.texts]
     for legend in figure.legends:
-        found += legend.get_texts()
+        found += [legend.get_title(), *legend.get_texts()]
     for axes in figure.axes:
         found += [axes.xaxis.label, axes.yaxis.label, axes._left_title]  # type: ignore[attr-defined]
         for axis in (axes.xaxis, axes.yaxis):
@@ -532,7 +532,7 @@ def test_a_map_of_listed_values_has_each_case_in_its_own_cell(tmp_path):
 
 def test_a_picture_says_what_failed_and_what_was_held(grid):
     _, drawn = study.figure(grid, held={HUMID: "0.33"})
-    assert drawn.texts[0].get_text() == "relative humidity 0.34, 1 of 41 cases failed"
+    assert drawn.legends[0].get_title().get_text() == "relative humidity 0.34, 1 of 41 cases failed"
 
 
 # Tables

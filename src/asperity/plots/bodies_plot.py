@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
 
 from asperity.plots import style
 from asperity.plots.style import Panel, Row
@@ -54,9 +53,9 @@ def _shares(
     axes.hist(values, bins=bins, weights=weights, color=colour("gas"), label="single bodies")
     if mean is not None:
         axes.axvline(mean, **_MEAN)
-    if whole:
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=6, min_n_ticks=1))
     axes.set(xlabel=label, ylabel="share of the bodies [-]")
+    if whole:
+        style.count_axis(axes, label)
     if legend:
         style.legend_above(axes)
 

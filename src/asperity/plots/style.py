@@ -13,7 +13,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from asperity.results.summary import scaled
 
@@ -137,6 +137,13 @@ def scaled_axis(axis: Axis, quantity: str, *arrays: np.ndarray, unit: str) -> fl
 def plain_numbers(axis: Axis) -> None:
     """Numbers such as 0.01 and 20 at the ticks of a logarithmic axis, not powers of ten."""
     axis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
+def log_ticks(axis: Axis) -> None:
+    """Plain numbers at 1, 2 and 5 of each decade of a logarithmic axis."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
+    axis.set_minor_formatter(NullFormatter())
+    plain_numbers(axis)
 
 
 def log_axis(axes: Axes, *arrays: np.ndarray) -> None:

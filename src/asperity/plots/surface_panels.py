@@ -7,7 +7,7 @@ from math import ceil, floor, log10, pi, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from asperity.plots import style
 from asperity.results.colours import colour
@@ -156,9 +156,7 @@ def draw_radii(axes: Axes, description: Description) -> None:
         sharp = description.nayak.curvature_at(z)
         axes.plot(z / across, 1.0 / (sharp * up), color=colour("capillary"), label="Nayak")
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
-    style.plain_numbers(axes.yaxis)
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    style.log_ticks(axes.yaxis)
     axes.xaxis.set_major_locator(MaxNLocator(6))
     style.legend_above(axes, 1)
 

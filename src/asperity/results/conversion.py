@@ -31,6 +31,7 @@ from .assessment import measured_warnings, regime_of
 from .first_contact import FirstContact, first_contact, least_peak, passing_at
 from .measures import Measures, measure
 from .realisations import Realisations
+from .record_layout import EVENTS
 from .result import Result
 
 _first_contact = Program(first_contact, AT_ONCE)
@@ -206,13 +207,8 @@ def result_of(
             *kept_elastic(inputs, float(np.asarray(measures.restitution)[0]), elastic),
         ],
         events={
-            name: np.asarray(values)[:made]
-            for name, values in (
-                ("closest_approach_time", impacts.closest_approach_time),
-                ("apex_time", impacts.apex_time),
-                ("closest_approach_separation", impacts.closest_approach),
-                ("apex_separation", impacts.apex),
-            )
+            name: np.asarray(getattr(impacts, name.removesuffix("_separation")))[:made]
+            for name in EVENTS
         },
     )
 

@@ -17,7 +17,6 @@ from asperity.results.netcdf_record import SEAL, sealed
 from asperity.results.realisations import KINDS, Realisations
 from asperity.results.result import Curve, Result
 
-_MOTION = ("time", "separation", "central_separation", "speed")
 _MAYBE = ("pull_off_separation", "preload")  # of a curve's numbers
 _MAGIC = b"CDF\x02"
 
@@ -91,7 +90,7 @@ def _result(
     arrays: Mapping[str, Any], said: Mapping[str, Any], shared: Mapping[str, Any]
 ) -> Result:
     nothing = np.empty(0)
-    motion: dict[str, Any] = {key: arrays.get(key, nothing) for key in _MOTION}
+    motion: dict[str, Any] = {key: arrays.get(key, nothing) for key in record_layout.MOTION}
     return Result(
         **shared,
         outcome=Outcome(said["outcome"]),

@@ -25,6 +25,14 @@ VERSION = 2
 BODY, SUMMIT = "body_", "summit_"
 """What the names of variables of single bodies begin with, and those of the first one's summits."""
 
+MOTION = {
+    "time": ("s", "time since the release"),
+    "separation": ("m", "rigid separation"),
+    "central_separation": ("m", "separation at the centre, with the bodies' deformation"),
+    "speed": ("m/s", "rate of the rigid separation"),
+}
+"""Unit and meaning of what a motion has at each of its times."""
+
 _FORCES = {
     "weight": "weight",
     "contact": "contact force, all mechanisms together",
@@ -75,8 +83,15 @@ CURVE = {
 PARTS = ("regime", "measures", "ledger", "warnings")
 """What a record of a run holds as JSON."""
 
-ALONG_CURVE = ("rigid_separation", "central_separation", "force_loading", "force_unloading")
-"""What a curve has at each of its points."""
+ALONG_CURVE = {
+    "rigid_separation": ("m", "rigid separation"),
+    "central_separation": (
+        "m", "separation at the centre on the way in, with the bodies' deformation"
+    ),
+    "force_loading": ("N", "contact force, loading, positive apart"),
+    "force_unloading": ("N", "contact force, unloading, positive apart"),
+}  # fmt: skip
+"""Unit and meaning of what a curve has at each of its points."""
 
 
 class Variable(NamedTuple):
@@ -111,14 +126,11 @@ def attributes(result: ResultData | CurveData) -> dict[str, str | int]:
     }
     if result.case_file is not None:
         found["case_file"] = result.case_file
-    if isinstance(result, CurveData):
-        found["warnings"] = json.dumps(result.warnings)
-        if result.jumps is not None:
-            found["jumps"] = json.dumps(plain(result.jumps), allow_nan=False)
     if isinstance(result, ResultData):
         found["outcome"] = result.outcome.value
-        for part in PARTS:
-            found[part] = json.dumps(plain(getattr(result, part)), allow_nan=False)
+    for part in ("warnings", "jumps") if isinstance(result, CurveData) else PARTS:
+        if (said := getattr(result, part)) is not None:
+            found[part] = json.dumps(plain(said), allow_nan=False)
     if result.surface is not None:
         found["surface"] = json.dumps(plain(result.surface), allow_nan=False)
     return found
@@ -163,18 +175,7 @@ def _motion(result: ResultData) -> list[Variable]:
     if not result.case.output.motion:
         return []
     along = ("time",)
-    found = [
-        Variable("time", along, result.time, "s", "time since the release"),
-        Variable("separation", along, result.separation, "m", "rigid separation"),
-        Variable(
-            "central_separation",
-            along,
-            result.central_separation,
-            "m",
-            "separation at the centre, with the bodies' deformation",
-        ),
-        Variable("speed", along, result.speed, "m/s", "rate of the rigid separation"),
-    ]
+    found = [Variable(n, along, getattr(result, n), *about) for n, about in MOTION.items()]
     for name, values in result.forces.items():
         meaning = _FORCES.get(name, f"{name} force") + ", positive apart"
         found.append(Variable(f"force_{name}", along, values, "N", meaning))
@@ -187,14 +188,12 @@ def _motion(result: ResultData) -> list[Variable]:
 def _impacts(result: ResultData) -> list[Variable]:
     found = []
     count = np.size(result.events.get("closest_approach_time", ()))
-    for name, values in result.events.items():
-        units, meaning = EVENTS.get(name, ("1", name.replace("_", " ")))
-        values = np.asarray(values, dtype=float)
-        found.append(Variable(name, _dimension(name, values, count), values, units, meaning))
-    for name, (units, meaning) in _MEASURES.items():
-        if name in result.measures:
-            values = _numbers(result.measures[name])
-            found.append(Variable(name, _dimension(name, values, count), values, units, meaning))
+    for held, table in ((result.events, EVENTS), (result.measures, _MEASURES)):
+        for name, about in table.items():
+            if name not in held:
+                continue
+            values = _numbers(held[name])
+            found.append(Variable(name, _dimension(name, values, count), values, *about))
     return found
 
 
@@ -237,28 +236,15 @@ def _bodies(found: Realisations) -> list[Variable]:
 
 
 def _curve_variables(curve: CurveData) -> list[Variable]:
-    along = ("point",)
-    found = [
-        Variable("rigid_separation", along, curve.rigid_separation, "m", "rigid separation"),
-        Variable(
-            "central_separation",
-            along,
-            curve.central_separation,
-            "m",
-            "separation at the centre on the way in, with the bodies' deformation",
-        ),
-    ]
-    for way, total, components in (
-        ("loading", curve.force_loading, curve.components_loading),
-        ("unloading", curve.force_unloading, curve.components_unloading),
-    ):
-        meaning = f"contact force, {way}, positive apart"
-        found.append(Variable(f"force_{way}", along, total, "N", meaning))
-        for name, values in components.items():
-            meaning = f"{name} force, {way}, positive apart"
-            found.append(Variable(f"force_{way}_{name}", along, values, "N", meaning))
-    for name, (units, meaning) in CURVE.items():
-        found.append(Variable(name, (), _numbers(getattr(curve, name)), units, meaning))
+    along, found = ("point",), []
+    for name, about in ALONG_CURVE.items():
+        found.append(Variable(name, along, getattr(curve, name), *about))
+        way = name.removeprefix("force_")
+        for part, values in getattr(curve, f"components_{way}", {}).items():
+            meaning = f"{part} force, {way}, positive apart"
+            found.append(Variable(f"{name}_{part}", along, values, "N", meaning))
+    for name, about in CURVE.items():
+        found.append(Variable(name, (), _numbers(getattr(curve, name)), *about))
     return found
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
 
 from asperity.config.key_labels import PERCENT
 from asperity.plots import style
@@ -81,14 +81,12 @@ class Quantity(NamedTuple):
         """Plain numbers at the ticks of an axis of less than two decades."""
         found = self.values[np.isfinite(self.values)]
         span = found.max() / found.min()
+        axis.set_minor_formatter(NullFormatter())
+        if span < _DECADE**2:
+            style.log_ticks(axis)
         if span < _DECADE:
             axis.set_major_locator(MaxNLocator(_TICKS, steps=[1, 2, 5, 10]))
             axis.set_minor_locator(NullLocator())
-        elif span < _DECADE**2:
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=10))
-        if span < _DECADE**2:
-            style.plain_numbers(axis)
-        axis.set_minor_formatter(NullFormatter())
 
 
 def axis_quantity(axis: xarray.DataArray) -> Quantity:

@@ -77,22 +77,10 @@ def _drawing(
         if not x.names:  # the same in all panels, whichever values are known
             axes.set_xlim(*x._replace(values=np.sort(x.values)).edges[[0, -1]])
         if view.facet and not whole.names:
-            axes.set_ylim(*_limits(whole))
+            found = whole.values[np.isfinite(whole.values)]
+            axes.update_datalim(np.column_stack([np.full(found.size, x.values[0]), found]))
 
     return draw
-
-
-def _limits(whole: Quantity) -> tuple[float, float]:
-    """Ends of an axis that has room for all values."""
-    found = whole.values[np.isfinite(whole.values)]
-    if not found.size:
-        return 0.0, 1.0
-    ends = np.log(found) if whole.log else found
-    low, high = float(ends.min()), float(ends.max())
-    margin = 0.05 * (high - low) or 0.5 * abs(low) or 0.5
-    span = np.array([low - margin, high + margin])
-    low, high = np.exp(span) if whole.log else span
-    return float(low), float(high)
 
 
 def _line(
