@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import errno
+import io
 import os
 import secrets
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 from asperity.errors import InputError, OutputError
@@ -39,6 +41,16 @@ def told(
         raise OutputError(
             f"{path}: cannot be {done}: {reason}{remedy}", path=os.fspath(path)
         ) from error
+
+
+def csv_of(heads: Iterable[str], rows: Iterable[Iterable[object]], about: str = "") -> bytes:
+    """A table as CSV: lines about it, the heads of its columns, its rows."""
+    text = io.StringIO()
+    text.write(about)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(rows)
+    return text.getvalue().encode()
 
 
 def ending_of(target: Path, endings: Collection[str], found: str | None = None) -> str:

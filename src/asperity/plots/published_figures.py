@@ -228,12 +228,19 @@ def _motions(axes: Axes, drawing: Drawing) -> None:
 
 def _forces(axes: Axes, drawing: Drawing) -> None:
     time, *forces = drawing.series["wet"]
-    wide, tall = _scaled(axes, (drawing.columns[0], "force [N]"), [time], forces)
-    names = [column.rsplit(" [", 1)[0] for column in drawing.columns[1:]]
-    for name, force in zip(names, forces, strict=True):
-        axes.plot(time / wide, force / tall, color=colour(name), lw=0.8, label=name)
-    axes.set_xlim(0.0, time.max() / wide)
+    _force_lines(axes, drawing, drawing.columns[0], time, forces)
     style.legend_above(axes, 2)
+
+
+def _force_lines(
+    axes: Axes, drawing: Drawing, label: str, time: np.ndarray, forces: Sequence[np.ndarray]
+) -> None:
+    """Each force against a time that is labelled."""
+    wide, tall = _scaled(axes, (label, "force [N]"), [time], forces)
+    for column, force in zip(drawing.columns[1:], forces, strict=True):
+        name = column.rsplit(" [", 1)[0]
+        axes.plot(time / wide, force / tall, color=colour(name), lw=0.8, label=name)
+    axes.margins(x=0.0)
 
 
 def _first_contact(axes: Axes, drawing: Drawing) -> None:
@@ -247,11 +254,5 @@ def _first_contact(axes: Axes, drawing: Drawing) -> None:
     begin = int(before[-1]) if before.size else 0
     near = slice(begin, index + int(after[0]) + 1 if after.size else None)
     shown = [force[near] for force in forces]
-    wide, tall = _scaled(
-        axes, ("time from closest approach [s]", "force [N]"), [since[near]], shown
-    )
-    names = [column.rsplit(" [", 1)[0] for column in drawing.columns[1:]]
-    for name, force in zip(names, shown, strict=True):
-        axes.plot(since[near] / wide, force / tall, color=colour(name), lw=0.8)
-    axes.margins(x=0.0)
+    _force_lines(axes, drawing, "time from closest approach [s]", since[near], shown)
     axes.set_title("first contact")

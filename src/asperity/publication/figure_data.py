@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from math import pi, sqrt
 from typing import NamedTuple
@@ -11,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..regimes import Boundary
+from ..writing import csv_of
 
 Columns = tuple[np.ndarray, ...]
 
@@ -37,16 +36,13 @@ class Drawing(NamedTuple):
 
     def csv(self) -> bytes:
         """The data as CSV: a comment, a header, and the series under each other."""
-        store = io.StringIO()
-        store.write(f"# {self.title}\n")
-        for name, value in self.about.items():
-            store.write(f"# {name}: {value:.9g}\n")
-        writer = csv.writer(store, lineterminator="\n")
-        writer.writerow(("series", *self.columns))
-        for name, arrays in self.series.items():
-            rows = np.column_stack([np.asarray(values, dtype=float) for values in arrays])
-            writer.writerows((name, *(f"{value:.9g}" for value in row)) for row in rows)
-        return store.getvalue().encode()
+        told = [self.title, *(f"{name}: {value:.9g}" for name, value in self.about.items())]
+        rows = (
+            (name, *(f"{value:.9g}" for value in row))
+            for name, arrays in self.series.items()
+            for row in np.column_stack(arrays)
+        )
+        return csv_of(("series", *self.columns), rows, "".join(f"# {line}\n" for line in told))
 
 
 def map_lines(boundaries: Sequence[Boundary]) -> dict[str, Columns]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import textwrap
 from collections.abc import Collection, Iterable
 from typing import Any
 
 from ..results.summary import WIDTH, amount
+from ..writing import csv_of
 from .audit import Claim
 from .published_tables import QUANTITIES
 from .reproduce import Reproduction
@@ -50,11 +49,7 @@ def files(done: Reproduction) -> dict[str, bytes]:
 
 
 def _csv(columns: Collection[str], rows: Iterable[dict[str, Any]]) -> bytes:
-    store = io.StringIO()
-    writer = csv.DictWriter(store, columns, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return store.getvalue().encode()
+    return csv_of(columns, ([row[name] for name in columns] for row in rows))
 
 
 def _tables(done: Reproduction) -> list[str]:

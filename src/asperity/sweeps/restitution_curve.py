@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import json
 import os
 import threading
@@ -30,6 +28,7 @@ from ..results.record_layout import plain
 from ..results.result import drawing
 from ..results.results_folder import RESTITUTION_FILES, write_folder
 from ..results.summary import amount, warning_lines
+from ..writing import csv_of
 from .capture_probability import CaptureProbability, capture_probability
 from .curve_speeds import checked, chosen, left_out
 
@@ -175,7 +174,7 @@ class RestitutionCurve:
     def files(self, *, pictures: bool = True) -> dict[str, bytes]:
         """Content of every file, by name: a table, its numbers as JSON, pictures, a summary."""
         found = {
-            "restitution.csv": self._table().encode(),
+            "restitution.csv": self._table(),
             "restitution.json": json.dumps(self.json_object(), allow_nan=False).encode() + b"\n",
             "restitution.txt": self.summary().encode() + b"\n",
         }
@@ -187,17 +186,14 @@ class RestitutionCurve:
         """Write table, pictures and summary, all or none; as `Result.save`."""
         return write_folder(directory, self.files(), RESTITUTION_FILES, force=force)
 
-    def _table(self) -> str:
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
+    def _table(self) -> bytes:
         more = {} if self.single_bodies is None else self.single_bodies.columns()
-        writer.writerow(["speed [m/s]", "restitution [-]", "captured", *more])
         columns = (self.speed, self.restitution, self.captured, *more.values())
         rows = zip(*(column.tolist() for column in columns), strict=True)
-        writer.writerows(
-            (speed, "" if e != e else e, int(held), *rest) for speed, e, held, *rest in rows
+        return csv_of(
+            ["speed [m/s]", "restitution [-]", "captured", *more],
+            ((speed, "" if e != e else e, int(held), *rest) for speed, e, held, *rest in rows),
         )
-        return out.getvalue()
 
     def __repr__(self) -> str:
         critical = amount(self.critical_velocity, "m/s")

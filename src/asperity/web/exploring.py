@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 import threading
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -17,6 +15,7 @@ from asperity.web.answer import DRAWN, answer
 from asperity.web.jobs import Report
 from asperity.web.requests import Asked
 from asperity.web.surface_uploads import Surfaces, Upload, renamed, retold
+from asperity.writing import csv_of
 
 FILES = {
     "record.nc": "application/x-netcdf",
@@ -148,8 +147,5 @@ def table(made: Result | Curve) -> bytes:
     from asperity.results.record_layout import variables
 
     columns = [one for one in variables(made) if one.dimensions in (("time",), ("point",))]
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(f"{one.name} [{one.units}]" for one in columns)
-    writer.writerows(zip(*(one.values.tolist() for one in columns), strict=True))
-    return out.getvalue().encode()
+    heads = (f"{one.name} [{one.units}]" for one in columns)
+    return csv_of(heads, zip(*(one.values.tolist() for one in columns), strict=True))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,6 +10,7 @@ import numpy as np
 from asperity.errors import InputError
 from asperity.sweeps.analysis.view import axes_of, measure_named
 from asperity.units import shown
+from asperity.writing import csv_of
 
 if TYPE_CHECKING:
     import xarray
@@ -136,11 +135,8 @@ def table(dataset: xarray.Dataset, front: Front) -> bytes:
     held = axis_values(dataset, front.cases[front.best])
     names = [*held, *(goal.measure for goal in front.goals)]
     columns = [*held.values(), *front.values[:, front.best]]
-    store = io.StringIO()
-    writer = csv.writer(store, lineterminator="\n")
-    writer.writerow([_headed(dataset, name) for name in names])
-    writer.writerows(zip(*(column.tolist() for column in columns), strict=True))
-    return store.getvalue().encode()
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return csv_of([_headed(dataset, name) for name in names], rows)
 
 
 def _headed(dataset: xarray.Dataset, name: str) -> str:
