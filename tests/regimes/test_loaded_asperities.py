@@ -5,7 +5,7 @@ import pytest
 
 from asperity.inputs import Asperities
 from asperity.interface.summit_field import GaussianField
-from asperity.regimes import clustering, loaded_asperities, mean_is_enough
+from asperity.regimes import clustering, loaded_asperities
 
 RADIUS, RMS = 25e-6, 1.64e-9
 ROUGH = Asperities(6.3e13, 450e-9, RMS)
@@ -78,22 +78,3 @@ def test_summits_that_stand_together_count_as_one():
         found.append(clustering(rough, RADIUS, RMS))
     assert found[0] > 0.8
     assert found[1] == pytest.approx(0.25, rel=0.2)
-
-
-@pytest.mark.parametrize(
-    ("loaded", "kept", "lost", "enough"),
-    [
-        (2.9, 1.0, 0.0, False),
-        (3.1, 1.0, 0.0, True),
-        (5.36, 0.624, 0.376, False),  # off by 7.9 %
-        (3.2, 0.789, 0.211, True),  # by 3.3 %
-        (39.4, 0.55, 0.45, True),  # by 1.5 %
-        (23.0, 0.394, 0.606, False),  # by 8.3 %
-        (100.0, 0.19, 0.81, False),
-        (400.0, 0.19, 0.81, True),
-        (400.0, -0.15, 1.15, False),
-        (400.0, -0.30, 1.30, True),
-    ],
-)
-def test_a_mean_is_enough_away_from_capture_where_enough_carry_the_load(loaded, kept, lost, enough):
-    assert mean_is_enough(loaded, kept, lost) is enough

@@ -6,7 +6,8 @@
 solves one separation, `continuation` follows a path of them, `ring_error` estimates the mesh error.
 `viscoelastic`, `delayed_formation`: contacts whose force depends on time.
 `published_conjunction`: the publication's own. `resolution`: panel lengths of the force curves.
-`asperity_table`: energies of one asperity; `coupled_summits`: some on a half-space.
+`asperity_work`, `asperity_table`: energies of one asperity.
+`coupled_summits`: some on a half-space.
 `scanning_curve`: separations along a scanning curve. `ring_reversals`: few that stand for all.
 
 A contact is immutable; its memory is passed in and out.

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from itertools import product
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +13,7 @@ from ..laws.plastic import PlasticContact
 from ..numerics.compilation import AT_ONCE, Program, kept
 from ..numerics.polynomials import points_between
 from ..numerics.trees import stacked
+from .asperity_work import Along, work_on_branches, work_with_contact
 from .smooth import kinks_of
 
 _CELLS = 512  # between two gaps at which a law is not smooth
@@ -198,41 +197,6 @@ def _segments(
     return scale, _even(gaps / scale)
 
 
-Along = Callable[[jax.Array], jax.Array]
-
-
-def _branches(law: Law, contact: PlasticContact | None) -> list[Along]:
-    """Work [J] from far away to a gap [m] on each branch of :class:`Asperities`, in its order."""
-    every = terms(law)
-    hysteretic = [one for one in every if one.hysteretic]
-    others = [one for one in every if not one.hysteretic]
-
-    def work(gap: jax.Array, formed: tuple[bool, ...] | None) -> jax.Array:
-        """By the laws whose bond was formed; without them on approach."""
-        total = sum((one.energy(gap) for one in others), jnp.zeros_like(gap))
-        for k, one in enumerate(hysteretic):
-            formed_loss, broken_loss = one.losses
-            # Below its gap a bond that takes time to form exerts no force until then.
-            free = one.energy(jnp.maximum(gap, one.forming_gap))
-            gone = one.energy(gap) + formed_loss + broken_loss
-            bonded = formed_loss + one.bonded_energy(gap)
-            bonded = jnp.where(gap < one.breaking_gap, bonded, gone)
-            on = gap <= one.forming_gap if formed is None else formed[k]
-            total = total + jnp.where(on, bonded, free)
-        return total
-
-    sets = [bits[::-1] for bits in product((False, True), repeat=len(hysteretic))]
-    found: list[Along] = [partial(work, formed=formed) for formed in (*sets, None)]
-    return found if contact is None else [*found, _with_contact(found[-1], contact)]
-
-
-def _with_contact(beside: Along, contact: PlasticContact | None) -> Along:
-    """Work [J] with that of the first loading where tips yield."""
-    if contact is None:
-        return beside
-    return lambda gap: beside(gap) + contact.loading_work(jnp.maximum(-gap, 0.0))
-
-
 def _table_of(
     size_class: jax.Array, law: Law, contact: PlasticContact | None, energy: jax.Array
 ) -> Asperities:
@@ -240,7 +204,10 @@ def _table_of(
 
     The law is beside the ``contact`` where tips yield.
     """
-    hysteretic, branches = [one for one in terms(law) if one.hysteretic], _branches(law, contact)
+    hysteretic, branches = (
+        [one for one in terms(law) if one.hysteretic],
+        work_on_branches(law, contact),
+    )
     ladder = jnp.asarray(_LADDER)
     needed = branches[APPROACH](ladder)
     low = ladder[jnp.argmax(needed > energy - _OTHERS * jnp.minimum(jnp.min(needed), 0.0))]
@@ -264,7 +231,7 @@ def _table_of(
         return jnp.max(gaps, initial=scale * _stretched(end))
 
     bonded = branches[2 ** len(hysteretic) - 1]
-    tension = jax.grad(lambda x: jnp.sum(_with_contact(bonded, contact)(x)))(gap)
+    tension = jax.grad(lambda x: jnp.sum(work_with_contact(bonded, contact)(x)))(gap)
     energy, slope = jnp.stack([fitted(branch) for branch in branches], axis=1)
     return Asperities(
         size_class,

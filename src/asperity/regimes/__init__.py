@@ -3,6 +3,7 @@
 `dimensionless_numbers`: Tabor number, plasticity index and the like. `choice`: the adhesion law
 for a Tabor number. `boundaries`: the adhesion map of Johnson and Greenwood. `verdicts`: what a
 number says, in words. `loaded_asperities`: how many carry the load, effectively.
+`error_of_mean`: by how much single bodies lose more than the mean, and how their losses scatter.
 `liquid_regime`: dry, pendular, coalesced, flooded.
 `validity` collects the warnings of `accuracy`, `ambient`, `few_asperities`, `model_domain`,
 `plastic_validity` and `wave_limits`: each threshold is a constant beside the warning that uses it.
@@ -17,7 +18,7 @@ from .dimensionless_numbers import (
     plasticity_index,
     tabor_number,
 )
-from .loaded_asperities import clustering, loaded_asperities, mean_is_enough
+from .loaded_asperities import clustering, loaded_asperities
 from .verdicts import CARRIED, Verdict, verdicts
 
 __all__ = [
@@ -38,7 +39,6 @@ __all__ = [
     "hertz_load",
     "load_parameter",
     "loaded_asperities",
-    "mean_is_enough",
     "plasticity_index",
     "region",
     "regions",

@@ -8,32 +8,35 @@ from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..inputs import Inputs
 from .dimensionless_numbers import Regime
-from .loaded_asperities import clustering, mean_is_enough
+from .error_of_mean import losses_of_bodies, mean_is_enough
+from .loaded_asperities import LOADED_FOR_A_MEAN, clustering
 from .verdicts import CARRIED
 
 
-def few_warnings(problem: Problem, regime: Regime, motion: Motion) -> list[str]:
+def few_warnings(problem: Problem, regime: Regime, central: float, motion: Motion) -> list[str]:
     """A line where a mean stands alone that says too little of single bodies.
 
     Parameters
     ----------
     problem, regime, motion
         As for :func:`asperity.regimes.validity.warnings_of`.
+    central
+        Separation of the deformed mean planes at the axis, at closest approach [m].
     """
     inputs = problem.inputs
-    if inputs.placement is not None or not bodies_differ(problem, regime, motion):
+    if inputs.placement is not None or not bodies_differ(problem, regime, central, motion):
         return []
     advice = "" if inputs.beside is None else "; `asperity run` has single bodies beside it"
     return [_few(regime.contacting_asperities or 0.0, regime.loaded_asperities or 0.0) + advice]
 
 
-def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
+def bodies_differ(problem: Problem, regime: Regime, central: float, motion: Motion) -> bool:
     """Whether a mean over asperities says too little of single bodies.
 
     Parameters
     ----------
-    problem, regime, motion
-        As for :func:`asperity.regimes.validity.warnings_of`.
+    problem, regime, central, motion
+        As for :func:`few_warnings`.
     """
     loaded, impacts, inputs = regime.loaded_asperities, motion.impacts, problem.inputs
     if not loaded:
@@ -46,13 +49,19 @@ def bodies_differ(problem: Problem, regime: Regime, motion: Motion) -> bool:
     potential = problem.body.plain.load.potential(closest)
     left = float(impacts.leaving[0]) - float(potential)
     left = left if np.isfinite(left) else energy - bonds
-    differ = not mean_is_enough(loaded, left / energy, bonds / energy)
+    if loaded < LOADED_FOR_A_MEAN:
+        return True
+    if not bonds > 0.0:
+        return False  # nothing that scatters
+    losses = losses_of_bodies(inputs, central, regime.contacting_asperities or 0.0)
+    differ = not mean_is_enough(loaded, losses, left / energy, bonds / energy)
     placed = inputs.with_bodies().placement
     if differ or inputs.structure.deformation != "rigid" or placed is None or not placed.measured:
         return differ
     assert inputs.asperities is not None
-    loaded *= clustering(inputs.asperities, inputs.radius, closest)
-    return not mean_is_enough(loaded, left / energy, bonds / energy)
+    share = clustering(inputs.asperities, inputs.radius, closest)
+    losses = losses.fewer(share)
+    return not mean_is_enough(share * loaded, losses, left / energy, bonds / energy)
 
 
 def _few(contacting: float, loaded: float) -> str:

@@ -14,11 +14,6 @@ LOADED_FOR_A_MEAN = 3.0
 See docs/single_bodies.md, "When the mean is enough".
 """
 
-MOST_OFF = 0.05
-"""Relative error of the mean field's first restitution from which a mean is not enough."""
-
-_SPREAD = 2.0  # standard deviations of single bodies from the border of capture
-
 _POSITIONS = 16  # of a body on a map, along each side
 _HIGHEST = 9.0  # rms heights above the mean: the highest asperities
 _POINTS = 4001
@@ -100,27 +95,3 @@ def clustering(rough: Asperities, radius: float, separation: float) -> float:
             squares.append(np.sum(radii[near] * overlaps**3))
     variance = float(np.var(sums))
     return min(1.0, float(np.mean(squares)) / variance) if variance > 0.0 else 1.0
-
-
-def mean_is_enough(loaded: float, kept: float, lost: float) -> bool:
-    r"""Whether the mean field says what single bodies do at their first impact.
-
-    It does not where fewer than `LOADED_FOR_A_MEAN` carry the load, where its restitution is off by
-    more than `MOST_OFF`, or where the scatter of single bodies spans the border of capture. Bonds
-    take a share L, which scatters by up to :math:`\sqrt 2\,L/\sqrt n`. Of the root of what is
-    kept, K, the mean is off by :math:`0.85\,(L/K)^{1.7}/n`: fitted to a fifth in twelve cases, to a
-    third in one where many are captured (docs/single_bodies.md). On a half-space it is less.
-
-    Parameters
-    ----------
-    loaded
-        Effective number n, as :func:`loaded_asperities`.
-    kept
-        Share K of the impact energy that is left at the end of contact [-]; negative where the body
-        lacks so much to leave.
-    lost
-        Share L of it that bonds take [-].
-    """
-    if loaded < LOADED_FOR_A_MEAN or abs(kept) < _SPREAD * lost * (2.0 / loaded) ** 0.5:
-        return False
-    return kept <= 0.0 or 0.85 * (lost / kept) ** 1.7 / loaded <= MOST_OFF

@@ -78,7 +78,7 @@ def warnings_of(problem: Problem, regime: Regime, at_depth: AtDepth, motion: Mot
     inputs = problem.inputs
     return [
         *_surface(problem),
-        *few_warnings(problem, regime, motion),
+        *few_warnings(problem, regime, at_depth.central, motion),
         *_covered(inputs, at_depth),
         *_publication(inputs),
         *_adhesion(regime, inputs.border_warnings, inputs.yields),

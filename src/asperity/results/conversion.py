@@ -145,7 +145,8 @@ def beside_mean(problem: Problem, solution: Solution) -> Problem:
     if inputs.beside is None:
         return problem
     at_depth = AtDepth.of(solution.motion, solution.trajectory)
-    if not bodies_differ(problem, regime_of(problem, at_depth), solution.motion):
+    regime = regime_of(problem, at_depth)
+    if not bodies_differ(problem, regime, at_depth.central, solution.motion):
         return problem
     return problem._replace(inputs=inputs.with_bodies())
 
