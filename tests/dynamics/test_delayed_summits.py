@@ -172,6 +172,8 @@ def test_short_formation_is_formation_at_once_and_long_formation_is_none():
     assert np.max(off[0]) < 0.1
     np.testing.assert_allclose(off[1], 0.1 * off[0], rtol=0.1, atol=1e-7)
     assert not np.any(long.lost[:, 1])
+    np.testing.assert_allclose(shorter.pull_off, prompt.pull_off, rtol=1e-6)
+    assert np.all(long.pull_off < 0.5 * prompt.pull_off)
     assert np.max(long.maximum_force) < np.max(prompt.maximum_force)
 
 

@@ -76,6 +76,14 @@ class DelayedPath(NamedTuple):
         return -jax.jvp(self.work, (separation,), (jnp.ones_like(separation),))[1]
 
 
+def with_menisci(path: SummitPath, delay: Delay, menisci: Formation) -> SummitPath:
+    """The way out with those menisci alone that have formed."""
+    assert path.branch is not None
+    bit = 2**delay.law
+    prompt = path.branch - bit * ((path.branch // bit) % 2)
+    return path._replace(branch=prompt + bit * menisci.formed)
+
+
 def prompt_path(path: SummitPath, delay: Delay) -> SummitPath:
     """The same path with the bonds alone that form at once."""
     summits = path.pressed.summits

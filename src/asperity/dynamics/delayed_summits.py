@@ -237,4 +237,7 @@ def leave_delayed(
     ends = ends_outwards(body, outward)
     phase = _Phase(body, delay, prompt, summits.forming[delay.law], ends, outwards=True)
     now = phase.follow(phase.begin(menisci, kinetic))
-    return departed(body, now.progress, phase.piece(now)), now.menisci
+    departure = departed(body, now.progress, phase.piece(now))
+    if not body.drags:  # nothing makes it creep out
+        departure = departure._replace(captured=~now.progress.going)
+    return departure, now.menisci

@@ -12,7 +12,7 @@ from ..laws.law import Real
 from ..laws.plastic import PlasticContact
 from ..numerics.compilation import Program, kept
 from .damped_summits import arrive_damped, damped_kinetic_apart, leave_damped
-from .delayed_path import Delay, DelayedPath, Formation, prompt_path
+from .delayed_path import Delay, DelayedPath, Formation, prompt_path, with_menisci
 from .delayed_summits import arrive_delayed, leave_delayed
 from .record import Body
 from .summit_path import (
@@ -149,6 +149,7 @@ def _impact(
         maximum_force = at_turn.force(turning_point)
         held = held.at[delay.law].set(menisci.formed)
         lost = lost.at[delay.law].set(taken.lost)
+        out = out._replace(path=with_menisci(outward, delay, taken))
     kept_by_tips = inward.work(turning_point) - outward.work(turning_point)
     yielding = jnp.zeros(0) if contact is None else kept_by_tips[None]
     return SingleImpact(

@@ -108,6 +108,9 @@ _work_and_loss = Program(_of_summit, AT_ONCE)
 def losses_of_bodies(inputs: Inputs, central: float, contacting: float) -> LossesOfBodies:
     """What summits take from single bodies on a rigid bulk, beside what they take in the mean.
 
+    By the law of the mean tip radius, with menisci that form at once. Infinite where summits do not
+    push back at the turning point.
+
     Parameters
     ----------
     inputs
@@ -134,8 +137,10 @@ def losses_of_bodies(inputs: Inputs, central: float, contacting: float) -> Losse
     d_work, d_loss, d_squares, _, d_both, _ = (above - below) / (2.0 * steps[2])
     dd_work, dd_loss = ((above - 2.0 * here + below) / steps[2] ** 2)[:2]
     _, lost, squares, losses_squared, both, both_slope = here
-    if not (lost > 0.0 and d_work < 0.0 and contacting > 0.0):
+    if lost == 0.0:
         return LossesOfBodies(0.0, 0.0)
+    if not (lost > 0.0 and d_work < 0.0 and touching > 0.0 and contacting > 0.0):
+        return LossesOfBodies(np.inf, np.inf)  # no turning point to expand about
     rate, shift = d_loss / d_work, squares / d_work**2  # of the turning point: its variance
     moved = -(0.5 * dd_work * shift - 0.5 * d_squares / d_work) / d_work
     excess = d_loss * moved + 0.5 * dd_loss * shift - (d_both - both_slope) / d_work
@@ -164,7 +169,7 @@ def mean_is_enough(loaded: float, losses: LossesOfBodies, kept: float, lost: flo
     """
     if loaded < LOADED_FOR_A_MEAN or abs(kept) < _SPREAD * losses.scatter * lost:
         return False
-    return kept <= 0.0 or losses.error(kept, lost) <= MOST_OFF
+    return kept <= 0.0 or abs(losses.error(kept, lost)) <= MOST_OFF
 
 
 def _intensity(inputs: Inputs, rough: Asperities, offsets: np.ndarray) -> np.ndarray:

@@ -51,8 +51,8 @@ def bodies_differ(problem: Problem, regime: Regime, central: float, motion: Moti
     left = left if np.isfinite(left) else energy - bonds
     if loaded < LOADED_FOR_A_MEAN:
         return True
-    if not bonds > 0.0:
-        return False  # nothing that scatters
+    if inputs.published is not None or not bonds > 0.0:
+        return False  # without laws of one asperity, or with nothing that scatters
     losses = losses_of_bodies(inputs, central, regime.contacting_asperities or 0.0)
     differ = not mean_is_enough(loaded, losses, left / energy, bonds / energy)
     placed = inputs.with_bodies().placement
