@@ -33,8 +33,6 @@ GAUSS = 0.5 * (np.polynomial.legendre.leggauss(POINTS)[0] + 1.0)
 SHARES = np.sin(0.5 * np.pi * GAUSS) ** 2
 """Places on a piece, as fractions of what is passed of it."""
 PACE = 0.5 * np.pi * np.sin(np.pi * GAUSS)
-
-
 _DERIVATIVE = np.pad(DERIVATIVE, ((0, 1), (0, 0)))
 
 
