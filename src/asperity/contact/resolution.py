@@ -62,21 +62,23 @@ class Resolution(NamedTuple):
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.
 
-    By the interaction range of forces and bonds over the rms height; where these are traced,
-    enough for a few rms.
+    By the interaction range of forces and bonds over the rms height, one of a few: cases that
+    differ in values run the same compiled functions. Where the lengths are traced, enough for a
+    few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         lengths = interface.panel_lengths
         finer = lengths.grain**-0.5
         return Resolution(ceil(10 * finer), 16, ceil(2 * finer), error_floor=lengths.error_floor)
     in_rms = tuple(float(length) for length in _lengths(interface))
-    return resolution_of(interface, in_rms, deforms=deforms)
+    found = resolution_of(interface, in_rms, deforms=deforms)
+    return one_of_few(found, FEW_DEFORMING if deforms else FEW_RIGID)
 
 
 def resolution_of(
     interface: RoughPlanes, lengths: tuple[float, ...], *, deforms: bool
 ) -> Resolution:
-    """The same, where the lengths of the forces are known: see :func:`lengths_in_rms`."""
+    """What the lengths of the forces ask for, see :func:`lengths_in_rms`, to a single panel."""
     panel_lengths = interface.panel_lengths
     floor = panel_lengths.error_floor
     share, kinked, interaction_range, bends = lengths
@@ -114,19 +116,20 @@ def fills_by_contact(bonds: Iterable[Law]) -> bool:
 
 
 FEW_RIGID = (
-    Resolution(7, 16, 2),
-    Resolution(14, 16, 4, 14),
-    Resolution(28, 16, 8, 28),
-    Resolution(56, 16, 16, 56),
+    Resolution(8, 16, 2),
+    Resolution(16, 16, 4, 14),
+    Resolution(32, 16, 8, 28),
+    Resolution(64, 16, 16, 56),
 )
 FEW_DEFORMING = (
+    Resolution(6, 8, 2),
     Resolution(9, 16, 3),
     Resolution(9, 16, 6),
     Resolution(18, 16, 6, 14),
     Resolution(36, 16, 12, 28),
     Resolution(72, 16, 24, 56),
 )
-"""From coarse to fine; of one case after the other."""
+"""From coarse to fine; of one case."""
 
 FEW_OF_MANY = (
     Resolution(6, 8, 1, 7),
@@ -144,12 +147,11 @@ def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
 
     Where none is, one of powers of two.
     """
-    *numbers, floor, later = found
+    numbers, others = found[:4], found[4:]
     for one in few:
-        if all(number <= most for number, most in zip(numbers, one[:-2], strict=True)):
-            return one._replace(error_floor=floor, later=later)
-    powers = Resolution(*(1 << (number - 1).bit_length() for number in numbers))
-    return powers._replace(error_floor=floor, later=later)
+        if all(number <= most for number, most in zip(numbers, one[:4], strict=True)):
+            return Resolution(*one[:4], *others)
+    return Resolution(*(1 << (number - 1).bit_length() for number in numbers), *others)
 
 
 def _shared(interaction_range: float, panels: int) -> int:

@@ -116,7 +116,10 @@ class BatchMotion:
             again = [places[:0]]
             for some in slices(places, self.steps.width):
                 here = taken(self.batch, some)
-                begun, checks = self._curves(here, self._cuts(some, factor), moving=moving)
+                # Most that are cut further are cut again: their impacts wait for curves that hold.
+                begun, checks = self._curves(
+                    here, self._cuts(some, factor), moving=moving and factor == self._refinements[0]
+                )
                 moved = self._move_out(some, here, checks)
                 again.append(some[moved])
                 some = np.where(moved, -1, some)

@@ -7,10 +7,8 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact, interaction_range_of
+from ..contact import Contact, ElasticContact, RigidContact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
-from ..contact.resolution import FEW_DEFORMING, FEW_RIGID, one_of_few
-from ..contact.rough import RoughContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
 from ..dynamics.curve_table import NO_CUTS
@@ -28,21 +26,8 @@ from .refinements import refined
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
-
-
-def cut_in_steps(problem: Problem) -> Problem:
-    """The problem with curves of one of a few resolutions, each at least as fine as its own."""
-    relaxation = problem.relaxation
-    if relaxation is not None:
-        relaxation = dataclasses.replace(relaxation, contact=_in_steps(relaxation.contact))
-    return problem._replace(contact=_in_steps(problem.contact), relaxation=relaxation)
-
-
-def _in_steps(contact: Contact) -> Contact:
-    if not isinstance(contact, RoughContact):
-        return contact
-    few = FEW_DEFORMING if isinstance(contact, ElasticContact) else FEW_RIGID
-    return dataclasses.replace(contact, resolved=one_of_few(contact.resolved, few))
+_WHERE_CURVES_ARE_CHEAP = (3, 8)
+"""As :data:`~.batch_motion.REFINEMENTS`: to compile for each takes longer than more panels do."""
 
 
 def integrate(
@@ -195,13 +180,16 @@ def _of_one(
     clock: Clock,
     *,
     many: bool,
-    refinements: tuple[int, ...] = REFINEMENTS,
+    refinements: tuple[int, ...] | None = None,
     checked: bool,
     launched: bool = False,
     drawn: bool = False,
     patience: int = PATIENCE,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
+    if refinements is None:
+        cheap = isinstance(contact, RigidContact)
+        refinements = _WHERE_CURVES_ARE_CHEAP if cheap else REFINEMENTS
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many and not problem.in_time, drawn=drawn), clock,

@@ -214,7 +214,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         batch = _batch_of_one(problem)
         tolerance, launched = problem.inputs.tolerance.relative, problem.inputs.chosen_release
         group = Group(np.asarray([row]), batch, np.asarray([tolerance]), (problem,), launched)
-        out.groups.append(_coarser(group))
+        out.groups.append(group)
 
 
 def case_at(study: Study, values: Values, row: int) -> Case:
@@ -255,13 +255,6 @@ def _lengths_of_each(interface: Any) -> Any:
 
 
 _lengths = Program(_lengths_of_each)
-
-
-def _coarser(group: Group) -> Group:
-    contact = group.batch.contact
-    if not isinstance(contact, RoughContact):
-        return group
-    return _resolved(group, one_of_few(contact.resolved, FEW_OF_MANY))
 
 
 def _resolved(group: Group, kind: Resolution) -> Group:
