@@ -147,11 +147,12 @@ def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
 
     Where none is, one of powers of two.
     """
-    numbers, others = found[:4], found[4:]
     for one in few:
-        if all(number <= most for number, most in zip(numbers, one[:4], strict=True)):
-            return Resolution(*one[:4], *others)
-    return Resolution(*(1 << (number - 1).bit_length() for number in numbers), *others)
+        if all(number <= most for number, most in zip(found[:4], one[:4], strict=True)):
+            break
+    else:
+        one = Resolution(*(1 << (number - 1).bit_length() for number in found[:4]))
+    return one._replace(error_floor=found.error_floor, later=found.later)
 
 
 def _shared(interaction_range: float, panels: int) -> int:
