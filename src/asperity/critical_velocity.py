@@ -14,7 +14,6 @@ from .dynamics.capture_edges import Edges, FirstImpacts, capture_edges, speeds_a
 from .dynamics.problem import CLEARANCE, Problem
 from .errors import SimulationError, Tolerance
 from .integration import launch
-from .integration.batch_motion import REFINEMENTS
 from .integration.batch_records import Slice
 from .results.conversion import Solution, measured
 from .results.summary import amount
@@ -75,8 +74,7 @@ class Launcher:
         As for :func:`asperity.integration.integrate`: it names the programs that are compiled
         already.
     finer
-        Factors on the panels of the curves that are tried where these are not fine enough. Each
-        is compiled anew.
+        Whether curves that are not fine enough are cut further. That is compiled anew.
     stop
         Set from another thread, it ends the search: no impact is computed after.
     """
@@ -88,7 +86,7 @@ class Launcher:
         limits: Limits,
         *,
         many: bool = False,
-        finer: tuple[int, ...] = (),
+        finer: bool = False,
         stop: threading.Event | None = None,
     ) -> None:
         contact, body = solution.contact, solution.body
@@ -99,8 +97,8 @@ class Launcher:
         )  # fmt: skip
         body = dataclasses.replace(body, release=launched)
         self._problem = problem._replace(body=body, contact=contact)
-        finer = REFINEMENTS[1:] if contact.sides > 1 else finer  # folds are steep
-        self._many, self._stop, self._refinements = many, stop, (1, *finer)
+        self._many, self._stop = many, stop
+        self._finer = finer or contact.sides > 1  # folds are steep
         self._limits = Limits.of(Tolerance(rest=float(limits.rest), max_impacts=1))
         self._curves: dict[float, Slice] = {}  # by the speed up to which they serve
 
@@ -113,8 +111,8 @@ class Launcher:
         serve = [most for most in self._curves if SLOWER * most <= speed <= most]
         try:
             solution, begun = launch(
-                problem, self._limits, LAUNCH_ERROR, self._refinements, self._stop,
-                many=self._many, faster=self._curves[min(serve)] if serve else None,
+                problem, self._limits, LAUNCH_ERROR, self._stop, many=self._many,
+                finer=self._finer, faster=self._curves[min(serve)] if serve else None,
             )  # fmt: skip
         except SimulationError:
             return _UNKNOWN
@@ -171,8 +169,8 @@ class Launcher:
         )
         found = capture_edges(self.together, *ends)[0]
         hidden = found.lost or (found.unknown and not found.speeds)
-        if hidden and self._refinements != REFINEMENTS:
-            self._refinements = REFINEMENTS
+        if hidden and not self._finer:
+            self._finer = True
             self._curves.clear()
             found = capture_edges(self.together, *ends)[0]
         if self._stop is not None and self._stop.is_set():

@@ -26,9 +26,6 @@ from .clock import Clock
 from .panel_cuts import PATIENCE, RESIDUAL, CutPanels, curve_failure
 from .steps import Steps
 
-REFINEMENTS = (1, 2, 4, 8)
-"""Times the panels, at most, one after the other, until the curves meet the tolerance."""
-
 RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
@@ -49,8 +46,8 @@ class BatchMotion:
         The compiled steps.
     clock
         Its time, reports and stop.
-    refinements
-        As :data:`REFINEMENTS`, those that are tried.
+    finer
+        Whether curves that miss the tolerance are cut further. That is compiled anew.
     checked
         Whether the cases must be released outside contact.
     launched
@@ -73,7 +70,7 @@ class BatchMotion:
         steps: Steps,
         clock: Clock,
         *,
-        refinements: tuple[int, ...] = REFINEMENTS,
+        finer: bool = True,
         checked: bool = True,
         launched: bool = False,
         patience: int = PATIENCE,
@@ -81,7 +78,8 @@ class BatchMotion:
         self.batch, self.steps, self.clock = batch, steps, clock
         self.made = np.zeros(tolerance.size, int)
         self.failures: dict[int, Exception] = {}
-        self._tolerance, self._refinements = tolerance, refinements
+        self._tolerance = tolerance
+        self._refinements = steps.refinements if finer else steps.refinements[:1]
         self._checked, self._launched, self._patience = checked, launched, patience
         self._waiting = np.arange(tolerance.size)  # for curves that are fine enough
         self._panels = [CutPanels()] * tolerance.size

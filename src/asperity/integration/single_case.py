@@ -7,7 +7,7 @@ import threading
 
 import numpy as np
 
-from ..contact import Contact, ElasticContact, RigidContact, interaction_range_of
+from ..contact import Contact, ElasticContact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
@@ -18,7 +18,7 @@ from ..dynamics.stepped_motion import integrate_stepped
 from ..dynamics.stepped_phase import Ended
 from ..errors import ENDS, InputError, Outcome, SimulationError, Tolerance
 from ..results.conversion import Solution
-from .batch_motion import REFINEMENTS, RELEASE_KEY, BatchMotion
+from .batch_motion import RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
 from .panel_cuts import PATIENCE
@@ -26,8 +26,6 @@ from .refinements import refined
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
-_WHERE_CURVES_ARE_CHEAP = (3, 8)
-"""As :data:`~.batch_motion.REFINEMENTS`: to compile for each takes longer than more panels do."""
 
 
 def integrate(
@@ -122,10 +120,10 @@ def launch(
     problem: Problem,
     limits: Limits,
     tolerance: float,
-    refinements: tuple[int, ...],
     stop: threading.Event | None,
     *,
     many: bool,
+    finer: bool,
     faster: Slice | None = None,
 ) -> tuple[Solution, Slice]:
     """The motion of a body wherever it is released, and that body with its curves at its release.
@@ -140,7 +138,7 @@ def launch(
         Ends of its motion.
     tolerance
         Relative error allowed to the force curves [-].
-    refinements
+    finer
         As for :class:`~asperity.integration.batch_motion.BatchMotion`.
     faster
         The curves of such a body, if there are any; not of a contact that yields.
@@ -150,9 +148,7 @@ def launch(
     SimulationError
         As :func:`integrate`.
     """
-    motion = _of_one(
-        problem, limits, tolerance, Clock(stop), many=many, refinements=refinements, checked=False
-    )
+    motion = _of_one(problem, limits, tolerance, Clock(stop), many=many, finer=finer, checked=False)
     here = _at_release(motion) if faster is None else _slower(faster, motion.batch)
     return _solution(problem, motion, here), here
 
@@ -180,20 +176,17 @@ def _of_one(
     clock: Clock,
     *,
     many: bool,
-    refinements: tuple[int, ...] | None = None,
+    finer: bool = True,
     checked: bool,
     launched: bool = False,
     drawn: bool = False,
     patience: int = PATIENCE,
 ) -> BatchMotion:
     contact, body = problem.contact, problem.body
-    if refinements is None:
-        cheap = isinstance(contact, RigidContact)
-        refinements = _WHERE_CURVES_ARE_CHEAP if cheap else REFINEMENTS
     return BatchMotion(
         Batch.of_one(contact, body, limits), np.array([tolerance]),
         Steps.of_one(contact, body, many=many and not problem.in_time, drawn=drawn), clock,
-        refinements=refinements, checked=checked, launched=launched, patience=patience,
+        finer=finer, checked=checked, launched=launched, patience=patience,
     )  # fmt: skip
 
 

@@ -36,6 +36,7 @@ FEW_CASES = 64
 
 _NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
 _IMPACTS = 16  # of a compiled call of a batch
+_REFINEMENTS, _FEWER_REFINEMENTS = (1, 2, 4, 8), (3, 8)
 _CHUNK, _QUICK = 20, 100  # of one case: short enough for Ctrl-C, where all is quick
 
 _FAST: Options = {"xla_cpu_multi_thread_eigen": False}
@@ -135,6 +136,9 @@ class Steps(NamedTuple):
         Whether the scanning curves are tabulated first.
     drawn
         Whether the motion of one case is measured and drawn: that is compiled meanwhile.
+    refinements
+        Times the panels, at most, one after the other, until the curves meet the tolerance. Each is
+        compiled: where curves are cheap there are two.
     """
 
     curves: Program[..., Any]
@@ -144,6 +148,7 @@ class Steps(NamedTuple):
     together: int = _IMPACTS
     tabulated: bool = True
     drawn: bool = False
+    refinements: tuple[int, ...] = _REFINEMENTS
 
     @classmethod
     def of_batch(cls, batch: Batch, cases: int, width: int | None = None) -> Steps:
@@ -157,7 +162,9 @@ class Steps(NamedTuple):
         programs = _OF_ONE
         if isinstance(contact, ElasticContact):
             programs = _ON_HALF_SPACE if many else _FEW_ON_HALF_SPACE
-        return cls(*programs, 1, _impacts_together(contact, body), many, drawn)
+        cheap = isinstance(contact, RigidContact) and not body.damped
+        finer = _FEWER_REFINEMENTS if cheap else _REFINEMENTS
+        return cls(*programs, 1, _impacts_together(contact, body), many, drawn, finer)
 
     def compile_ahead(self, batch: Batch, cuts: np.ndarray | None = None) -> None:
         """Compile for a batch of the width of a call in threads, where that is not done."""

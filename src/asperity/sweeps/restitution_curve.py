@@ -41,7 +41,6 @@ _PICTURE = "asperity.plots.restitution_plot"
 POINTS, FEWER = 61, 31
 """Speeds that are computed where none are given, besides some close to the edges of capture; and of
 a case with single bodies, a thousand for each speed."""
-_FINER = (4,)  # times as many panels where fast impacts ask for them
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -257,7 +256,7 @@ def restitution_curve(
     measures = measured(solution)
     own = float(measures.impact_speed)  # none where gas stops the body before
     own = own if np.isfinite(own) else float(measures.maximum_speed)
-    launcher = Launcher(problem, solution, limits, finer=_FINER, stop=stop)
+    launcher = Launcher(problem, solution, limits, finer=True, stop=stop)
     report(0.3, "critical velocity")
     found = critical_measures(launcher.edges(solution))
     if speeds is None:

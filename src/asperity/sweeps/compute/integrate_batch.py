@@ -9,7 +9,7 @@ import numpy as np
 from asperity._jax import jax
 from asperity.contact import ElasticContact
 from asperity.dynamics import Body
-from asperity.integration.batch_motion import REFINEMENTS, BatchMotion
+from asperity.integration.batch_motion import BatchMotion
 from asperity.integration.batch_records import ImpactRows, slices, taken
 from asperity.integration.clock import Clock
 from asperity.integration.panel_cuts import PATIENCE, Left
@@ -77,12 +77,11 @@ def integrate_batch(
         Cases of a compiled call; without it, what suits the group.
     """
     steps = Steps.of_batch(group.batch, group.rows.size, width)
-    refinements = REFINEMENTS if checked else REFINEMENTS[:1]
     # One that may jump is solved by itself, as a single run does it.
     patience = 0 if checked and type(group.batch.contact) is ElasticContact else PATIENCE
     motions = BatchMotion(
         group.batch, group.tolerance, steps, clock,
-        refinements=refinements, checked=checked, launched=group.launched, patience=patience,
+        finer=checked, checked=checked, launched=group.launched, patience=patience,
     )  # fmt: skip
     motions.integrate()
     return _solution(motions)
