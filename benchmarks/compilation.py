@@ -93,7 +93,7 @@ def _answer(asked: str, way: str) -> Callable[[], Any]:
     """What is timed."""
     import asperity
     from asperity.config.resolve import resolve
-    from asperity.integration import integrate, silently
+    from asperity.integration import cut_in_steps, integrate, silently
     from asperity.model import build
     from asperity.results.case_source import case_of
     from asperity.sweeps.compute.batch import compute
@@ -106,7 +106,7 @@ def _answer(asked: str, way: str) -> Callable[[], Any]:
         return lambda: compute(study, 0)
     if asked.startswith("solve"):
         return lambda: asperity.solve(asked.split()[1])
-    problem = build(resolve(case_of(asked)))
+    problem = cut_in_steps(build(resolve(case_of(asked))))
     return lambda: integrate(problem, silently, None, many=way == "tabulated")
 
 

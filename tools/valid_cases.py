@@ -23,6 +23,8 @@ BALANCE = 1e-5
 LIMIT = 60.0
 """Time [s] after which a case counts as too slow."""
 
+_TOGETHER = 10  # cases of one process: it keeps what it has compiled
+
 _LIQUID = ("equilibrium", "constant-volume", "kelvin-filling")
 _LAWS = ("none", "bradley", "dmt", "maugis", "jkr", "auto", "lennard-jones")
 _GASES = ("air", "nitrogen", "argon", "carbon dioxide")
@@ -243,9 +245,10 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=2)
     asked = parser.parse_args()
     jobs = [(asked.seed, asked.first + k) for k in range(asked.count)]
+    jobs.sort(key=lambda job: structure_of(drawn(*job)))  # they share what is compiled
     all_found = []
-    with multiprocessing.get_context("spawn").Pool(asked.processes, maxtasksperchild=10) as pool:
-        for one in pool.imap_unordered(_found, jobs):
+    with multiprocessing.get_context("spawn").Pool(asked.processes, maxtasksperchild=1) as pool:
+        for one in pool.imap_unordered(_found, jobs, chunksize=_TOGETHER):
             all_found.append(one)
             if one.end != "answered":
                 words = f"{one.end}: {one.words}"

@@ -15,7 +15,7 @@ from .dynamics.problem import Problem
 from .dynamics.quasi_static import quasi_static_curve
 from .errors import InputError, Outcome, SimulationError
 from .inputs import Inputs
-from .integration import Report, first_impact, integrate, silently
+from .integration import Report, cut_in_steps, first_impact, integrate, silently
 from .loading import turning_at
 from .model import build
 from .regimes.few_asperities import pull_warnings
@@ -98,6 +98,9 @@ def explore(
 ) -> tuple[Result, Curve]:
     """Motion and force curve of a case, from the same tables: what somebody sees at a glance.
 
+    Half-spaces are cut in one of a few ways, each at least as fine as :func:`solve` cuts them, so
+    that cases that differ in values run the same programs.
+
     Parameters
     ----------
     case, name, progress, stop
@@ -112,7 +115,7 @@ def explore(
         As :func:`solve`.
     """
     _ = case.launch
-    report, problem = progress or silently, build(resolve(case))
+    report, problem = progress or silently, cut_in_steps(build(resolve(case)))
     solution = integrate(problem, report, stop, many=True)
     result = _result(case, name, problem, solution, report, stop, most)
     if solution.outcome is Outcome.FAILED:
@@ -150,7 +153,7 @@ def critical_velocity(
     """
     _ = case.launch
     inputs = resolve(case).one_impact()
-    report, problem = progress or silently, build(inputs)
+    report, problem = progress or silently, cut_in_steps(build(inputs))
     solution = integrate(problem, report, stop, many=True)
     return sought(solution, problem, Limits.of(inputs.tolerance), stop, many=True)
 

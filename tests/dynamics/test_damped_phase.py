@@ -12,6 +12,7 @@ from asperity.dynamics import simulate
 from asperity.dynamics.gas_film import SqueezeFilm
 from asperity.errors import ENDS, Outcome, Tolerance
 from asperity.integration import integrate
+from asperity.integration.single_case import cut_in_steps
 from asperity.model import build
 from asperity.results.conversion import measured
 from in_time import next_turn
@@ -35,7 +36,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def problem(case):
-    return build(resolve(case))
+    return cut_in_steps(build(resolve(case)))
 
 
 def in_gas(problem, viscosity, slip, release=60e-9):

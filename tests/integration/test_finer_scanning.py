@@ -11,7 +11,7 @@ from asperity.config.resolve import resolve
 from asperity.errors import Outcome, SimulationError
 from asperity.integration import refinements
 from asperity.integration.finer_scanning import balanced, with_finer_scanning
-from asperity.integration.single_case import integrate
+from asperity.integration.single_case import cut_in_steps, integrate
 from asperity.model import build
 from asperity.regimes.accuracy import CLOSED, balance_error
 from records import never_goes_back
@@ -45,7 +45,7 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
     monkeypatch,
 ):
     """Bonds stretch by 1/20 of the rms height; the innermost pass between branches over 50."""
-    problem = build(resolve(SOFT))
+    problem = cut_in_steps(build(resolve(SOFT)))
     runs, told = [], []
 
     def recorded(problem, run, report):
@@ -118,7 +118,7 @@ WET = case(
 
 @pytest.mark.long
 def test_menisci_that_stretch_far_are_read_on_as_many_pieces_as_their_force_bends():
-    problem = build(resolve(WET))
+    problem = cut_in_steps(build(resolve(WET)))
     found = integrate(problem, drawn=False)
     resolved = found.contact.resolved
     assert resolved.pieces - resolved.later == 4 * problem.contact.resolved.pieces
@@ -130,6 +130,6 @@ def test_menisci_that_stay_bonded_ask_for_finer_scanning_curves_too():
     """They lose nothing, and curves on even pieces miss 7e-4; what is left is the table's."""
     drawn_case = drawn(401, 21)
     drawn_case.pop("waves")
-    found = integrate(build(resolve(load(text_of(drawn_case)))), drawn=False)
+    found = integrate(cut_in_steps(build(resolve(load(text_of(drawn_case))))), drawn=False)
     assert found.contact.resolved.later > 0
     assert balance_error(found.motion) < 3e-6

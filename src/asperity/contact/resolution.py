@@ -58,13 +58,27 @@ class Resolution(NamedTuple):
     error_floor: float = 0.0
     later: int = 0
 
+    def rounded(self) -> Resolution:
+        """At least as fine, in numbers that few cases differ in: each is compiled."""
+        return self._replace(
+            panels=_doubled(self.panels),
+            nodes=max(self.nodes, 16),
+            pieces=max(1 << (self.pieces - 1).bit_length(), 2),
+            shared=_doubled(self.shared),
+        )
+
+
+def _doubled(count: int) -> int:
+    """The least of 7, 14, 28, ... that is not below a count."""
+    return EVEN << (-(-count // EVEN) - 1).bit_length()
+
 
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
     """More than the ledger needs to close to 1e-6 of the impact energy.
 
-    By the interaction range of forces and bonds over the rms height, one of a few: cases that
-    differ in values run the same compiled functions. Where the lengths are traced, enough for a
-    few rms.
+    By the interaction range of forces and bonds over the rms height. On a rigid bulk, where curves
+    are cheap, one of a few: cases that differ in values run the same compiled functions. Where the
+    lengths are traced, enough for a few rms.
     """
     if any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree_util.tree_leaves(interface)):
         lengths = interface.panel_lengths
@@ -72,7 +86,7 @@ def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
         return Resolution(ceil(10 * finer), 16, ceil(2 * finer), error_floor=lengths.error_floor)
     in_rms = tuple(float(length) for length in _lengths(interface))
     found = resolution_of(interface, in_rms, deforms=deforms)
-    return one_of_few(found, FEW_DEFORMING if deforms else FEW_RIGID)
+    return found if deforms else found.rounded()
 
 
 def resolution_of(
@@ -115,21 +129,14 @@ def fills_by_contact(bonds: Iterable[Law]) -> bool:
     return any(isinstance(law, KelvinFilling) for law in bonds)
 
 
-FEW_RIGID = (
-    Resolution(8, 16, 2),
-    Resolution(16, 16, 4, 14),
-    Resolution(32, 16, 8, 28),
-    Resolution(64, 16, 16, 56),
-)
 FEW_DEFORMING = (
-    Resolution(6, 8, 2),
     Resolution(9, 16, 3),
     Resolution(9, 16, 6),
     Resolution(18, 16, 6, 14),
     Resolution(36, 16, 12, 28),
     Resolution(72, 16, 24, 56),
 )
-"""From coarse to fine; of one case."""
+"""From coarse to fine; of one case after the other on a half-space."""
 
 FEW_OF_MANY = (
     Resolution(6, 8, 1, 7),

@@ -17,7 +17,7 @@ from .record import Body, Impacts, Motion, Phase, Progress
 
 _ROWS = 256  # of impacts at least: more than most motions have
 _BRANCHES, _LAWS = 2, 3  # at least, and in multiples
-_PANELS, _PIECES = 8, 2  # at least, and doubled as often as needed
+_PANELS, _PIECES = 32, 4  # at least, and doubled as often as needed
 
 
 def without_curves(motion: Motion) -> Motion:

@@ -98,7 +98,8 @@ def _phases(body: Body, table: Table, rows: Impacts, *, unloading: bool) -> tupl
         drawn = damped_series.draw(body, table, phases, jax.device_put(np.asarray(unloading)))
     else:
         ended = np.asarray(rows.apex_time if unloading else rows.closest_approach_time)
-        places = 1 + 2 * SAMPLES // table.ends.shape[0]  # on each piece, besides those at its turns
+        panels = np.unique(np.asarray(table.ends)).size  # but for empty ones
+        places = 1 + 2 * SAMPLES // panels  # on each piece, besides those at its turns
         drawn = free_series.draw(body, table, phases, ended, places, unloading=unloading)
     time, separation, speed, values, dissipated, drag, keep = drawn
     bonds = np.asarray(values)[..., Quantities(phases.bonds.shape[1], 0).bonds]

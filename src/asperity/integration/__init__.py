@@ -11,11 +11,12 @@ energies do not add up.
 
 from .clock import COMPILATION, Report, silently
 from .jumping import over_folds
-from .single_case import first_impact, integrate, launch, prepared
+from .single_case import cut_in_steps, first_impact, integrate, launch, prepared
 
 __all__ = [
     "COMPILATION",
     "Report",
+    "cut_in_steps",
     "first_impact",
     "integrate",
     "launch",

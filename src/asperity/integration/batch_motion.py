@@ -30,7 +30,6 @@ RELEASE_KEY = "impact.release_separation"
 """The key of a release that lies inside contact."""
 
 _FAR_WITHIN = 10.0  # times the force allowed at a release: coarse curves are closer than that
-_LEAST = 4  # panels that count as one time, where a contact has fewer
 
 
 class BatchMotion:
@@ -148,7 +147,7 @@ class BatchMotion:
         return np.stack([self._panels[k].padded(count) for k in cases.tolist()])
 
     def _most_cuts(self, factor: int) -> int:
-        return (factor - 1) * max(self.batch.contact.resolved.panels, _LEAST)
+        return self.steps.most_cuts(self.batch.contact, factor)
 
     def _are_fine(
         self, places: np.ndarray, here: Batch, checks: Checks, factor: int

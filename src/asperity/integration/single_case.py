@@ -9,9 +9,9 @@ import numpy as np
 
 from ..contact import Contact, ElasticContact, interaction_range_of
 from ..contact.delayed_formation import DelayedContact
+from ..contact.resolution import FEW_DEFORMING, one_of_few
 from ..contact.viscoelastic import Relaxation
 from ..dynamics import Body, Limits, Motion, Table
-from ..dynamics.curve_table import NO_CUTS
 from ..dynamics.problem import CLEARANCE, Problem
 from ..dynamics.static_equilibrium import Reference
 from ..dynamics.stepped_motion import integrate_stepped
@@ -21,11 +21,25 @@ from ..results.conversion import Solution
 from .batch_motion import RELEASE_KEY, BatchMotion
 from .batch_records import Batch, Slice, unbatched, whole
 from .clock import Clock, Report, Stopped, silently
-from .panel_cuts import PATIENCE
+from .panel_cuts import PATIENCE, CutPanels
 from .refinements import refined
 from .steps import Steps
 
 _STOPPED = "stopped before the first impact"
+
+
+def cut_in_steps(problem: Problem) -> Problem:
+    """The problem with curves of one of a few resolutions, each at least as fine as its own."""
+    relaxation = problem.relaxation
+    if relaxation is not None:
+        relaxation = dataclasses.replace(relaxation, contact=_in_steps(relaxation.contact))
+    return problem._replace(contact=_in_steps(problem.contact), relaxation=relaxation)
+
+
+def _in_steps(contact: Contact) -> Contact:
+    if not isinstance(contact, ElasticContact):
+        return contact
+    return dataclasses.replace(contact, resolved=one_of_few(contact.resolved, FEW_DEFORMING))
 
 
 def integrate(
@@ -165,7 +179,8 @@ def prepared(contact: Contact, body: Body, *, many: bool = False) -> tuple[Table
     """
     steps = Steps.of_one(contact, body, many=many)
     here = Batch.of_one(contact, body, Limits.of(Tolerance()))
-    begun, _checks = unbatched(steps.curves(here, NO_CUTS[None], many))
+    cuts = CutPanels().padded(steps.most_cuts(contact, steps.refinements[0]))
+    begun, _checks = unbatched(steps.curves(here, cuts[None], many))
     return begun.table, begun.reference
 
 

@@ -36,6 +36,7 @@ FEW_CASES = 64
 
 _NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
 _IMPACTS = 16  # of a compiled call of a batch
+_LEAST = 4  # panels that count as one time, where a contact has fewer
 _REFINEMENTS, _FEWER_REFINEMENTS = (1, 2, 4, 8), (3, 8)
 _CHUNK, _QUICK = 20, 100  # of one case: short enough for Ctrl-C, where all is quick
 
@@ -165,6 +166,10 @@ class Steps(NamedTuple):
         cheap = isinstance(contact, RigidContact) and not body.damped
         finer = _FEWER_REFINEMENTS if cheap else _REFINEMENTS
         return cls(*programs, 1, _impacts_together(contact, body), many, drawn, finer)
+
+    def most_cuts(self, contact: Contact, factor: int) -> int:
+        """Number of cuts in the panels of a contact's curves at one of the refinements."""
+        return (factor - 1) * max(contact.resolved.panels, _LEAST)
 
     def compile_ahead(self, batch: Batch, cuts: np.ndarray | None = None) -> None:
         """Compile for a batch of the width of a call in threads, where that is not done."""

@@ -49,10 +49,10 @@ def bodies_differ(problem: Problem, regime: Regime, central: float, motion: Moti
     potential = problem.body.plain.load.potential(closest)
     left = float(impacts.leaving[0]) - float(potential)
     left = left if np.isfinite(left) else energy - bonds
-    if loaded < LOADED_FOR_A_MEAN:
-        return True
     if inputs.published is not None or not bonds > 0.0:
-        return False  # without laws of one asperity, or with nothing that scatters
+        # Without laws of one asperity, or with nothing that scatters.
+        return loaded < LOADED_FOR_A_MEAN
+    # Where few carry the load too: then no case that a slider moves to compiles it.
     losses = losses_of_bodies(inputs, central, regime.contacting_asperities or 0.0)
     differ = not mean_is_enough(loaded, losses, left / energy, bonds / energy)
     placed = inputs.with_bodies().placement

@@ -214,7 +214,7 @@ def _each(study: Study, values: Values, rows: np.ndarray, out: Built) -> None:
         batch = _batch_of_one(problem)
         tolerance, launched = problem.inputs.tolerance.relative, problem.inputs.chosen_release
         group = Group(np.asarray([row]), batch, np.asarray([tolerance]), (problem,), launched)
-        out.groups.append(group)
+        out.groups.extend(_by_resolution(group))
 
 
 def case_at(study: Study, values: Values, row: int) -> Case:
