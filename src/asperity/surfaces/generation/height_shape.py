@@ -50,9 +50,9 @@ def standard_heights(shape: tuple[float, float] | np.ndarray, count: int) -> np.
         return _measured(shape, count)
     asked = _checked_pair(shape)
     scores = special.ndtri((np.arange(count) + 0.5) / count)
-    tried = asked
+    tried, heavy = asked, _above_lognormal(*asked.tolist())
     for _ in range(60):
-        heights = _of_moments(tried, scores)
+        heights = _of_moments(tried, scores, heavy=heavy)
         error = asked - (stats.skew(heights), stats.kurtosis(heights, fisher=False))
         if abs(error).max() <= _CLOSE * asked[1]:
             return heights
@@ -101,9 +101,9 @@ def _standard(heights: np.ndarray) -> np.ndarray:
     return (heights - heights.mean()) / heights.std()
 
 
-def _of_moments(pair: np.ndarray, scores: np.ndarray) -> np.ndarray:
+def _of_moments(pair: np.ndarray, scores: np.ndarray, *, heavy: bool) -> np.ndarray:
     """Heights at standard normal scores (ascending, symmetric) of a distribution with a pair."""
-    law = _law(abs(float(pair[0])), float(pair[1]))
+    law = _law(abs(float(pair[0])), float(pair[1]), heavy=heavy)
     nodes = np.linspace(scores[0], scores[-1], _NODES)
     low = law.ppf(special.ndtr(nodes[nodes <= 0.0]))
     high = law.isf(special.ndtr(-nodes[nodes > 0.0]))
@@ -111,21 +111,29 @@ def _of_moments(pair: np.ndarray, scores: np.ndarray) -> np.ndarray:
     return _standard(heights if pair[0] >= 0.0 else -heights[::-1])
 
 
-def _law(skewness: float, kurtosis: float) -> Any:
+def _above_lognormal(skewness: float, kurtosis: float) -> bool:
+    """Whether a kurtosis is above that of the lognormal distribution with a skewness."""
+    spread = _lognormal_spread(kurtosis)
+    return (spread - 1.0) * (spread + 2.0) ** 2 > skewness**2
+
+
+def _law(skewness: float, kurtosis: float, *, heavy: bool) -> Any:
     """A distribution with a skewness of no negative sign and a kurtosis.
 
     Pearson's types I and VI, Elderton and Johnson, Systems of frequency curves (1969); Johnson's
-    SU above the lognormal line.
+    SU above the lognormal line. Where tails are cut off both differ: near that line the second
+    stands for pairs with ``heavy`` tails alone, so that nothing jumps between pairs.
     """
     square = skewness**2
     distance = 6.0 + 3.0 * square - 2.0 * kurtosis
     if abs(distance) < 1e-6 * kurtosis:
         return stats.pearson3(skewness)
-    spread = _lognormal_spread(kurtosis)
-    if distance < 0.0 and (spread - 1.0) * (spread + 2.0) ** 2 > square:
-        return _johnson(square, kurtosis, spread)
     r = 6.0 * (kurtosis - square - 1.0) / distance
-    root = sqrt(square / (square * (r + 2.0) ** 2 + 16.0 * (r + 1.0)))
+    real = square * (r + 2.0) ** 2 + 16.0 * (r + 1.0)
+    above = distance < 0.0 and _above_lognormal(skewness, kurtosis)
+    if above and (heavy or real <= 0.0):
+        return _johnson(square, kurtosis, _lognormal_spread(kurtosis))
+    root = sqrt(square / real)
     less, more = (0.5 * r * (1.0 + sign * (r + 2.0) * root) for sign in (-1.0, 1.0))
     if distance > 0.0:
         return stats.beta(less, more)
