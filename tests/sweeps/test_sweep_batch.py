@@ -112,11 +112,10 @@ def test_cases_side_by_side_are_the_cases_one_by_one(name):
             assert columns[key][number] == pytest.approx(expected, rel=close, nan_ok=True), key
         for key in EACH:
             expected = (plain(result.measures[key]) + 3 * [np.nan])[:3]
-            # A decrement and a power are differences of energies. The scanning curves of a study
-            # have fewer nodes than those of a single run: it knows them to 1e-10.
+            # A decrement and a power are differences of energies that are known to 1e-12.
             period = result.measures["rebound_period"][0]
             power = result.ledger["initial"] / (1.0 if period is None else period)
-            floor = {"power_loss": 1e-10 * power, "log_decrement": 1e-10}.get(key, 0.0)
+            floor = {"power_loss": 1e-11 * power, "log_decrement": 1e-11}.get(key, 0.0)
             close = {"rel": 1e-7, "abs": floor}
             assert columns[key][number].tolist() == pytest.approx(expected, nan_ok=True, **close)
         assert columns["captured"][number] == int(result.measures["captured"])

@@ -139,9 +139,7 @@ FEW_DEFORMING = (
 """From coarse to fine; of one case after the other on a half-space."""
 
 FEW_OF_MANY = (
-    Resolution(6, 8, 1, 7),
     Resolution(8, 16, 1, 7),
-    Resolution(8, 8, 2, 7),
     Resolution(16, 16, 2, 14),
     Resolution(32, 16, 4, 28),
     Resolution(64, 16, 8, 56),
