@@ -25,6 +25,7 @@ _NEAR = 20.0  # rms, up to which kinks count evenly
 _LONGER = 4.0  # times, that panels are beyond
 _HEIGHTS = 17.2  # rms between the lowest and the highest
 _PIECE = 6.4  # rms of a quadrature's piece
+_MOST_SHARED = 16 * EVEN  # as many as 16 places have that share none
 
 
 class Resolution(NamedTuple):
@@ -69,8 +70,8 @@ class Resolution(NamedTuple):
 
 
 def _doubled(count: int) -> int:
-    """The least of 7, 14, 28, ... that is not below a count."""
-    return EVEN << (-(-count // EVEN) - 1).bit_length()
+    """The least of 7, 14, 28, ... that is not below a count; 0 of 0."""
+    return EVEN << (-(-count // EVEN) - 1).bit_length() if count else 0
 
 
 def resolution(interface: RoughPlanes, *, deforms: bool) -> Resolution:
@@ -111,6 +112,7 @@ def resolution_of(
         # One more where a law bends (Maugis and Dugdale's), which else misses 1e-8 at first.
         panels = ceil(length / panel_lengths.panel) + (bends > 0.0)
         shared = _shared(interaction_range, panels)
+        shared = shared if shared <= _MOST_SHARED else 0
         return Resolution(panels, max(nodes, 8), pieces, shared, error_floor=floor)
     # Rings that lag behind have pieces of their own, where what they hold counts for much: where
     # bonds stretch over several rms, their forces change while contact opens from its edge inwards.
@@ -157,7 +159,8 @@ def one_of_few(found: Resolution, few: tuple[Resolution, ...]) -> Resolution:
             break
     else:
         one = Resolution(*(1 << (number - 1).bit_length() for number in found[:4]))
-    return one._replace(error_floor=found.error_floor, later=found.later)
+    shared = one.shared if found.shared else 0
+    return one._replace(shared=shared, error_floor=found.error_floor, later=found.later)
 
 
 def _shared(interaction_range: float, panels: int) -> int:

@@ -17,6 +17,10 @@ where places within 27 rms of one another share them, which is good to 1e-9."""
 
 _STEPS = 4  # of a ladder, in geometric progression from a quarter of the law's length
 _NO_KINKS = np.zeros(0)
+_OUTWARDS = 2.0 ** np.concatenate([np.arange(-2.0, 8.0), np.arange(9.0, 61.0, 2.0)])
+"""Ends of pieces over a law's length: energies that fall with the gap alone add up to no limit, and
+a body that bounces by metres is within them."""
+
 _HALVES = 2  # pieces of the gaps between the edges of places near one another
 
 
@@ -245,6 +249,6 @@ def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.A
     known = law.energy_beyond(start)
     if known is not None:
         return known
-    doubled = shortest * 2.0 ** np.arange(-2.0, 34.0)
-    gap, weight = points(jnp.sort(jnp.maximum(jnp.append(_kinks(law), doubled), start)))
+    ladder = jnp.append(_kinks(law), shortest * _OUTWARDS)
+    gap, weight = points(jnp.sort(jnp.maximum(ladder, start)))
     return jnp.sum(weight * law.energy(gap))

@@ -13,6 +13,7 @@ from .lennard_jones_equilibria import (
     GAP,
     Equilibria,
     Folds,
+    energy_beyond,
     equilibria,
     largest_gap,
     smallest_gap,
@@ -112,6 +113,16 @@ class LennardJones(Law):
         outer, inner = self._at(self.spacing * jumps)
         drop = (outer.energy - inner.energy) * np.array([1.0, -1.0])
         return jnp.where(folds.some, drop, 0.0)
+
+    def energy_beyond(self, gap: jax.Array) -> jax.Array:
+        """As Bradley's, which it is where the bodies hardly deform each other."""
+        (path, folds), last = self._solved, largest_gap()
+        reduced = gap / self.spacing + 1.0
+        near = jnp.clip(reduced, folds.inwards[GAP], last)
+        unit = self.work_of_adhesion * self.radius * self.spacing**2
+        rigid = Bradley(self.radius, self.work_of_adhesion, self.spacing)
+        beyond = rigid.energy_beyond(self.spacing * (jnp.maximum(reduced, last) - 1.0))
+        return unit * energy_beyond(near, path, folds) + beyond
 
     @property
     def _solved(self) -> tuple[Equilibria, Folds]:

@@ -97,6 +97,34 @@ class Equilibria(NamedTuple):
         return at
 
 
+    def energy_over_gaps(self, measure: jax.Array) -> jax.Array:
+        """Integral of the energy over the gap, from a measure outwards to the path's begin.
+
+        Exact for the polynomials of a panel.
+        """
+        ends = jnp.asarray(MEASURES)
+        panel = jnp.clip(jnp.searchsorted(ends, measure) - 1, 0, len(MEASURES) - 2)
+        whole = self._energy_on_panels(jnp.arange(len(MEASURES) - 1), ends[1:])
+        before = jnp.append(0.0, jnp.cumsum(whole))
+        return before[panel] + self._energy_on_panels(panel, measure)
+
+    def _energy_on_panels(self, panel: jax.Array, measure: jax.Array) -> jax.Array:
+        """From the begin of each one's panel to a measure on it."""
+        low = jnp.asarray(MEASURES)[panel]
+        node, weight = (x.reshape(-1, *(1,) * panel.ndim) for x in _ON_PANEL)
+        places = low + (measure - low) * node
+        energy, slope = self._rows(places, (_ENERGY, 4 + GAP))(places)
+        return -(measure - low) * jnp.sum(weight * energy * slope, axis=0)
+
+
+def _nodes_on_panel() -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights on [0, 1] that integrate the product of a row and a slope exactly."""
+    node, weight = np.polynomial.legendre.leggauss(NODES)
+    return 0.5 * (node + 1.0), 0.5 * weight
+
+
+_ON_PANEL = _nodes_on_panel()
+
 _SLOPE = np.array([np.polynomial.chebyshev.chebder(row) for row in np.eye(NODES)]).T
 """From coefficients to those of the slope with x, one fewer."""
 
@@ -264,6 +292,17 @@ def solved(log_tabor: jax.Array) -> tuple[Equilibria, Folds]:
     """All equilibria at one Tabor number, and where their path folds."""
     path = _path_at(log_tabor)
     return path, _folds_of(path)
+
+
+def energy_beyond(gap: jax.Array, path: Equilibria, folds: Folds) -> jax.Array:
+    """Integral of the energy over gaps from some of the outer branch to the largest."""
+    here = jnp.stack([gap, jnp.full_like(gap, largest_gap())])
+    places = jax.lax.stop_gradient(_measures_at(jnp.stack([here, here]), path, folds)[0])
+    missed, slopes = (x - y for x, y in zip(path.gap(places), (here, 0.0), strict=True))
+    regular = slopes < -1e-9
+    along = places - jnp.where(regular, missed / jnp.where(regular, slopes, 1.0), 0.0)
+    until_gap, until_largest = path.energy_over_gaps(along)
+    return until_gap - until_largest
 
 
 @jax.custom_jvp
