@@ -117,7 +117,7 @@ def test_curves_are_made_deeper_until_the_body_stays_within_them(monkeypatch):
         return left(0.0, 1.0, problem.contact, outcome=Outcome.REST if stays else Outcome.FAILED)
 
     assert refined(SOFT, run, None).outcome is Outcome.REST
-    assert drawn == [None, 1.0, 2.0]
+    assert drawn == [0.0, 1.0, 2.0]
 
 
 @pytest.mark.long

@@ -12,7 +12,7 @@ from ..halfspace import ring_mesh, rings_of_mesh
 from ..interface.branch_pressure import BranchPressure
 from ..interface.rough_planes import Memory as Thresholds
 from ..interface.rough_planes import RoughPlanes
-from ..laws.law import Real, quantity_or_none
+from ..laws.law import Real, quantity
 from ..numerics.trees import zeros_of
 from .contact import Held, Potential, ReversalSampling, ScanningCurve, State
 from .continuation import (
@@ -52,7 +52,7 @@ class ElasticContact(DeformingContact):
         branch.
     drawn
         Energy [J] that attraction adds to what a body brings, where its curves must reach deeper
-        for that; None, and no such energy, without it.
+        for that; else 0.
 
     Notes
     -----
@@ -61,7 +61,7 @@ class ElasticContact(DeformingContact):
     (the publication's eqs. 18-20, axisymmetric). Beyond the mesh the body is rigid.
     """
 
-    drawn: Real | None = quantity_or_none()
+    drawn: Real = quantity()
 
     def __init__(
         self,
@@ -70,7 +70,7 @@ class ElasticContact(DeformingContact):
         modulus: Real,
         rings: int = 80,
         resolved: Resolution | None = None,
-        drawn: Real | None = None,
+        drawn: Real = 0.0,
     ) -> None:
         self.interface = interface
         self.shape = shape
@@ -263,7 +263,7 @@ class ElasticContact(DeformingContact):
         """The rigid contact's, less the depth at which Hertz stores the energy alone."""
         lowest = self.rigid.lower_bound(release, kinetic, potential)
         fall = jnp.maximum(kinetic + potential(release) - potential(lowest), 0.0)
-        fall = fall if self.drawn is None else fall + self.drawn
+        fall = fall + self.drawn
         depth = (15.0 / 8.0 * fall / (self.modulus * jnp.sqrt(self.shape.radius))) ** 0.4
         # The deeper fall through that depth feeds it once more.
         fall = fall + potential(lowest) - potential(lowest - depth)

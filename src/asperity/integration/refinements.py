@@ -109,8 +109,8 @@ def with_deeper_curves(found: Solution) -> ElasticContact | None:
     left = bool(rows.closest_approach[0] <= found.motion.table.ends[0])
     if found.outcome is not Outcome.FAILED or not left:
         return None
-    before = 0.0 if contact.drawn is None else float(contact.drawn)
-    return dataclasses.replace(contact, drawn=max(float(rows.maximum_kinetic[0]), 2.0 * before))
+    drawn = max(float(rows.maximum_kinetic[0]), 2.0 * float(contact.drawn))
+    return dataclasses.replace(contact, drawn=drawn)
 
 
 def _place_by_place(problem: Problem) -> Problem | None:

@@ -37,7 +37,8 @@ FEW_CASES = 64
 _NARROW = 32  # width of a call for few cases, most of which would be empty in a wide one
 _IMPACTS = 16  # of a compiled call of a batch
 _LEAST = 4  # panels that count as one time, where a contact has fewer
-_REFINEMENTS, _FEWER_REFINEMENTS = (1, 2, 4, 8), (3, 8)
+_REFINEMENTS = (1, 2, 4, 8)
+_OF_A_RUN, _OF_A_CHEAP_RUN = (2, 8), (3, 8)
 _CHUNK, _QUICK = 20, 100  # of one case: short enough for Ctrl-C, where all is quick
 
 _FAST: Options = {"xla_cpu_multi_thread_eigen": False}
@@ -164,7 +165,7 @@ class Steps(NamedTuple):
         if isinstance(contact, ElasticContact):
             programs = _ON_HALF_SPACE if many else _FEW_ON_HALF_SPACE
         cheap = isinstance(contact, RigidContact) and not body.damped
-        finer = _FEWER_REFINEMENTS if cheap else _REFINEMENTS
+        finer = _OF_A_CHEAP_RUN if cheap else _REFINEMENTS if many else _OF_A_RUN
         return cls(*programs, 1, _impacts_together(contact, body), many, drawn, finer)
 
     def most_cuts(self, contact: Contact, factor: int) -> int:
