@@ -94,6 +94,23 @@ def test_a_search_in_vain_leaves_the_curves_their_turn_and_else_gives_its_reason
         jumping.over_folds(SOFT, Runs([SOFT]))
 
 
+@pytest.mark.parametrize(
+    ("relaxation", "key", "why"),
+    [
+        ("creeps", "viscoelasticity.relaxed_modulus_ratio", "the bulk once it has relaxed"),
+        (None, "capillary.formation_time", "menisci take time to form"),
+    ],
+)
+def test_a_body_that_is_stepped_in_time_is_refused_where_it_would_jump(relaxation, key, why):
+    soft = SimpleNamespace(contact=SOFT.contact, in_time=True, relaxation=relaxation)
+    runs = Runs([])
+    assert jumping.over_folds(soft, runs) == "answer"
+    assert runs.asked == [(soft, PATIENCE)]
+    with pytest.raises(InputError, match=why) as raised:
+        jumping.over_folds(soft, Runs([soft]))
+    assert raised.value.key == key
+
+
 def test_a_run_without_folds_says_what_it_lacks(monkeypatch):
     monkeypatch.setattr(jumping, "jumping", lambda one: one)
     with pytest.raises(Unsolved, match="no equilibrium"):

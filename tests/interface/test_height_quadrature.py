@@ -10,7 +10,7 @@ from asperity.contact import RigidContact
 from asperity.contact.profile import Sphere
 from asperity.interface.height_quadrature import Near
 from asperity.interface.interface import Interface
-from asperity.laws import Bradley, ConstantVolume, Jkr, Maugis
+from asperity.laws import Bradley, ConstantVolume, Jkr, LennardJones, Maugis
 from asperity.surfaces.heights import Gaussian
 from chosen import long_but
 
@@ -73,6 +73,8 @@ def found(interface, memory, rows, shared):
         return jnp.stack([jnp.sum(means.parts, axis=0), means.energy], axis=-1)
 
     alone = jax.vmap(jax.vmap(lambda d: of(d[None], None)[0]))(rows)
+    if not shared:
+        return alone, alone
     return alone, jax.vmap(lambda row: of(row, Near(level=True, pieces=shared)))(rows)
 
 
@@ -108,3 +110,32 @@ def test_a_paraboloid_however_deep_or_far(name):
                 alone, together = (np.max(x[..., columns]) for x in off)
                 assert alone < 1e-7
                 assert together < limit
+
+
+class Unintegrated(Bradley):
+    """A law whose energy falls like 1/gap, and has no closed integral."""
+
+    def energy_beyond(self, gap):
+        return None
+
+
+@pytest.mark.parametrize(
+    "law",
+    [LennardJones(TIP, E, W, 3e-10), Bradley(TIP, W, 3e-10), Unintegrated(TIP, W, 3e-10)],
+    ids=["Lennard-Jones", "Bradley", "by quadrature"],
+)
+def test_energies_of_low_asperities_add_up_metres_away(law):
+    """A body may bounce so high; its attraction ends nowhere. The zero of energy was at 1.5 m."""
+    interface = Interface(law, Gaussian(0.1e-9), 1.0)
+    memory = tuple(jnp.asarray(jnp.inf) for _ in interface.hysteretic)
+
+    @jax.jit
+    def slope_and_force(place):
+        def stored(d):
+            return interface.measure(d, memory, 1).energy
+
+        return jax.grad(stored)(place), jnp.sum(interface.measure(place, memory, 1).parts)
+
+    for place in (1e-8, 1e-6, 1e-3, 1.0, 3.0):
+        slope, force = slope_and_force(jnp.asarray(place))
+        assert float(slope) == pytest.approx(-float(force), rel=1e-6, abs=0.0)

@@ -88,6 +88,23 @@ def test_hysteresis_begins_at_a_tabor_number_near_1():
     assert lost[3] == pytest.approx(0.25, abs=0.01)
 
 
+@pytest.mark.parametrize("tabor", [0.3, 3.0])
+def test_the_energy_over_the_gap_adds_up(tabor):
+    """From the fold, within the table, across its end at 484 spacings and beyond."""
+    law = law_of(tabor)
+    first = float(law.forming_gap)
+    node, weight = np.polynomial.legendre.leggauss(200)
+    t = 0.5 * (node + 1.0)
+    for low, high in ((first, first + 1e-10), (1e-9, 2e-9), (1e-7, 2e-7), (2e-7, 1e-6)):
+        gap = jnp.asarray(low + (high - low) * t * t)  # a square root at the fold
+        area = jnp.sum(law.energy(gap) * (high - low) * t * weight)
+        change = law.energy_beyond(jnp.asarray(low)) - law.energy_beyond(jnp.asarray(high))
+        assert float(change) == pytest.approx(float(area), rel=1e-8)
+    for place in (first + 1e-12, 1e-9, 1e-7, 1e-6):
+        slope = jax.grad(law.energy_beyond)(place)
+        assert float(slope) == pytest.approx(-float(law.energy(jnp.asarray(place))), rel=1e-9)
+
+
 @pytest.mark.parametrize("tabor", [1.2, 2.0, 5.0])
 def test_the_area_between_the_branches_is_what_both_jumps_lose(tabor):
     law = law_of(tabor)

@@ -15,7 +15,7 @@ from ..contact.plane_adhesion import FOLDS, tabor_number_of_planes, tabor_number
 from ..dynamics import Body
 from ..dynamics.instability import INSTABILITY
 from ..dynamics.problem import Problem
-from ..errors import SimulationError
+from ..errors import InputError, SimulationError
 from ..numerics.compilation import AT_ONCE, Program
 from .batch_records import slices, taken
 from .clock import Report, silently
@@ -53,14 +53,18 @@ def over_folds(
     Raises
     ------
     InputError
-        If the rough surfaces adhere as smooth ones do.
+        If the rough surfaces adhere as smooth ones do, or equilibria fold under a body that is
+        stepped in time.
     SimulationError
         If the curves miss the tolerance; where folds were sought in vain, why.
     """
     contact = problem.contact  # of a bulk that relaxes, once it has
     number = tabor_number_of_planes(contact) if isinstance(contact, ElasticContact) else 0.0
     if not may_jump(problem):
-        return run(problem, PATIENCE)
+        try:
+            return run(problem, PATIENCE)
+        except Unsolved as error:
+            raise (_not_in_time(problem, number) if problem.in_time else error) from error
     if number <= FOLDS:
         try:
             return run(problem, 0)
@@ -77,6 +81,19 @@ def over_folds(
         if sharp is None:
             raise
         raise sharp from None
+
+
+def _not_in_time(problem: Problem, number: float) -> InputError:
+    """Why a body that is stepped in time has no answer where it would jump."""
+    relaxes = problem.relaxation is not None
+    slow = "the bulk creeps" if relaxes else "menisci take time to form"
+    soft = "of the bulk once it has relaxed " if relaxes else ""
+    return InputError(
+        f"adhesion folds the equilibria {soft}(the Tabor number of the rough surfaces is "
+        f"{number:.3g}; they may fold above {FOLDS:g}): a body that jumps there while {slow} is "
+        "not known here. Less adhesion, a stiffer bulk or higher asperities have no fold",
+        key="viscoelasticity.relaxed_modulus_ratio" if relaxes else "capillary.formation_time",
+    )
 
 
 def may_jump(problem: Problem) -> bool:
