@@ -96,7 +96,6 @@ class Equilibria(NamedTuple):
 
         return at
 
-
     def energy_over_gaps(self, measure: jax.Array) -> jax.Array:
         """Integral of the energy over the gap, from a measure outwards to the path's begin.
 
@@ -298,9 +297,9 @@ def energy_beyond(gap: jax.Array, path: Equilibria, folds: Folds) -> jax.Array:
     """Integral of the energy over gaps from some of the outer branch to the largest."""
     here = jnp.stack([gap, jnp.full_like(gap, largest_gap())])
     places = jax.lax.stop_gradient(_measures_at(jnp.stack([here, here]), path, folds)[0])
-    missed, slopes = (x - y for x, y in zip(path.gap(places), (here, 0.0), strict=True))
+    there, slopes = path.gap(places)
     regular = slopes < -1e-9
-    along = places - jnp.where(regular, missed / jnp.where(regular, slopes, 1.0), 0.0)
+    along = places + jnp.where(regular, (here - there) / jnp.where(regular, slopes, 1.0), 0.0)
     until_gap, until_largest = path.energy_over_gaps(along)
     return until_gap - until_largest
 
