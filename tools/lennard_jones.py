@@ -23,7 +23,7 @@ from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
 
 from asperity.halfspace import Rings, mesh_on
-from asperity.laws.lennard_jones_equilibria import DEGREES, MEASURES, NODES, TABLE, TABOR_NUMBERS
+from asperity.laws.lennard_jones_path import DEGREES, MEASURES, NODES, TABLE, TABOR_NUMBERS
 
 _FIRST = -22.0
 """Measure where the path begins, some 490 spacings apart."""

@@ -13,13 +13,8 @@ from asperity.config.limits import LENNARD_JONES
 from asperity.errors import InputError
 from asperity.halfspace import mesh_on
 from asperity.laws import Bradley, Jkr, LennardJones
-from asperity.laws.lennard_jones_equilibria import (
-    TABOR_NUMBERS,
-    _measures_at,
-    largest_gap,
-    smallest_gap,
-    solved,
-)
+from asperity.laws.lennard_jones_equilibria import _measures_at, solved
+from asperity.laws.lennard_jones_path import TABOR_NUMBERS, largest_gap, smallest_gap
 from asperity.laws.testing import check_law
 from chosen import long_but
 

@@ -9,16 +9,8 @@ import numpy as np
 from .._jax import jax, jnp
 from .bradley import Bradley
 from .law import Law, Real, quantity
-from .lennard_jones_equilibria import (
-    GAP,
-    Equilibria,
-    Folds,
-    energy_beyond,
-    equilibria,
-    largest_gap,
-    smallest_gap,
-    solved,
-)
+from .lennard_jones_equilibria import Folds, energy_beyond, equilibria, solved
+from .lennard_jones_path import GAP, Equilibria, largest_gap, smallest_gap
 
 
 class LennardJones(Law):
