@@ -65,7 +65,7 @@ class FoldingContact(ElasticContact):
         resolved: Resolution,
         folds: jax.Array,
         sizes: jax.Array,
-        drawn: Real | None = None,
+        drawn: Real = 0.0,
     ) -> None:
         super().__init__(interface, shape, modulus, rings, resolved, drawn)
         self.folds, self.sizes = folds, sizes
