@@ -107,18 +107,20 @@ class _Follower(NamedTuple):
         """On to the next place, over a fold if there is one."""
         on = self.rest(place, now.here.size, now.path.guess(place))
         here, fold = jax.lax.cond(on.stable, lambda: (on, now.fold), lambda: self.jump(now, place))
-        other = self.refitted(here)
-        ratio = other.size / here.size
-        refit = (jnp.abs(ratio - 1.0) > _REFIT) & other.stable
+        ratio = bounded_size(RingEquilibrium(here.displacement, here.pressure, jnp.zeros(())))
+        other = jax.lax.cond(
+            jnp.abs(ratio - 1.0) > _REFIT,
+            lambda: self.refitted(here, ratio),
+            lambda: here._replace(stable=jnp.asarray(False)),
+        )
+        refit = other.stable
         here = choose(refit, other, here)
         path = now.path.append(place, here.displacement)
         path = choose(on.stable & ~refit, path, self.straight(here))
         return _Search(path, here, fold), None
 
-    def refitted(self, here: _Rest) -> _Rest:
-        """The same rings on the mesh that they ask for."""
-        rest = RingEquilibrium(here.displacement, here.pressure, jnp.zeros(()))
-        ratio = bounded_size(rest)
+    def refitted(self, here: _Rest, ratio: jax.Array) -> _Rest:
+        """The same rings on the mesh that they ask for, ``ratio`` times as large."""
         moved = on_other_mesh(here.displacement, ratio)
         return self.rest(here.place, here.size * ratio, moved)
 
