@@ -2,18 +2,20 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 from tools.valid_cases import drawn, text_of
 
 from asperity import solve
 from asperity.config import builtin, load
 from asperity.config.resolve import resolve
+from asperity.dynamics.curve_table import STORED
 from asperity.errors import Outcome, SimulationError
 from asperity.integration import refinements
 from asperity.integration.finer_scanning import balanced, with_finer_scanning
 from asperity.integration.single_case import cut_in_steps, integrate
 from asperity.model import build
-from asperity.regimes.accuracy import CLOSED, balance_error
+from asperity.regimes.accuracy import CLOSED, balance_error, branches_miss_it, ledger_warnings
 from records import never_goes_back
 
 
@@ -73,6 +75,17 @@ def test_a_soft_bulk_that_adhesion_draws_out_has_scanning_curves_as_fine_as_it_a
     # What it loses is counted in bonds, whatever scanning curves are read.
     lost = [float(one.motion.impacts.lost[0, 0]) for one in runs]
     assert lost[0] == pytest.approx(lost[1], rel=1e-4)
+    # Where the branches alone miss as much, scanning curves are not why.
+    first = before.motion
+    assert with_finer_scanning(problem, first) is not None
+    values = np.array(first.table.values)
+    values[..., STORED] *= 1.1
+    off = first._replace(table=first.table._replace(values=values))
+    assert not branches_miss_it(first)
+    assert branches_miss_it(off)
+    assert "or the deformation on 32 rings" in ledger_warnings(problem, first)[0]
+    assert "the deformation on 32 rings is" in ledger_warnings(problem, off)[0]
+    assert with_finer_scanning(problem, off) is None
     # Once is enough: finer ones are not cut again, nor those of a balance that closes.
     assert with_finer_scanning(problem._replace(contact=found.contact), found.motion) is None
     coarse = dataclasses.replace(found.contact, resolved=problem.contact.resolved)

@@ -12,7 +12,7 @@ from ..contact.contact import YieldingContact
 from ..dynamics import Motion
 from ..dynamics.problem import Problem
 from ..errors import Outcome, SimulationError
-from ..regimes.accuracy import CLOSED, balance_error, energy_at_stake
+from ..regimes.accuracy import CLOSED, balance_error, branches_miss_it, energy_at_stake
 from ..results.conversion import Solution
 from .clock import Report
 
@@ -89,7 +89,7 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     Curves are cut as the width of bonds asks for. On a soft bulk that adhesion draws out, the
     innermost rings pass from branch to branch many rms heights later, and forces of wide bonds may
     bend within a piece. Where the bonds at closest approach can lose far less than what is missing
-    of the balance, their scanning curves are not why.
+    of the balance, their scanning curves are not why; nor where branches miss half of it.
 
     Parameters
     ----------
@@ -107,6 +107,8 @@ def with_finer_scanning(problem: Problem, motion: Motion) -> Problem | None:
     losable = np.asarray(rows.bonds) @ np.sum(motion.table.losses, axis=0)
     by_bonds = _STORED * np.max(np.where(rows.made, losable, 0.0) / energy_at_stake(rows))
     if contact.resolved.later or not CLOSED < balance_error(motion) < by_bonds:
+        return None
+    if branches_miss_it(motion):
         return None
     if isinstance(contact, ElasticContact):
         pieces = max(_SOON, contact.resolved.pieces) + _LATER
