@@ -109,6 +109,9 @@ def test_a_body_that_is_stepped_in_time_is_refused_where_it_would_jump(relaxatio
     with pytest.raises(InputError, match=why) as raised:
         jumping.over_folds(soft, Runs([soft]))
     assert raised.value.key == key
+    stiff = SimpleNamespace(contact=STIFF_ONE.contact, in_time=True, relaxation=relaxation)
+    with pytest.raises(Unsolved):  # no fold is likely: the numerics have failed
+        jumping.over_folds(stiff, Runs([stiff]))
 
 
 def test_a_run_without_folds_says_what_it_lacks(monkeypatch):

@@ -53,8 +53,8 @@ def over_folds(
     Raises
     ------
     InputError
-        If the rough surfaces adhere as smooth ones do, or equilibria fold under a body that is
-        stepped in time.
+        If the rough surfaces adhere as smooth ones do, or equilibria fold, as is likely, under a
+        body that is stepped in time.
     SimulationError
         If the curves miss the tolerance; where folds were sought in vain, why.
     """
@@ -64,7 +64,9 @@ def over_folds(
         try:
             return run(problem, PATIENCE)
         except Unsolved as error:
-            raise (_not_in_time(problem, number) if problem.in_time else error) from error
+            if problem.in_time and number > FOLDS:
+                raise _not_in_time(problem, number) from error
+            raise
     if number <= FOLDS:
         try:
             return run(problem, 0)

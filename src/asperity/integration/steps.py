@@ -140,7 +140,7 @@ class Steps(NamedTuple):
         Whether the motion of one case is measured and drawn: that is compiled meanwhile.
     refinements
         Times the panels, at most, one after the other, until the curves meet the tolerance. Each is
-        compiled: where curves are cheap there are two.
+        compiled: of a single run there are two.
     """
 
     curves: Program[..., Any]

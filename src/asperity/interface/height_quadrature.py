@@ -249,6 +249,6 @@ def _beyond(law: Law, start: jax.Array, shortest: jax.Array, name: str) -> jax.A
     known = law.energy_beyond(start)
     if known is not None:
         return known
-    ladder = jnp.append(_kinks(law), shortest * _OUTWARDS)
-    gap, weight = points(jnp.sort(jnp.maximum(ladder, start)))
+    ends = jnp.append(_kinks(law), shortest * _OUTWARDS)
+    gap, weight = points(jnp.sort(jnp.maximum(ends, start)))
     return jnp.sum(weight * law.energy(gap))

@@ -58,15 +58,17 @@ class LennardJones(Law):
 
     @property
     def forming_gap(self) -> jax.Array:
-        return self.spacing * (self._solved[1].inwards[GAP] - 1.0)
+        return self.kinks[0]
 
     @property
     def breaking_gap(self) -> jax.Array:
-        return self.spacing * (self._solved[1].outwards[GAP] - 1.0)
+        return self.kinks[1]
 
     @property
-    def kinks(self) -> tuple[jax.Array | float, ...]:
-        return (self.forming_gap, self.breaking_gap)
+    def kinks(self) -> tuple[jax.Array, ...]:
+        """Where the path folds."""
+        folds = self._solved[1]
+        return tuple(self.spacing * (row[GAP] - 1.0) for row in (folds.inwards, folds.outwards))
 
     @property
     def interaction_range(self) -> jax.Array:
