@@ -142,14 +142,14 @@ def ledger_warnings(problem: Problem, motion: Motion) -> list[str]:
     problem, motion
         As for :func:`ring_warnings`.
     """
+    off = balance_error(motion)
+    if off <= CLOSED:
+        return []
     what = "scanning curve" if problem.relaxation is None else "viscoelastic contact"
     if isinstance(problem.contact, ElasticContact) and problem.relaxation is None:
         bulk = f"deformation on {problem.contact.rings} rings"
         rings = motion.table is not None and branches_miss_it(motion)
         what = bulk if rings else f"{what} or the {bulk}"
-    off = balance_error(motion)
-    if off <= CLOSED:
-        return []
     return [
         f"the energy ledger closes to {off:.1g} of the impact energy or of that lost, not to "
         f"{CLOSED:.0e}: the {what} is not resolved"
